@@ -1,8 +1,8 @@
 """The mode table: transitions with source, target, condition and dwell time.
 
 Transitions of the current mode are checked in order; the first whose condition has held without a break for
-its dwell time is taken. Hysteresis lies in the conditions: the limits to leave a mode are wider than to
-enter.
+its dwell time is taken. Hysteresis lies in the conditions: the limits to leave a mode are wider than those
+to enter it.
 """
 
 from dataclasses import dataclass

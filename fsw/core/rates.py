@@ -25,7 +25,7 @@ class RateGroup:
         return tick % self.divisor == self.offset
 
     def in_turn(self, tick: int, length: int) -> int:
-        """Which of so many items it takes in this tick, if it takes one at a time."""
+        """Which of ``length`` items the group takes in this tick, if it takes one at a time."""
         return tick // self.divisor % length
 
 

@@ -1,9 +1,9 @@
 """What is left of the flight state when the plant has restarted, or a forged SYNC pretends that it has.
 
-As after a boot every timer starts in full and there is no attitude: what depends on the count of ticks is
-worth nothing under another count. But fsw has not booted. What the ground has set, which units were
-found faulty, how often a monitor has tripped, that there is a second sender, and what is counted since boot
-stay: a forged SYNC must not bring back an isolated coil or sensor, nor lead out of a SAFE that lasts.
+As after a boot every timer starts in full and there is no attitude: what depends on the count of ticks means
+nothing under another count. But fsw has not booted. What the ground has set, which units were found faulty,
+how often a monitor has tripped, that there is a second sender, and what is counted since boot stay: a forged
+SYNC must not bring back an isolated coil or sensor, nor end a SAFE that is to last.
 """
 
 from fsw.core.actuation.actuator import LOCKOUT_UNKNOWN, CoilView
@@ -22,9 +22,9 @@ from fsw.core.throttle import Throttle
 
 
 def restarted(state: FlightState, tick: int, config: FlightConfig) -> FlightState:
-    """The state of which ``tick`` is the first of a new count.
+    """The state for which ``tick`` is the first of a new count.
 
-    A throttled event stays so for what is left of its time, a second sender for all of its time.
+    A throttled event stays throttled for the rest of its time, a second sender detected for all of its time.
     """
     other, events, begun = state.second_sender, state.events, state.estimator
     reported = tuple(kind._replace(tick=tick - (state.tick - kind.tick)) for kind in events.reported)

@@ -33,10 +33,10 @@ class Inbox(NamedTuple):
 class FlightState(NamedTuple):
     """Everything that fsw carries from one tick to the next.
 
-    ``tick`` is -1 before the first SYNC; ``ignored_syncs`` counts those that were not answered, and ``syncs``
-    holds those in doubt; ``field_tick`` and ``status_tick`` are the last ticks with an
-    intact MAG_FIELD and COIL_STATUS, ``time_error_s`` the last SYNC's time less the expected; ``setpoint``
-    and ``memory`` are the control law's; ``orbit`` and ``upload`` are elements from the ground, those in use
+    ``tick`` is -1 before the first SYNC; ``ignored_syncs`` counts the SYNCs that began no tick, and
+    ``syncs`` holds those in doubt; ``field_tick`` and ``status_tick`` are the last ticks with an intact
+    MAG_FIELD and COIL_STATUS, ``time_error_s`` the last SYNC's time less the expected; ``setpoint`` and
+    ``memory`` are the control law's; ``orbit`` and ``upload`` are elements from the ground, those in use
     (None: the table's orbit) and those not loaded yet; ``sent`` are the counters of fsw's own messages;
     ``wheel`` is None without a wheel that can be driven.
     """

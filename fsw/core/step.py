@@ -49,7 +49,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     """One tick: (state, inbox, config) -> (state, outbox), the outbox closed by TICK_DONE.
 
     A SYNC that is not believed is counted and answered with nothing; one that is repeated because the answer
-    was not received, with TICK_DONE alone. Only the first and one that goes on take the frames of the inbox.
+    was not received, with TICK_DONE alone. Only the first and one that advances take the frames of the inbox.
     """
     before, tick = state, inbox.tick
     belief, syncs = judge(state.syncs, state.tick, tick)
@@ -73,7 +73,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
 
 
 def takes_inbox(before: FlightState, after: FlightState) -> bool:
-    """Whether a step has taken the frames of its inbox: the SYNC was the first, or went on."""
+    """Whether a step has taken the frames of its inbox: the SYNC was the first, or advanced the count."""
     return after.tick != before.tick and (before.tick < 0 or near(before.tick, after.tick))
 
 
@@ -84,7 +84,7 @@ def _done(state: FlightState, tick: int) -> Frame:
 def _begin(
     state: FlightState, inbox: Inbox, belief: Belief, config: FlightConfig
 ) -> tuple[FlightState, Inbox]:
-    """At the first tick of a count every timer starts in full; ticks that were skipped stop the timers."""
+    """At the first tick of a count every timer starts in full; skipped ticks stop the timers."""
     tick, timing = inbox.tick, config.coils.pulses
     if belief is Belief.RESTARTED:
         state, inbox = restarted(state, tick, config), inbox._replace(frames=())
@@ -124,7 +124,7 @@ def _gate(
 
 
 def _with_wheel(state: FlightState, before: int, config: FlightConfig) -> FlightConfig:
-    """The tables with an estimator that reckons with the driven wheel, if there is one."""
+    """The tables with an estimator that accounts for the driven wheel, if there is one."""
     if state.wheel is None:
         return config
     ticks = state.tick - before if before >= 0 else 1
@@ -154,7 +154,7 @@ def _predict(
 def _update(
     state: FlightState, readings: Readings, reference: Reference | None, config: FlightConfig
 ) -> Observation:
-    """Update the estimate by what may be trusted of the readings."""
+    """Update the estimate by the readings that may be trusted."""
     if reference is None:
         return Observation(readings, None, state.estimator, UNKNOWN)
     if config.estimator.perfect:
@@ -167,7 +167,7 @@ def _update(
 
 
 def _judge(state: FlightState, observation: Observation, config: FlightConfig) -> FlightState:
-    """Judge sensors and coils by all readings, of isolated sensors too."""
+    """Judge sensors and coils by all readings, those of isolated sensors included."""
     _, reference, estimator, attitude, used, findings = observation
     tick, health = state.tick, state.health
     if reference is not None and findings is not None:
@@ -179,7 +179,7 @@ def _judge(state: FlightState, observation: Observation, config: FlightConfig) -
 def _control(
     state: FlightState, observation: Observation, model: EphemerisModel, config: FlightConfig
 ) -> tuple[LawInput, Demand | None]:
-    """What the law of this mode knows, and what it asks for."""
+    """What the law of this mode knows, and what it demands."""
     law_input = _law_input(state, observation, model, config)
     demand = by_mode.demand(state.modes.mode, law_input, state.memory, state.setpoint, config.control)
     return law_input, demand
@@ -188,7 +188,7 @@ def _control(
 def _law_input(
     state: FlightState, observation: Observation, model: EphemerisModel, config: FlightConfig
 ) -> LawInput:
-    """The field is the modelled one where the attitude is valid, else the last one measured."""
+    """The field is the modelled one where the attitude is valid, otherwise the last one measured."""
     readings, reference, attitude = observation.readings, observation.reference, state.attitude
     usable = usable_field(readings)
     sample = FieldSample(usable, state.tick) if usable is not None else state.sample

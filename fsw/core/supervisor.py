@@ -1,4 +1,4 @@
-"""Monitors and mode table joined: is all well, and which mode follows."""
+"""Monitors and mode table together: whether all is well, and which mode follows."""
 
 from fsw.core import modes
 from fsw.core.config import FlightConfig
@@ -11,7 +11,7 @@ def supervise(state: FlightState, config: FlightConfig) -> tuple[FlightState, Mo
     """Judge this tick.
 
     Args:
-        state: of this tick but for its mode, which is that of the tick before.
+        state: of this tick except for its mode, which is that of the tick before.
         config: the onboard tables.
 
     Returns:

@@ -53,7 +53,7 @@ _SLOT = {can_id: slot for slot, can_id in enumerate(COUNTED)}
 
 
 def first_counters(with_wheel: bool) -> tuple[int, ...]:
-    """The counters of fsw's messages at boot; there is that of ``WHEEL_TORQUE`` where there is a wheel."""
+    """The counters of fsw's messages at boot; that of ``WHEEL_TORQUE`` only where there is a wheel."""
     return (0,) * (len(COUNTED) - (not with_wheel))
 
 
@@ -153,7 +153,7 @@ def quality_message(attitude: Attitude, modes: ModeState, used: Used, lit: bool)
 
 
 DIGITS = 4
-"""Decimal places of a reported parameter behind the first."""
+"""Digits of a reported parameter after the first."""
 
 
 def parameter_message(estimate: Estimate, component: int, place: int) -> CountedMessage:
@@ -179,7 +179,7 @@ def heartbeat_message(tick: int, modes: ModeState, rejects: int) -> CountedMessa
 def happenings(
     before: FlightState, after: FlightState, readings: Readings, violated: Monitor | None
 ) -> list[Happening]:
-    """The events of this tick: changes only, so that nothing repeats while it lasts."""
+    """The events of this tick: changes only, so that nothing is reported again while it lasts."""
     found = _plant(before, after, readings) if before.tick >= 0 else []
     if after.modes.trips > before.modes.trips and violated is not None:
         found.append(Happening(Event.MONITOR_TRIPPED, violated))
@@ -218,7 +218,7 @@ def event_message(happening: Happening, tick: int) -> CountedMessage:
 
 
 def number(messages: list[CountedMessage], sent: tuple[int, ...]) -> tuple[list[Frame], tuple[int, ...]]:
-    """Give each message its counter and encode it; also the counters afterwards."""
+    """Give each message its counter and encode it; also return the counters afterwards."""
     counters = list(sent)
     frames = []
     for message in messages:

@@ -1,7 +1,7 @@
 """Limits the rate of events of each kind; suppressed events are counted.
 
-A kind is an event with its argument where that is a code, and the event alone where it is a quantity: a clock
-that jitters, or restarts that number themselves, are one kind.
+A kind is an event with its argument where that is a code, and the event alone where it is a quantity: the
+reports of a jittering clock, or of numbered restarts, are one kind.
 """
 
 from typing import NamedTuple

@@ -21,7 +21,7 @@ from sim.validate.reference import reference
 from sim.validate.registry import all_studies, choose_studies, find_repository
 from sim.validate.running.guard import guarded
 from sim.validate.running.kept_results import keep_result, with_known_results
-from sim.validate.running.results import Results
+from sim.validate.running.results import ResultFiles
 
 PAGE = "validation.md"
 
@@ -126,13 +126,13 @@ def _check_record(folder: Path | None, satellites: int | None) -> None:
         raise HarnessError("--record keeps outcomes of whole populations: leave out --satellites")
 
 
-def _results(out: Path | None, whole: bool, record: bool, studies: Sequence[Study]) -> Results:
+def _results(out: Path | None, whole: bool, record: bool, studies: Sequence[Study]) -> ResultFiles:
     page = out or (_default_page() if whole or record else None)
     figures = page.with_suffix(".json") if page is not None and (whole or record) else None
     if figures is not None and figures == page:
         raise HarnessError(f"--out {out}: the outcomes beside the page would have its name: end it in .md")
     before = read_record(figures) if record and figures is not None else None
-    return Results(page, figures, frozenset(study.id for study in studies), before)
+    return ResultFiles(page, figures, frozenset(study.id for study in studies), before)
 
 
 def _keeper(rows: FlightRows | None) -> Callable[[object], None] | None:

@@ -1,10 +1,10 @@
-"""The control laws by name, each far from the goal and near it.
+"""The control laws by name, each in a form far from the goal and one near it.
 
 Of the estimated disturbances ``predictive`` and ``pulse_mpc`` use torque and dipole; ``lqr`` and its variants
 with the attitude known, ``sdre``, ``mpc`` and its variants, ``two_coils`` and ``wheel_allocation`` use the
-torque. From the dipole that any law demands ``by_mode`` takes the residual one off. The other laws have no
-use for the torque: coils can oppose only its part normal to the field, which gains little at once;
-``pd``, ``sliding_integral`` and ``wheel_integral`` answer its mean by their integral.
+torque. From the dipole that any law demands ``by_mode`` subtracts the residual one. The other laws have no
+use for the torque: coils can oppose only its component normal to the field, which gains little at once;
+``pd``, ``sliding_integral`` and ``wheel_integral`` counter its mean by their integral.
 """
 
 from fsw.core.laws.damping.table import LAWS as DAMPING
@@ -36,7 +36,7 @@ LAWS: dict[str, LawEntry] = dict(
 
 
 def open_loop(setpoint: Setpoint) -> bool:
-    """Whether the law of the setpoint acts without looking."""
+    """Whether the law of the setpoint acts without feedback."""
     return setpoint.law in LAWS and LAWS[setpoint.law].open_loop
 
 

@@ -10,7 +10,7 @@ from fsw.core.algebra.vector import Vec3
 MU_M3PS2 = 3.986004418e14
 RADIUS_M = 6378137.0
 DIPOLE_TM3 = 7.812e15
-"""mu_e of the direct dipole, which points along the rotation axis."""
+"""mu_e of the direct dipole, whose axis is the rotation axis."""
 
 _J2000_UNIX_S = 946728000.0
 _DAY_S = 86400.0

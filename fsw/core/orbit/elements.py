@@ -8,8 +8,8 @@ from fsw.wire.messages import Element
 class Elements(NamedTuple):
     """Mean elements as in a two-line element set, in its units, in the order of ``Element``.
 
-    The epoch is in days since 1970-01-01 UTC, whole days and the part of the day apart; ``bstar`` is in 1 per
-    Earth radius, ``motion_revpday`` is Kozai's mean motion in revolutions a day.
+    The epoch is in days since 1970-01-01 UTC, whole days and the fraction of a day separately; ``bstar`` is
+    in 1 per Earth radius, ``motion_revpday`` is Kozai's mean motion in revolutions per day.
     """
 
     epoch_day: float
@@ -49,6 +49,6 @@ class Upload(NamedTuple):
         return self.received == (1 << len(Element)) - 1
 
     def with_element(self, element: Element, value: float) -> "Upload":
-        """With one more element, or one replaced."""
+        """The upload with one more element, or one replaced."""
         values = (*self.values[:element], value, *self.values[element + 1 :])
         return Upload(Elements(*values), self.received | 1 << element)

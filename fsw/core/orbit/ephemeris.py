@@ -1,6 +1,6 @@
-"""The slow rate group: orbit, field and Sun at nodes, and between the nodes a cubic.
+"""The slow rate group: orbit, field and Sun at nodes, and a cubic between the nodes.
 
-A node stands every ``node_ticks`` ticks and depends on its number alone, so that the window of four nodes
+There is a node every ``node_ticks`` ticks; it depends on its number alone, so that the window of four nodes
 around a tick does not depend on earlier ticks.
 """
 
@@ -63,7 +63,7 @@ class Reference:
     """Orbit, field and Sun that the satellite expects in one tick.
 
     Orbit axes: 1 along the radius, 2 ahead, 3 along the orbit normal. ``orbit_rate_radps`` is about axis 3;
-    ``b_rate_eci_tps`` is how the field changes along the orbit, T/s, within some percent.
+    ``b_rate_eci_tps`` is how the field changes along the orbit, T/s, within a few percent.
     """
 
     r_eci_m: Vec3
@@ -106,7 +106,7 @@ def with_orbit(model: EphemerisModel, elements: Elements | None) -> EphemerisMod
     """The model with the orbit of elements from the ground; None: with its own.
 
     Raises:
-        ValueError: the elements are no low orbit.
+        ValueError: the elements are not a low orbit.
     """
     return model if elements is None else replace(model, orbit=element_orbit(elements))
 

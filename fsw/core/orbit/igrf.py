@@ -7,8 +7,8 @@ semi-normalised g, h in nT) and the field its negative gradient:
 
 The derivatives of V_nm and W_nm are V and W of degree n + 1 and orders m - 1, m, m + 1 (Cunningham 1970;
 Montenbruck and Gill 2000, eqs 3.29 to 3.33), so that the field itself is one sum over V and W, whose
-coefficients are gathered once. V and W are run in a scaling where each column of one order obeys the monic
-recursion U_n+1 = z U_n - f rho U_n-1; every normalisation sits in the gathered coefficients.
+coefficients are gathered once. V and W are computed in a scaling where each column of one order obeys the
+monic recursion U_n+1 = z U_n - f rho U_n-1; every normalisation is in the gathered coefficients.
 """
 
 from bisect import bisect_right
@@ -121,7 +121,7 @@ def _term(gauss_nt: Gauss, n: int, m: int) -> Term:
 
 
 def _unnormalised_t(gauss_nt: Gauss, n: int, m: int) -> tuple[float, float]:
-    """G and h for unnormalised associated Legendre functions, in T; zero where there is no such term."""
+    """The g and h for unnormalised associated Legendre functions, in T; zero where there is no such term."""
     if not 0 <= m <= n or n == 0:
         return (0.0, 0.0)
     schmidt = sqrt((1 if m == 0 else 2) * factorial(n - m) / factorial(n + m)) * 1e-9

@@ -18,7 +18,7 @@ _SGP4_EPOCH_DAY = -7306.0
 """1949-12-31 in days since 1970-01-01."""
 
 MAX_KM = 50_000.0
-"""Far beyond any orbit of less than 225 minutes, where SGP4 goes without an error weeks past a decay."""
+"""Far beyond any orbit of less than 225 minutes; SGP4 gets there, without an error, weeks past a decay."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,7 @@ _LINE_2 = re.compile(
 
 
 def read_tle(line1: str, line2: str) -> Satrec:
-    """The element set, blanks and line ends after the lines aside.
+    """The element set; blanks and line ends after the lines are ignored.
 
     Raises:
         ValueError: a line is malformed or its checksum wrong, or the lines are of two satellites.
@@ -75,7 +75,7 @@ def tle_epoch_unix_s(line1: str, line2: str) -> int:
 
 
 def _checked(line: str, number: int, form: re.Pattern[str]) -> str:
-    """The satellite that a sound line is of."""
+    """The satellite of a line that is sound."""
     found = form.fullmatch(line)
     if not found:
         raise ValueError(f"element line {number} is not in the two-line format: {line!r}")

@@ -17,7 +17,7 @@ CODE = ("sim/commissioning", "sim/validate/commissioning")
 """Folders that their results follow from, beside the code of flights."""
 
 
-class Kind(NamedTuple):
+class KeptKind(NamedTuple):
     """Tasks of one argument; the first value of the result is that argument."""
 
     name: str
@@ -26,8 +26,8 @@ class Kind(NamedTuple):
 
 
 KINDS = (
-    Kind("phasing", wirings.tally, wirings.Tally),
-    Kind("calibration", calibrated.flown, calibrated.Flown),
+    KeptKind("phasing", wirings.tally, wirings.Tally),
+    KeptKind("calibration", calibrated.flown, calibrated.Flown),
 )
 
 
@@ -59,7 +59,7 @@ def _known(task: Task, rows: FlightRows) -> Task | None:
     return None
 
 
-def _given_again(kind: Kind, values: object) -> Task | None:
+def _given_again(kind: KeptKind, values: object) -> Task | None:
     try:
         return partial(_given, TypeAdapter(kind.result).validate_python(values))
     except ValidationError:
@@ -70,7 +70,7 @@ def _given(result: object) -> object:
     return result
 
 
-def _key(kind: Kind, argument: object) -> str:
+def _key(kind: KeptKind, argument: object) -> str:
     """What tells one result from another, and the code of one from the code of another."""
     told = f"{kind.name} {argument!r} {code_digest()} {code_digest(CODE)}"
     return hashlib.sha256(told.encode()).hexdigest()[:16]

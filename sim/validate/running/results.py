@@ -13,7 +13,7 @@ from sim.validate.page import render
 
 
 @dataclass(slots=True)
-class Results:
+class ResultFiles:
     """What is written of a run.
 
     Attributes:

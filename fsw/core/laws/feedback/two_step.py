@@ -10,9 +10,8 @@ angles phi of both turns, c = cos(phi / 2), s = sin(phi / 2), at a1 and a2 in th
 whence s^2 = ((1 - q0)^2 + z^2) / (2 (1 - q0)) <= 1 and tan((a2 - a1) / 2) = -z / (1 - q0). A turn about N
 alone, however small, takes two half turns. Of q and -q the one with the smaller phi is taken. The PD law
 turns to P, about an axis across the field, and from there to the goal; while the turn about N is small it
-turns to the goal at once. During the two turns J f is subtracted from the torque, f = dOmega/dt without
-control, so that nothing bends the path: for a sphere f = w0 Omega x e3, normal to a field along the orbit
-normal.
+turns to the goal at once. In both turns J f is subtracted from the torque, f = dOmega/dt without control,
+so that nothing bends the path: for a sphere f = w0 Omega x e3, normal to a field along the orbit normal.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Inamori, Otsuki, Sugawara, Saisutjarit, Nakasuka 2016,
 for a sphere. The review prints no equation; the split is derived here.

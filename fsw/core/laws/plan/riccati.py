@@ -64,7 +64,7 @@ class Problem:
 class Schedule:
     """A periodic solution: M and (P S) of each step of an orbit, shapes (n, 3, 9) and (n, 6, 9).
 
-    ``observer``, (n, 6, 6): Sigma / (v^2 step) of a law that estimates by itself (``field_only``), else empty.
+    ``observer``, (n, 6, 6): Sigma / (v^2 step) of a law with its own estimate (``field_only``), or empty.
     """
 
     problem: Problem

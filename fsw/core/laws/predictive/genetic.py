@@ -17,7 +17,7 @@ GENERATIONS = 40
 _SPREAD = 0.5
 """First spread of a move, relative to the size of the search."""
 _NARROWING = 0.8705505632961241
-"""Factor on the spread per generation: half after five. A number, since pow differs from machine to machine."""
+"""Factor on the spread per generation: half after five. A number, since pow differs between machines."""
 
 Point = tuple[float, float]
 

@@ -6,8 +6,8 @@ substituted one into the next, so that states and cost depend on the dipoles alo
     min sum_k |theta_k|^2 + rate |Omega_k / w0|^2 + effort |m_k|^2 + x_n^T (P x_n + 2 S d),   |m_i| <= m_max,
 
 P and S the terminal cost, that of the periodic regulator. The first dipole is given for a step; then the
-programme is solved anew. While no limit is reached it is ``mpc``; where one is, ``mpc`` scales its dipole down
-and loses what this law gives with the other coils and later.
+programme is solved anew. While no limit is reached it is ``mpc``; where one is, ``mpc`` scales its dipole
+down and loses what this law gives with the other coils and later.
 
 Source: Krogstad, Gravdahl, Tondel 2005; Wood, Chen, Fertin 2006, as in Ovchinnikov, Roldugin 2019,
 section 3.3.

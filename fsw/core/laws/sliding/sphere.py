@@ -21,7 +21,7 @@ from fsw.core.laws.sliding.rate_surface import rate_surface
 
 @dataclass(frozen=True, slots=True)
 class SphereSlidingGains:
-    """In units of the orbital rate w0: K = slope w0, layer = layer w0; m_0 = ``part`` times the mean dipole."""
+    """In units of the orbital rate w0: K = slope w0, layer = layer w0; m_0 is ``part`` of the mean dipole."""
 
     slope: float = 0.5
     layer: float = 0.5

@@ -6,12 +6,12 @@ law overcomes disturbances that change no faster than L rad/s^3 (Levant 1998):
     s = J Omega + K (|q|^p sign(q) + share q),     r = (s - n (n . s)) / J_mean,     n = b / |b|,
     M_ref / J_mean = -1.5 L^(1/2) r / |r|^(1/2) + v,     dv/dt = -1.1 L r / |r| - leak v.
 
-r is the part of s normal to the field, on which coils can act: the part along the field would wind v up. The
-leak lets v forget a field that has turned on. M_ref is projected.
+r is the component of s normal to the field, on which coils can act: that along the field would wind v up. The
+leak lets v forget earlier directions of the field. M_ref is projected.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, the nonlinear surface, after Janardhanan, Nabi, Tiwari 2012.
 The scan damages its last term, which is read as one linear in q. The torque is Levant's in this project's
-scale; the part normal to the field and the leak are this project's.
+scale; the component normal to the field and the leak are this project's.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ from fsw.core.laws.sliding.sliding import mean_moment
 
 @dataclass(frozen=True, slots=True)
 class SuperTwistingGains:
-    """In the orbit's rate w0: K = slope w0 J_mean, L = level w0^3, leak = leak w0; power p, share."""
+    """With w0 the orbital rate: K = slope w0 J_mean, L = level w0^3, leak = leak w0; power p, share."""
 
     slope: float = 0.15
     power: float = 0.8
@@ -35,7 +35,7 @@ class SuperTwistingGains:
     leak: float = 0.3
 
     def __post_init__(self) -> None:
-        """Raises ValueError: gains that drive away, or a power with an infinite torque at the goal."""
+        """Raises ValueError: destabilising gains, or a power with an infinite torque at the goal."""
         if min(self.slope, self.level) <= 0.0 or min(self.share, self.leak) < 0.0:
             raise ValueError("slope and level must be greater than 0, share and leak not less than 0")
         if not 0.5 < self.power <= 1.0:

@@ -20,7 +20,7 @@ class StageGains(TargetGains):
     Attributes:
         nutation_deg: angle of the momentum from the axis, above which nutation is damped.
         spin_band_radps: rate missing, above which the spin is built up.
-        dead: part of the field below which a switching function leaves its coil off.
+        dead: fraction of the field below which a switching function leaves its coil off.
 
     Raises:
         ValueError: one of them is not positive, or what ``TargetGains`` refuses.
@@ -45,18 +45,18 @@ class SpinStage(Enum):
 
 
 def nutation_switch(b_dot_tps: Vec3, axis: int) -> float:
-    """-db_e/dt: m_e of its sign takes the rate across e away, the power being m_e (b x omega)_e."""
+    """-db_e/dt: m_e with its sign damps the rate across e, the power being m_e (b x omega)_e."""
     return -b_dot_tps[axis]
 
 
 def spin_switches(b_body_t: Vec3, lacking_radps: float, axis: int) -> tuple[float, float]:
-    """Of the coils u and v: (b_v, -b_u) of the sign of the lacking rate; the torque is m_u b_v - m_v b_u."""
+    """For coils u and v, (b_v, -b_u) with the sign of the lacking rate; the torque is m_u b_v - m_v b_u."""
     sign = (lacking_radps > 0.0) - (lacking_radps < 0.0)
     return sign * b_body_t[(axis + 2) % 3], -sign * b_body_t[(axis + 1) % 3]
 
 
 def direction_switch(b_body_t: Vec3, target_body: Vec3, axis: int) -> float:
-    """b_u t_v - b_v t_u: m_e of its sign gives the torque m_e e x b a part along the target t."""
+    """b_u t_v - b_v t_u: m_e with its sign gives the torque m_e e x b a component along the target t."""
     u, v = (axis + 1) % 3, (axis + 2) % 3
     return b_body_t[u] * target_body[v] - b_body_t[v] * target_body[u]
 
@@ -69,16 +69,16 @@ def stage(nutation_deg: float, lacking_radps: float, gains: StageGains) -> SpinS
 
 
 def relay(switch: float, dead: float, m_am2: float) -> float:
-    """m0 of the sign of the switching function; off within +-dead."""
+    """m0 with the sign of the switching function; off within +-dead."""
     return m_am2 * ((switch > dead) - (switch < -dead))
 
 
 def relay_stages(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The stage of this tick, its coils fully on: M of size m0 on each coil of the stage.
+    """The stage of this tick, its coils fully on: a dipole m0 of each coil of the stage.
 
     Source: Shigehara 1972, as in Ovchinnikov, Roldugin 2019, section 2.1 [29], which names three stages, a
     relay and switching functions. The functions are derived from the power and the torque that each stage
-    wants.
+    needs.
     """
     gains: StageGains = config.gains["relay_stages"]
     moving = motion(inputs, config)

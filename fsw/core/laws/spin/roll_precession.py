@@ -36,11 +36,11 @@ class RollGains(SpinGains):
 def roll_dipole(
     b_body_t: Vec3, radius_body: Vec3, ahead_body: Vec3, momentum_nms: float, axis: int, k_h: float
 ) -> Vec3:
-    """M = k_h |h| (e . r)(b . v) e, r the radius and v the direction ahead.
+    """The dipole m = k_h |h| (e . r)(b . v) e, r the radius and v the direction ahead.
 
-    With the momentum along the normal n up to small angles the torque on it is normal to n, and takes away
-    roll: -k_h |h| (b . v)^2 of it along r. The yaw, which is not measured, becomes roll a quarter of an orbit
-    later.
+    With the momentum along the normal n up to small angles the torque on it is normal to n, and reduces the
+    roll: along r it is -k_h |h| (b . v)^2 of it. The yaw, which is not measured, becomes roll a quarter of an
+    orbit later.
 
     Args:
         b_body_t: field in body axes, T.

@@ -37,7 +37,7 @@ class SpinGains:
 def nutation_dipole(
     b_body_t: Vec3, b_previous_body_t: Vec3, interval_s: float, axis: int, k_w: float
 ) -> Vec3:
-    """M = -k_w (db/dt . e) e: B-dot of the coil along the spin axis alone.
+    """The dipole m = -k_w (db/dt . e) e: B-dot of the coil along the spin axis alone.
 
     Its torque is normal to e, so the spin stays and the rate across it is damped.
 
@@ -57,7 +57,7 @@ def nutation_dipole(
 
 
 def spin_up_dipole(b_body_t: Vec3, axis: int, k: float) -> Vec3:
-    """M = k b x e, for the third axis k (b2, -b1, 0): the torque about e is k (|b|^2 - (b . e)^2).
+    """The dipole m = k b x e, for axis 3 k (b2, -b1, 0): the torque about e is k (|b|^2 - (b . e)^2).
 
     Args:
         b_body_t: field in body axes, T.

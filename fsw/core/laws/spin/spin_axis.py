@@ -2,10 +2,10 @@
 
 Two errors of a satellite that is to spin about body axis e, its momentum along an inertial direction t:
 
-    L1 = H_ref t - h      the momentum, which torques alone change in space,
+    L1 = H_ref t - h      the momentum, which only torques change in space,
     L2 = h_ref e - h      the momentum in the body: spin, and the nutation across it,
 
-h = J omega + h_wheel and H_ref = h_ref = e . (J e w_ref + h_wheel). The relay law takes both down together:
+h = J omega + h_wheel and H_ref = h_ref = e . (J e w_ref + h_wheel). The relay law reduces both together:
 for a body symmetric about e, d/dt (|L1|^2 + |L2|^2) / 2 = -(L1 + L2) . M.
 
 Source of the errors: Avanzini, de Angelis, Giulietti 2014, as in Ovchinnikov, Roldugin 2019, section 2.1.
@@ -25,7 +25,7 @@ class TargetGains(SpinGains):
     """The body axis that spins, and the direction wanted of the momentum, in eci, of any length.
 
     Attributes:
-        target_1: first component of the direction, as the next two.
+        target_1: first component of the direction; the next two follow.
     """
 
     target_1: float = 0.0
@@ -66,7 +66,7 @@ class ThreeTermGains(SpinAxisGains):
 
 
 def relay_dipole(b_body_t: Vec3, error_body_nms: Vec3, m_am2: float) -> Vec3:
-    """m_j = m0 sign(dh . (e_j x b)): each coil fully on, with the sign that takes the error down.
+    """m_j = m0 sign(dh . (e_j x b)): each coil fully on, with the sign that reduces the error.
 
     Args:
         b_body_t: field in body axes, T.
@@ -84,7 +84,7 @@ def relay_dipole(b_body_t: Vec3, error_body_nms: Vec3, m_am2: float) -> Vec3:
 
 
 def reorientation_dipole(b_body_t: Vec3, error_body_nms: Vec3, axis: int, k_h: float) -> Vec3:
-    """M = k_h (dh . (e x b)) e: the coil along the spin axis turns the momentum and leaves the spin.
+    """The dipole m = k_h (dh . (e x b)) e: the coil along e turns the momentum and leaves the spin.
 
     Args:
         b_body_t: field in body axes, T.
@@ -110,14 +110,14 @@ def three_term_dipole(
     k_spin: float,
     k_h: float,
 ) -> Vec3:
-    """M = b x (-k_w omega_across + k_spin (h_ref - h_e) e + k_h dh): nutation, spin and direction at once.
+    """The dipole m = b x (-k_w omega_across + k_spin (h_ref - h_e) e + k_h dh), for all three at once.
 
-    The torque m x b is the part normal to the field of what stands in brackets, times |b|^2.
+    The torque m x b is the component normal to the field of what is in brackets, times |b|^2.
 
     Args:
         b_body_t: field in body axes, T.
         omega_body_radps: absolute rate, body axes.
-        spin_error_nms: h_ref - h_e, momentum about the spin axis wanted less that there is.
+        spin_error_nms: h_ref - h_e, momentum about the spin axis wanted less the present one.
         error_body_nms: dh, momentum wanted less momentum, body axes.
         axis: index of e, from zero.
         k_w: gain of the rate across e, N m s / T^2.
@@ -128,7 +128,7 @@ def three_term_dipole(
         Dipole in body axes, A m^2.
 
     Source: de Ruiter 2011, as in Ovchinnikov, Roldugin 2019, section 2.1, where the signs are lost: the scan
-    reads b x [k1 (w1, w2, 0) + k2 (0, 0, h3 - h3ref) + k3 dh]. These are the ones that take errors away.
+    reads b x [k1 (w1, w2, 0) + k2 (0, 0, h3 - h3ref) + k3 dh]. These are the ones that reduce the errors.
     """
     e = AXES[axis]
     across = sub(omega_body_radps, scale(omega_body_radps[axis], e))
@@ -137,7 +137,7 @@ def three_term_dipole(
 
 
 def spin_relay(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The relay law on L1 + L2, each coil at the dipole it can give in the mean."""
+    """The relay law on L1 + L2, each coil at the mean dipole it can give."""
     gains: SpinAxisGains = config.gains["spin_relay"]
     moving = motion(inputs, config)
     if moving is None:

@@ -34,8 +34,8 @@ def step_level(b_radius_t: float, b_ahead_t: float, roll: float, yaw: float, dea
     """The level -1, 0 or 1: the sign of b_v roll - b_r yaw, off within a dead zone.
 
     For a momentum along the normal the dipole m along it gives the torque m (-b_v, b_r) in radius and ahead,
-    so that the torque of this sign takes roll^2 + yaw^2 away. Seen from the orbital frame a momentum at rest
-    in space has roll' = w0 yaw: the yaw is the rate of the roll.
+    so that a level of this sign reduces roll^2 + yaw^2. Seen from the orbital frame a momentum at rest in
+    space has roll' = w0 yaw: the yaw is the rate of the roll.
 
     Args:
         b_radius_t: b_r, field along the radius, T.

@@ -32,8 +32,8 @@ class PrecessionGains(SpinAxisGains):
 def precession_dipole(b_body_t: Vec3, target_body: Vec3, axis: int, k_am2pt: float, limit: float) -> Vec3:
     """m_e = k (b_u f(t_v) - b_v f(t_u)), t the direction wanted, e, u, v in cyclic order.
 
-    The torque m_e e x b = m_e (-b_v, b_u) in u, v. For f(x) = x its part along t is k (b_u t_v - b_v t_u)^2;
-    for another f of the sign of its argument that holds in the mean over a turn of the spin.
+    The torque is m_e e x b = m_e (-b_v, b_u) in u, v. For f(x) = x its component along t is
+    k (b_u t_v - b_v t_u)^2; for another f with the sign of x that holds on average over a spin period.
 
     Args:
         b_body_t: field in body axes, T.
@@ -54,7 +54,7 @@ def precession_dipole(b_body_t: Vec3, target_body: Vec3, axis: int, k_am2pt: flo
 
 
 def bent(value: float, limit: float) -> float:
-    """F: the value, cut at +-limit."""
+    """The function f: the value, cut at +-limit."""
     return max(-limit, min(limit, value))
 
 

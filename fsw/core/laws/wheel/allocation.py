@@ -1,8 +1,8 @@
 """Torque shared between coils and wheels with the least effort.
 
-Only a wheel can give the part of a torque along the field. With one wheel and the whole torque given, its
-momentum is therefore not free: a lasting torque about its axis saturates it. Coils that unload it turn the
-body, as in ``pitch_wheel``.
+Only a wheel can give the component of a torque along the field. With one wheel and the whole torque given,
+its momentum is therefore not free: a lasting torque about its axis saturates it. Coils that unload it turn
+the body, as in ``pitch_wheel``.
 """
 
 from collections.abc import Sequence
@@ -16,12 +16,12 @@ from fsw.core.laws.wheel.effort import Effort, check_frequency, compensated_torq
 LEAST_DETERMINANT = 1e-15
 """Of the matrix scaled to a trace of one, below which it counts as singular."""
 FLOORS = (0.05, 0.1, 0.2, 0.4, 0.8)
-"""Values of the floor, in parts of the torque that the coils can give across the field."""
+"""Values of the floor, as fractions of the torque that the coils can give across the field."""
 
 
 @dataclass(frozen=True, slots=True)
 class AllocationGains:
-    """How fast the attitude is brought back.
+    """How fast the attitude is restored.
 
     Attributes:
         frequency_radps: natural frequency, rad/s.
@@ -62,7 +62,7 @@ def least_effort(
         u = R^-1 G^T (G R^-1 G^T + e^2 E)^-1 T,      G R^-1 G^T = M^2 (|b|^2 E - b b^T) + sum P_i^2 w_i w_i^T
 
     With e = 0 the whole torque is given, wherever the wheels together reach along b; e > 0 weighs what is
-    left of it against the effort, (|T - G u| / e)^2, so that nothing grows without bound as they come to be
+    left of it against the effort, (|T - G u| / e)^2, so that nothing grows without bound as the wheels become
     normal to b. Without a wheel it is the dipole of the projected torque. The torque on a wheel is -p_i.
 
     Args:
@@ -70,7 +70,7 @@ def least_effort(
         b_body_t: b, body axes, T.
         axes_body: w_i, unit, body axes; any number of wheels.
         most_am2: M, dipole that counts as full effort.
-        most_nm: P_i, by wheel the torque that does.
+        most_nm: P_i, by wheel, the torque that counts as full effort.
         floor_nm: e.
 
     Returns:
@@ -97,7 +97,7 @@ def least_effort(
 
 
 def _solved(matrix: Mat3, right: Vec3) -> Vec3 | None:
-    """The solution of a symmetric system that is not near singular in numbers of its own size."""
+    """The solution of a symmetric system that, scaled by its own size, is not nearly singular."""
     size = matrix[0][0] + matrix[1][1] + matrix[2][2]
     if not size > 0.0:
         return None
@@ -114,7 +114,7 @@ def affordable(
 
     If they cannot, the floor rises through ``FLOORS`` until they can: what costs most, the torque along a
     field nearly normal to the wheel, is given up first. What even the highest floor leaves too large is
-    shortened. None without a field.
+    scaled down. None without a field.
 
     Args:
         torque_body_nm: T, body axes.

@@ -30,9 +30,9 @@ def wheel_axis_dipole(
 ) -> Vec3:
     """m3 = k1 b2 phi2 - k2 (b1 Omega2 - b2 Omega1), k1 = 2 k_a and k2 = k_w, for a wheel along +e3.
 
-    A turn phi2 about axis 2 tilts the momentum h e3 by h phi2 along axis 1; the torque -m3 b2 takes it away.
-    A turn about axis 1 becomes one about axis 2 a quarter of an orbit later. The second term is minus the
-    power of the coil, so it only takes energy away.
+    A turn phi2 about axis 2 tilts the momentum h e3 by h phi2 along axis 1; the torque -m3 b2 takes it back.
+    A turn about axis 1 becomes one about axis 2 a quarter of an orbit later. The second term is -k2 times the
+    power of the coil per dipole, so it only takes energy away.
 
     Args:
         b_body_t: field in body axes, T.
@@ -69,7 +69,7 @@ def pitch_dipole(b_body_t: Vec3, torque_gain: float) -> Vec3:
 
 
 def pitch(c_body_from_orbit: Mat3) -> float:
-    """Turn about axis 3, body from orbit, rad: the angle nearest to the attitude."""
+    """Turn about axis 3, body from orbit, rad: the one nearest to the attitude."""
     (a11, a12, _), (a21, a22, _), _ = c_body_from_orbit
     return atan2(a12 - a21, a11 + a22)
 
@@ -77,8 +77,8 @@ def pitch(c_body_from_orbit: Mat3) -> float:
 def dual_spin(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The wheel held to the orbit normal, the body turned to its pitch.
 
-    Without a wheel, or with one against the orbit normal, nothing: there the drag relative to the orbital
-    frame would drive the satellite away.
+    Without a wheel, or with one against the orbit normal, nothing: there the damping relative to the orbital
+    frame would destabilise the satellite.
     """
     gains: DualSpinGains = config.gains["dual_spin"]
     if not inputs.attitude.valid or config.wheel_body_nms[2] <= 0.0:

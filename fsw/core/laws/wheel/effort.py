@@ -19,7 +19,7 @@ class Effort(NamedTuple):
 
 
 def shortened(effort: Effort, most_am2: float, most_nm: float) -> Effort:
-    """The effort as large as coils and wheel can give, all in proportion: the torque is not turned."""
+    """The effort scaled down to what coils and wheel can give: the torque keeps its direction."""
     m, torque_nm = effort
     part = max(norm(m) / most_am2, abs(torque_nm) / most_nm, 1.0)
     return Effort(scale(1.0 / part, m), torque_nm / part)

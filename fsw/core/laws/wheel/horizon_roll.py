@@ -12,7 +12,7 @@ from fsw.core.laws.wheel.roll_yaw import can_hold
 
 @dataclass(frozen=True, slots=True)
 class HorizonRollGains:
-    """Bandwidth of the filter that gives the roll rate, rad/s; above that of the nutation."""
+    """Bandwidth of the filter that gives the roll rate, rad/s; above the nutation frequency."""
 
     bandwidth_radps: float = 0.2
 
@@ -37,12 +37,12 @@ def horizon_dipole(b_body_t: Vec3, roll: float, roll_rate: float, k_w: float, k_
 
     The field near the equator is along the wheel, where the coil along it is of no use. The torques are
     T1 = -2 k_a b3^2 roll, which turns the momentum back as h (roll' + w0 yaw) = T1, and T2 = -k_w b3^2 roll',
-    a drag on the nutation. Yaw needs no sensor: a quarter of an orbit later it is roll. Slow motion obeys
+    a damping of the nutation. Yaw needs no sensor: a quarter of an orbit later it is roll. Slow motion obeys
 
         roll'' + (2 k_a + w0 k_w) (b3^2 / h) roll' + w0^2 roll = 0.
 
-    T1 drives the nutation, and the drag outweighs it where k_w h > 2 k_a J2 (Routh; J2 the moment about
-    axis 2, small beside h / w0). Pitch is left to gravity gradient and wheel.
+    T1 drives the nutation, and the damping outweighs it where k_w h > 2 k_a J2 (Routh; J2 the moment about
+    axis 2, small compared with h / w0). Pitch is left to gravity gradient and wheel.
 
     Args:
         b_body_t: field in body axes, T.
@@ -55,7 +55,7 @@ def horizon_dipole(b_body_t: Vec3, roll: float, roll_rate: float, k_w: float, k_
         Dipole in body axes, A m^2.
 
     Source: Goel, Rajaram 1979, of whom Ovchinnikov, Roldugin 2019, section 2.2, says that the data of an
-    infrared horizon sensor stand for the magnetometer's; their equation is not given there, this one is
+    infrared horizon sensor replace the magnetometer's; their equation is not given there, this one is
     derived for their near-equatorial orbit.
     """
     b3 = b_body_t[2]
@@ -65,10 +65,10 @@ def horizon_dipole(b_body_t: Vec3, roll: float, roll_rate: float, k_w: float, k_
 def filtered(
     roll: float, before: tuple[float, float], elapsed_s: float, bandwidth_radps: float
 ) -> tuple[float, float]:
-    """Roll and its rate by the filter of fading memory, of ``before`` an ``elapsed_s`` ago.
+    """Roll and its rate by the fading-memory filter, from those of ``before``, ``elapsed_s`` ago.
 
-    With p = exp(-bandwidth elapsed) the residual e of the roll ahead corrects the roll by (1 - p^2) e and the
-    rate by (1 - p)^2 e / elapsed.
+    With p = exp(-bandwidth elapsed) the residual e of the predicted roll corrects the roll by (1 - p^2) e and
+    the rate by (1 - p)^2 e / elapsed.
 
     Source: Morrison 1969, the fading-memory polynomial filter of degree one.
     """
@@ -82,7 +82,7 @@ def filtered(
 def horizon_roll(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The law from the roll of the attitude, in place of the sensor's. Memory: tick, roll, roll rate.
 
-    The first sample gives no dipole, nor one long after the last.
+    The first sample gives no dipole, nor does one long after the last.
     """
     if not can_hold(inputs, config):
         return Demand()

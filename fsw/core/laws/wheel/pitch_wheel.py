@@ -26,7 +26,7 @@ class PitchWheelGains:
         frequency_radps: natural frequency of the pitch, rad/s.
         damping: its damping ratio.
         bias_nms: momentum of the wheel, N m s.
-        unload_per_s: rate constant with which the momentum comes back to it, 1/s.
+        unload_per_s: rate constant with which the momentum returns to the bias, 1/s.
     """
 
     pitch_rad: float = 0.0
@@ -54,7 +54,7 @@ def pitch_torque(angle_rad: float, rate_radps: float, inertia_kgm2: float, gains
 
     Args:
         angle_rad: alpha, the pitch.
-        rate_radps: Omega_3, its rate against the orbital frame.
+        rate_radps: Omega_3, its rate relative to the orbital frame.
         inertia_kgm2: J_33.
         gains: reference, natural frequency w_n and damping ratio zeta.
     """
@@ -66,7 +66,7 @@ def momentum_dipole(b_body_t: Vec3, excess_nms: float, per_s: float) -> Vec3:
     """(m_1, m_2) = T' (b_2, -b_1), T' = -k (h - h_0) / |b|^2: the dipole that unloads the wheel, A m^2.
 
     Its torque about axis 3 is -k (h - h_0) (b_1^2 + b_2^2) / |b|^2; as the wheel holds the pitch against it,
-    its momentum changes by it.
+    that torque changes the wheel's momentum.
 
     Args:
         b_body_t: field in body axes, T.
@@ -80,12 +80,12 @@ def momentum_dipole(b_body_t: Vec3, excess_nms: float, per_s: float) -> Vec3:
 def pitch_wheel(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Pitch by the wheel's torque; its axis to the orbit normal by coil 3, its momentum by coils 1 and 2.
 
-    The coil of the wheel's axis is that of ``dual_spin``, and so are its gains k_w and k_a. Without a wheel
+    The law for the wheel's axis is that of ``dual_spin``, and so are its gains k_w and k_a. Without a wheel
     along axis 3 whose momentum is known, nothing; while it turns the other way it is only spun up.
 
-    Source: a pitch wheel whose speed is controlled beside coils, de Ruiter 2012, as in Ovchinnikov, Roldugin
-    2019, section 2.4 [58], which gives no equation; the laws are those of section 2.2 for the axis, and
-    follow from the torques m x b and -dh/dt for pitch and momentum.
+    Source: a pitch wheel whose speed is controlled alongside coils, de Ruiter 2012, as in Ovchinnikov,
+    Roldugin 2019, section 2.4 [58], which gives no equation; the laws are those of section 2.2 for the axis,
+    and follow from the torques m x b and -dh/dt for pitch and momentum.
     """
     gains: PitchWheelGains = config.gains["pitch_wheel"]
     wheel, h = config.wheel, inputs.wheel_nms

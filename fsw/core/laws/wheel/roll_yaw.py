@@ -1,13 +1,13 @@
 """Roll and yaw of a satellite whose wheel is along body axis 3, and its pitch held to the orbit.
 
 Roll is the turn about axis 2, along-track, yaw that about axis 1, the radius, pitch that about axis 3. For
-small angles the wheel's momentum h e3 leans by (h roll, -h yaw) along orbit axes 1 and 2, and a torque T
+small angles the wheel's momentum h e3 tilts by (h roll, -h yaw) along orbit axes 1 and 2, and a torque T
 moves it as
 
     h (roll' + w0 yaw) = T1,    h (-yaw' + w0 roll) = T2:
 
-the precession, slow beside the nutation of the body about the momentum. The coil m3 along the wheel gives
-T = m3 (-b2, b1), so that
+the precession, slow compared with the nutation of the body about the momentum. The coil m3 along the wheel
+gives T = m3 (-b2, b1), so that
 
     d(roll^2 + yaw^2)/dt = -2 m3 (b2 roll + b1 yaw) / h.
 

@@ -9,13 +9,13 @@ from fsw.core.laws.wheel.roll_yaw import RollYaw, can_hold, pitch_holding_dipole
 
 @dataclass(frozen=True, slots=True)
 class SixGainGains:
-    """The gains beside k1 = 2 k_a and k3 = k_w, all without a unit.
+    """The gains besides k1 = 2 k_a and k3 = k_w, all dimensionless.
 
     Attributes:
-        k2: part of yaw beside roll.
-        k4: part of the yaw rate beside the roll rate.
-        k5: of the springs, against k1.
-        k6: part of yaw in the springs.
+        k2: of yaw, relative to roll.
+        k4: of the yaw rate, relative to the roll rate.
+        k5: of the springs, relative to k1.
+        k6: of yaw in the springs, relative to roll.
     """
 
     k2: float = 1.0
@@ -56,7 +56,7 @@ def six_gain_dipole(b_body_t: Vec3, motion: RollYaw, k1: float, k3: float, gains
 
     Source: Hablani 1995 (Comparative stability analysis), as in Ovchinnikov, Roldugin 2019, section 2.2, with
     its axes 1, 2, 3 as 2, 3, 1 here. The scan lost signs and dots; they follow from the two laws that the
-    text says are contained, and from the torque. k5 is against k1 here.
+    text says are contained, and from the torque. k5 is relative to k1 here.
     """
     b1, b2, _ = b_body_t
     roll, yaw, roll_rate, yaw_rate = motion

@@ -14,7 +14,7 @@ from fsw.core.laws.wheel.effort import Effort, check_frequency, compensated_torq
 
 @dataclass(frozen=True, slots=True)
 class TwoCoilsGains:
-    """How fast the attitude is brought back.
+    """How fast the attitude is restored.
 
     Attributes:
         frequency_radps: natural frequency, rad/s.
@@ -42,8 +42,8 @@ def two_coils_and_wheel(torque_body_nm: Vec3, b_body_t: Vec3, axis_body: Vec3) -
         | T_2 | = | -b_3  0    0 | | m_2 |      p = (b . T) / b_3,  m_1 = -T_2 / b_3,  m_2 = T_1 / b_3
         | T_3 |   |  b_2 -b_1  1 | | p   |
 
-    and for any w, by coordinates, m = (w x T) / (b . w): the component of T along b is the wheel's alone to
-    give. Both grow without bound as the field comes to be normal to w.
+    and for any w, by a change of axes, m = (w x T) / (b . w): only the wheel can give the component of T
+    along b. Both grow without bound as the field becomes normal to w.
 
     Args:
         torque_body_nm: T, body axes.
@@ -61,7 +61,7 @@ def two_coils_and_wheel(torque_body_nm: Vec3, b_body_t: Vec3, axis_body: Vec3) -
 
 
 def two_coils(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The whole torque wanted, by two coils and the wheel; shortened, but not turned, where it is too much.
+    """The whole torque wanted, by two coils and the wheel; scaled down, its direction kept, if too large.
 
     Without a wheel whose momentum is known, or with the field normal to it, nothing.
     """
@@ -73,7 +73,7 @@ def two_coils(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Cont
 
 
 def two_coils_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """Far from the goal, where the wheel may stand across the field: all three coils, the least effort."""
+    """Far from the goal, where the wheel may be normal to the field: all three coils, the least effort."""
     wheel = config.wheel
     if wheel is None or inputs.wheel_nms is None or not inputs.attitude.valid:
         return Demand()

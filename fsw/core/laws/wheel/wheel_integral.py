@@ -1,4 +1,4 @@
-"""The law of a pitch wheel with an integral part, against a constant torque."""
+"""The law of a pitch wheel with an integral term, against a constant torque."""
 
 from math import sin
 
@@ -15,7 +15,7 @@ BOTH_ANGLES = SixGainGains()
 
 
 def integral_dipole(b_body_t: Vec3, integral_s: Vec3, k_i: float) -> Vec3:
-    """Dipole that answers the mean of a constant torque.
+    """Dipole that on average counters a constant torque.
 
         m3 = 2 k_i (b2 I1 - b1 I2),   (m1, m2) = -2 k_i I3 (b2, -b1),   I = integral of (yaw, roll, sin pitch)
 
@@ -32,7 +32,7 @@ def integral_dipole(b_body_t: Vec3, integral_s: Vec3, k_i: float) -> Vec3:
         Dipole in body axes, A m^2.
 
     Source: Tsuchiya, Inoue 1983, of whom Ovchinnikov, Roldugin 2019, section 2.2, says that they add an
-    integral part to the feedback; components and signs are derived here from the torque.
+    integral term to the feedback; components and signs are derived here from the torque.
     """
     b1, b2, _ = b_body_t
     i1, i2, i3 = integral_s

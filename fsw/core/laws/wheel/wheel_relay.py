@@ -14,7 +14,7 @@ class WheelRelayGains:
 
     Attributes:
         dipole_am2: of the coil along the wheel when it is on, A m^2.
-        lead: tangent of the angle that the surface keeps between the leaning momentum and the field.
+        lead: the surface keeps the lean at an angle of tangent -lead / (1 + rate_s w0) from the field.
         rate_s: weight of the rates, s.
         layer_rad: angle from the surface within which the coil is off, rad.
     """
@@ -47,19 +47,19 @@ def surface(b_body_t: Vec3, motion: RollYaw, lead: float, rate_s: float) -> floa
         k1 = rate_s b1 / p,    k2 = -rate_s b2 / p,    k3 = (lead b1 - b2) / p,    k4 = -(b1 + lead b2) / p
 
     The momentum leans by (roll, -yaw). The precession's rates are w0 (-yaw, roll), so that on S = 0 the lean
-    keeps an angle to the field whose tangent is -t, t = lead / (1 + rate_s w0). Coil 3 turns it across the
-    field alone, hence d|lean|/du = -t |lean| dbeta/du, beta the field's direction in inertial axes. In an
-    orbit beta makes two turns, and the lean falls by exp(-4 pi t). With lead = 0 the layer alone straightens
-    it: the turning field carries S to that edge of it which does. The rates damp the nutation.
+    keeps an angle to the field whose tangent is -t, t = lead / (1 + rate_s w0). Coil 3 moves it only across
+    the field, hence d|lean|/du = -t |lean| dbeta/du, beta the field's direction in inertial axes. In an orbit
+    beta makes two turns, and the lean falls by exp(-4 pi t). With lead = 0 only the layer reduces it: the
+    turning field carries S to that edge of the layer which does. The rates damp the nutation.
 
     Args:
-        b_body_t: field in body axes, T, with a part across axis 3.
+        b_body_t: field in body axes, T, with a component across axis 3.
         motion: roll and yaw with their rates.
         lead: 1.
         rate_s: s.
 
     Source: Wang, Shtessel 1999, as in Ovchinnikov, Roldugin 2019, section 2.2, where S has this form with
-    gains that go with the field but are not given; they are derived here.
+    gains that vary with the field but are not given; they are derived here.
     """
     b1, b2, _ = b_body_t
     roll, yaw, roll_rate, yaw_rate = motion
@@ -70,7 +70,7 @@ def surface(b_body_t: Vec3, motion: RollYaw, lead: float, rate_s: float) -> floa
 def relay_dipole(s_rad: float, dipole_am2: float, layer_rad: float) -> Vec3:
     """m3 = -m0 for S >= eps, 0 for -eps < S < eps, m0 for S <= -eps: dS/dt rises with m3.
 
-    Source: as of ``surface``; the sign is that of dS/dt.
+    Source: as for ``surface``; the sign is that of dS/dt.
     """
     if abs(s_rad) < layer_rad or s_rad == 0.0:
         return (0.0, 0.0, 0.0)
