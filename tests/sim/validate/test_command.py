@@ -207,7 +207,7 @@ class TestCommand:
         def studies(satellites):
             return [Study("calibration", tuple(partial(fly, number) for number in (1, 2)), conclude, True)]
 
-        monkeypatch.setattr(kept_results, "KINDS", (kept_results.Kind("calibration", fly, Flown),))
+        monkeypatch.setattr(kept_results, "KINDS", (kept_results.KeptKind("calibration", fly, Flown),))
         monkeypatch.setattr(command, "all_studies", studies)
         for _ in range(2):
             result = self.call("--only", "calibration", "--keep", tmp_path / "kept.jsonl")
