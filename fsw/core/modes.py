@@ -97,7 +97,7 @@ def judge(
 ) -> ModeConditions:
     """The conditions of the table at this tick; rates are relative to the spin of the setpoint.
 
-    ``can_act``: there is a field from the magnetometer, or the law needs none; otherwise, and without an
+    ``can_act``: the magnetometer is not isolated, or the law needs no field; otherwise, and without an
     attitude, no law can act.
     """
     q0, q1, q2, q3 = attitude.q_body_from_orbit

@@ -116,7 +116,7 @@ def due(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseCo
 
 
 def _within_a_pulse(impulse_body_nms: Vec3, b_body_t: Vec3, config: PulseConfig) -> Vec3:
-    """The impulse, shortened to the largest that one pulse can pay."""
+    """The impulse, scaled down to the largest that one pulse can pay."""
     size, limit = norm(impulse_body_nms), config.pulse_s * config.levels_am2[2] * norm(b_body_t)
     return scale(limit / size, impulse_body_nms) if size > limit else impulse_body_nms
 

@@ -9,8 +9,8 @@ residual dipole and torque by one factor, and no motion changes. The directions 
 
 Along them there is no information but the table's, as long as it takes none of these as exact and no wheel of
 known momentum makes body axes and torque observable. They depend on the estimate, so each correction turns
-them. A covariance that did not turn with them would be too small along the new ones, with nothing measured,
-and soon the filter would explain by them whatever is not modelled. With W the coordinates along D, W^T D = 1,
+them. A covariance that did not turn with them would be smaller along the new ones than any sample justifies,
+and soon the filter would attribute to them whatever is not modelled. With W the coordinates, W^T D = 1,
 those of the turns being the Sun sensor's misalignment, that of the factor the trace of the inertia,
 
     P <- T P T^T,  T = 1 + (D_after - D_before) W^T,  so that D^T P^-1 D stays what it was.

@@ -36,7 +36,7 @@ class FdirConfig:
 
 
 class Health(NamedTuple):
-    """What is found of sensors and coils so far."""
+    """What has been found of sensors and coils so far."""
 
     sensors: SensorHealth = SensorHealth()
     coils: CoilHealth = CoilHealth()

@@ -15,7 +15,7 @@ from enum import Enum, auto
 from typing import NamedTuple
 
 LEAP_TICKS = 60
-"""A SYNC no further ahead is believed at once: those between were lost. A new count settles in as long."""
+"""A SYNC no further ahead is believed at once: those between were lost. A new count settles in as many."""
 
 MOST_DOUBTED = 64
 """How many ticks are remembered as in doubt, the latest."""

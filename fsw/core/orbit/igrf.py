@@ -121,7 +121,7 @@ def _term(gauss_nt: Gauss, n: int, m: int) -> Term:
 
 
 def _unnormalised_t(gauss_nt: Gauss, n: int, m: int) -> tuple[float, float]:
-    """The g and h for unnormalised associated Legendre functions, in T; zero where there is no such term."""
+    """Coefficients g and h for unnormalised associated Legendre functions, in T; zero without such a term."""
     if not 0 <= m <= n or n == 0:
         return (0.0, 0.0)
     schmidt = sqrt((1 if m == 0 else 2) * factorial(n - m) / factorial(n + m)) * 1e-9

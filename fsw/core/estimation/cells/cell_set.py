@@ -6,7 +6,7 @@ A cell with the normal n shows, as a fraction of what it shows facing the Sun,
 
 s and e being the directions to Sun and Earth, zeta the Sun's zenith angle, and A the albedo: the fraction of
 the light that the Earth reflects. The second term is the Earth's light: (R / r)^2 is the view factor of a
-plate that faces the Earth; tilting the plate reduces it by nearly the square, in low orbits.
+plate that faces the Earth; tilting the plate multiplies it by nearly the square, in low orbits.
 
 Departures from nominal are estimated: the gain of each cell, a constant that multiplies n . s; A, which
 varies as the satellite passes over land, sea and clouds; and the excess, whatever a cell shows beyond that,
@@ -76,7 +76,7 @@ class Light(NamedTuple):
 
 
 PENUMBRA_M = 40e3
-"""Beyond this from the shadow's edge the Sun is whole: half the penumbra, errors of position and Earth."""
+"""Farther than this from the shadow the Sun is whole: half the penumbra, errors of position and Earth."""
 
 
 def light(r_eci_m: Vec3, s_eci: Vec3, albedo: float) -> Light | None:

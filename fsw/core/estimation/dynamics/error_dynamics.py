@@ -105,7 +105,7 @@ def free_motion(omega: Vec3, parameters: Parameters, nominal: Rotor) -> Matrix:
 def with_age_along(change: Matrix, covariance: Matrix, delay: slice) -> Matrix:
     """The covariance of the error state, (n, n), where a correction has changed the ``free_motion``.
 
-    Samples that are older by the same dtau look like a satellite that is ahead by dtau on its motion: no
+    Samples that are all older by dtau, of a satellite that is ahead by dtau on its motion, look the same: no
     sample shows this error. Were it left along the motion as estimated before, samples would seem to show it,
     and the filter would be surer of age and attitude than it may be (Huang, Mourikis, Roumeliotis 2010,
     Observability-based rules for designing consistent EKF SLAM estimators).

@@ -136,7 +136,7 @@ def _attitudes(first: BatchSample) -> list[Quaternion]:
 
 
 def _rotation(before: Vec3, after: Vec3) -> Vec3:
-    """The rotation vector of the axes in which a fixed direction goes from ``before`` to ``after``."""
+    """The rotation vector of the axes that takes a fixed direction's components from one to the other."""
     axis, cosine = cross(after, before), dot(before, after)
     sine = norm(axis)
     return scale(float(np.arctan2(sine, cosine)) / sine, axis) if sine > 0.0 else axis

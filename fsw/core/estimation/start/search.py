@@ -1,4 +1,4 @@
-"""The search for the motion behind a batch of samples, a piece in each tick.
+"""The search for the motion behind a batch of samples, a few pieces in each tick.
 
 The unknowns are attitude and rate at the first sample and, with their priors, residual dipole, torque,
 inertia, the bias of the field and the excess of each cell, taken as constant over the batch. The starts are

@@ -110,7 +110,7 @@ def empty_trace(estimate: Estimate) -> Trace:
 
 
 def extended(trace: Trace, causes: tuple[Cause, ...], effects: Matrix) -> Trace:
-    """With more causes, by columns of effects on attitude and rate; the unexplained is counted from here."""
+    """The trace with more causes, by columns of effects on attitude and rate; the unexplained counts anew."""
     new, size = len(causes), len(causes) + len(trace.sums)
     effect, sums = np.zeros((len(trace.effect), size)), np.zeros((size, size))
     effect[:6, :new] = effects

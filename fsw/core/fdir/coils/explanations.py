@@ -77,7 +77,7 @@ class Explanation(NamedTuple):
 
 
 def most_by_chance(numbers: int) -> float:
-    """The chi square of this many numbers that noise exceeds as rarely as it exceeds ``SIGMAS`` in one.
+    """The chi square of this many numbers that noise exceeds as rarely as one exceeds ``SIGMAS``.
 
     The quantile of chi square, k (1 - 2 / 9 k + z sqrt(2 / 9 k))^3 (Wilson, Hilferty 1931).
     """

@@ -40,7 +40,7 @@ class WeakTest(NamedTuple):
 
 
 def weak_test(weak_part: float, threshold: float, mekf: MekfConfig) -> WeakTest:
-    """The test by the filter's prior of the gains: a sound coil lacks no more than ``SIGMAS`` of it.
+    """The test by the filter's prior of the gains: a sound coil is within ``SIGMAS`` of nominal.
 
     Args:
         weak_part: the most that is weak.

@@ -26,7 +26,7 @@ SUSPICIOUS = 0.25
 """Fraction of the threshold: with more doubt about the pair, a refusal counts against no single sensor."""
 
 ALONE = 0.4
-"""Fraction of the threshold at which a lag counts that one sensor alone shows: the other cannot deny it."""
+"""Fraction of the threshold at which a lag of one sensor alone counts: the other cannot contradict it."""
 
 
 class Standing(IntEnum):
@@ -156,7 +156,7 @@ def _innovations(estimate: Estimate) -> float:
 
 
 def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> float:
-    """An estimate gains by each pair that it takes, on trial slowly; a trusted one loses by one sample alone.
+    """An estimate gains by each pair that it takes, slowly on trial; a trusted one loses without one.
 
     Of a trusted one only the sensors need be credible: what turns the satellite may be a coil's fault.
     """

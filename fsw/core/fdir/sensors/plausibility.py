@@ -1,4 +1,4 @@
-"""What speaks against a sample by itself: a table of checks that need neither attitude nor history.
+"""What speaks against a sample by itself: checks that need no attitude, and no history but its repeats.
 
 Every limit is what the bounds of the table and the noise at the edge of the filter's gate allow in this tick.
 """

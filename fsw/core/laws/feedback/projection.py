@@ -64,7 +64,7 @@ def regularised_dipole(torque_body_nm: Vec3, b_body_t: Vec3, floor_t: float) -> 
 
         m = b x M_ref / (|b|^2 + lambda):
 
-    the dipole of the projection, shortened, and the more so the weaker the field.
+    the dipole of the projection, scaled down, the more so the weaker the field.
 
     Args:
         torque_body_nm: M_ref, body axes, N m.

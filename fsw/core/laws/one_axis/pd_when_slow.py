@@ -1,4 +1,4 @@
-"""PD beside the gravity gradient: attitude only while the body is slow, damping alone while it is fast."""
+"""PD with the gravity gradient: attitude only while the body is slow, damping alone while it is fast."""
 
 from dataclasses import dataclass
 

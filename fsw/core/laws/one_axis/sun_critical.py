@@ -30,7 +30,7 @@ class CriticalGains(SpinGains):
 
 
 def critical_acceleration(omega_body_radps: Vec3, sun_body: Vec3, axis: int, xi_radps: float) -> Vec3:
-    """The a = -2 xi omega + xi^2 e x s: an angle theta about each axis across e has the double root -xi.
+    """The acceleration a = -2 xi omega + xi^2 e x s: theta about each axis across e has the double root -xi.
 
     For e = 2 it is (-2 xi w1 + xi^2 s3, -2 xi w2, -2 xi w3 - xi^2 s1), and J a over A, with L = A/C and
     mu = (B - C)/A, is the paper's

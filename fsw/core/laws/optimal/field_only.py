@@ -40,7 +40,7 @@ from fsw.core.laws.optimal.lqr import (
 from fsw.core.laws.plan.riccati import Array, Problem, Schedule, free_step, skews
 
 ORBITS = 60
-"""Most of them until the covariance has settled."""
+"""Largest number until the covariance has settled."""
 SETTLED = 1e-6
 """Relative change in an orbit at which it counts as settled."""
 FIRST_RAD = 1.0

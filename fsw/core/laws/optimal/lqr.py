@@ -4,8 +4,8 @@ The gain M(u) is tabulated over the argument of latitude u of an orbit, from the
 orbit, once, when the onboard table is loaded. The law uses the constant torque that the filter estimates: a
 dipole cannot cancel it, but there is a periodic motion with the least error, and the law leads to it. M gives
 the total dipole: effort is charged for it, residual dipole included, so that the coils' is that less the
-residual, whatever the field to come. With the effort of the coils' alone, a residual dipole would be left to
-act where that is cheap, and pointing is worse.
+residual, whatever the field to come. Were only the coils' effort charged, a residual dipole would be left to
+act where that is cheap, and pointing would be worse.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.2; the equations stand in ``riccati``.
 """

@@ -42,7 +42,7 @@ class OrbitAhead(NamedTuple):
 
 
 class Sight(NamedTuple):
-    """When the orbit is evaluated, and the weights (wanted, nodes) that give the times wanted from that."""
+    """When the orbit is evaluated, and the weights (wanted, nodes) that interpolate to the times wanted."""
 
     nodes_s: tuple[float, ...]
     weights: Array

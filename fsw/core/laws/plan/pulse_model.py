@@ -29,9 +29,9 @@ class PulseModel(NamedTuple):
     ``pulses`` are none, then coil by coil each level with either sign; ``turns``, shape (19, 3, 3), are
     J^-1 [T_p m x] of each, which turns the field into a change of rate. There are ``step_ticks`` from one
     opportunity to the next, for which ``problem`` has the motion, and ``rest`` steps from a pulse to the next
-    of the same coil. ``searched``: how many opportunities are; ``sight``: how the orbit is seen from the
-    middle of the first pulse on: at the pulse of each, midway from each to the next, and in the steps after
-    them.
+    of the same coil. ``searched``: how many opportunities are searched; ``sight``: how the orbit is seen
+    from the middle of the first pulse on: at the pulse of each, midway from each to the next, and in the
+    steps after them.
     """
 
     pulses: tuple[Pulse, ...]

@@ -28,7 +28,7 @@ from fsw.core.laws.plan.riccati import Array
 SEQUENCES = 32
 """How many continue from one opportunity to the next."""
 BARRED = 1_000_000
-"""Opportunities that pass before a coil that must not be fired may be."""
+"""Wait, in opportunities, of a coil that may never be fired: longer than any search."""
 
 Numbers = NDArray[np.int64]
 

@@ -110,7 +110,7 @@ def three_term_dipole(
     k_spin: float,
     k_h: float,
 ) -> Vec3:
-    """The dipole m = b x (-k_w omega_across + k_spin (h_ref - h_e) e + k_h dh), for all three at once.
+    """The dipole m = b x (-k_w omega_across + k_spin (h_ref - h_e) e + k_h dh): nutation, spin, direction.
 
     The torque m x b is the component normal to the field of what is in brackets, times |b|^2.
 
