@@ -35,6 +35,7 @@ CHECKS = (
     Check(clock_checks.repeated_tick),
     Check(clock_checks.own_clock),
     Check(clock_checks.held_tick, power=True),
+    Check(checks.heartbeats, coil=False),
     Check(checks.all_along, coil=False),
 )
 

@@ -41,7 +41,7 @@ class BusLog:
         clock_s: a clock that never goes back.
 
     Raises:
-        FlightError: the disk is full. The file then ends with its last whole tick.
+        FlightError: the disk is full. The file then ends with its last whole tick, each line once.
     """
 
     def __init__(self, path: Path, channel: str, clock_s: Callable[[], float] = time.monotonic) -> None:
@@ -97,7 +97,13 @@ class BusLog:
             raise
         self._size += len(stored)
         self._sha256.update(text)
-        self._index.add(text, lines)
+        try:
+            self._index.add(text, lines)
+        except OSError as error:  # not one of the log: what was written is not to be written again
+            raise self._index_error(error) from None
+
+    def _index_error(self, error: OSError) -> FlightError:
+        return FlightError(f"{self._path}: its index cannot be written: {error.strerror}; the log is kept")
 
     @property
     def sha256(self) -> str:
@@ -126,4 +132,4 @@ class BusLog:
             self._index.close(ended)
         except OSError as fault:
             if ended:
-                raise FlightError(f"{self._path}: its index cannot be written: {fault.strerror}") from None
+                raise self._index_error(fault) from None

@@ -68,7 +68,10 @@ class Publisher:
         self._told = 0
 
     def publish(self, seen: FlightView) -> None:
-        """Everything of this moment, and what has happened since the last one."""
+        """Everything of this moment, and what has happened since the last one; from the first SYNC on.
+
+        Of what happened before, the last is told, and how many are left out.
+        """
         from foxglove.messages import Color, Log, LogLevel, SceneEntity, SceneUpdate
 
         from sim.drawing.foxglove_scene import ESTIMATE, ORBIT, arrow, attitude, stamp_of
@@ -93,6 +96,8 @@ class Publisher:
             if one.number > self._told:
                 then_ns = (one.unix_s or seen.unix_s) * 10**9
                 level = levels.get(one.weight, LogLevel.Info)
-                log = Log(timestamp=stamp_of(then_ns), level=level, message=one.words, name="bus")
+                left_out = one.number - self._told - 1
+                words = f"{one.words}; {left_out} before it are left out" if left_out else one.words
+                log = Log(timestamp=stamp_of(then_ns), level=level, message=words, name="bus")
                 self._events.log(log, log_time=then_ns)
                 self._told = one.number

@@ -40,6 +40,8 @@ from sim.watch.load import Load
 
 MOST_HAPPENINGS, MOST_SAMPLES = 500, 3600
 """What is kept: happenings, and samples of the time series, one for each second of the satellite."""
+MOST_UNKNOWN = 64
+"""Identifiers that are no message's and whose frames are counted each by itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,10 +101,13 @@ class FlightView:
         """As ``sampled``: how many so far, those that are kept no longer included."""
         self.ended = False
         self.frames: Counter[int] = Counter()
+        self.other_frames = 0
+        """Of identifiers that are unknown and are not in ``frames``."""
         self.broken = 0
         """Frames of a known identifier with a wrong length or CRC."""
         self.load = Load()
         self.around_at = around_at
+        self._unknown = 0  # identifiers in ``frames``
         self._driven = False  # a coil, in this tick or in the one before
         self._takes: dict[int, Callable[[bytes], None]] = {
             Sync.ID: self._take_sync,
@@ -120,7 +125,7 @@ class FlightView:
     def take(self, frame: Frame, now_s: float) -> None:
         """Take one frame that came at ``now_s``."""
         can_id, data = frame
-        self.frames[can_id] += 1
+        self._count(can_id)
         self.load.take(frame, now_s)
         if can_id not in NAMES:
             return
@@ -135,6 +140,15 @@ class FlightView:
             self._happens(*event_words(can_id, values["severity"], values["event"], values["argument"]))
         elif can_id in _BOOTS:
             self._happens(Weight.INFO, f"{SENDERS[can_id].lower()}: started")
+
+    def _count(self, can_id: int) -> None:
+        """Count a frame by its identifier, in constant memory."""
+        if can_id not in NAMES and can_id not in self.frames:
+            if self._unknown == MOST_UNKNOWN:
+                self.other_frames += 1
+                return
+            self._unknown += 1
+        self.frames[can_id] += 1
 
     def _take_sync(self, data: bytes) -> None:
         """The tick begins: what came in the one before is whole."""

@@ -6,7 +6,7 @@ from typing import Any
 
 from fsw.wire.messages import NAMES
 from sim.watch.seen import FlightView
-from sim.watch.terminal import time_text
+from sim.watch.terminal import OTHERS, time_text
 
 Json = dict[str, Any]
 
@@ -78,9 +78,7 @@ def snapshot(seen: FlightView, after: int, sampled: int) -> Json:
             name: bool(getattr(quality, name)) for name in ("mag_used", "mag_blanked", "sun_used", "eclipse")
         },
         "frames_per_s": seen.load.frames_per_s,
-        "frames": [
-            (NAMES.get(can_id, f"0x{can_id:03X}"), count) for can_id, count in seen.frames.most_common()
-        ],
+        "frames": _frames(seen),
         "broken": seen.broken,
         "sampled": seen.sampled,
         "samples": [
@@ -94,3 +92,8 @@ def snapshot(seen: FlightView, after: int, sampled: int) -> Json:
             if one.number > after
         ],
     }
+
+
+def _frames(seen: FlightView) -> list[tuple[str, int]]:
+    named = [(NAMES.get(can_id, f"0x{can_id:03X}"), count) for can_id, count in seen.frames.most_common()]
+    return [*named, (OTHERS, seen.other_frames)] if seen.other_frames else named

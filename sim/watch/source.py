@@ -14,7 +14,7 @@ from sim.record import run_dir
 from sim.record.candump import LogTruncatedError, read_log
 from sim.record.pace import Pace
 from sim.scenario.schema import Scenario
-from sim.watch.seen import FlightView
+from sim.watch.seen import MOST_HAPPENINGS, FlightView
 
 BATCH_S = 0.1
 """Frames are handed on in batches of this time at most [s]."""
@@ -141,14 +141,27 @@ class LogSource:
 
 
 def batches(source: FrameSource, seen: FlightView) -> Iterator[None]:
-    """Hand on the frames of a source as they come, and stop after each batch."""
+    """Hand on the frames of a source as they come.
+
+    Stops after each batch, and within it before anything that happened since the last stop is forgotten.
+    """
     for batch in source.batches():
-        take_batch(seen, batch)
+        yield from _parts(seen, batch)
         yield
 
 
 def take_batch(seen: FlightView, batch: Batch) -> None:
     """Take the frames of a batch."""
+    for _ in _parts(seen, batch):
+        pass
+
+
+def _parts(seen: FlightView, batch: Batch) -> Iterator[None]:
+    """Take the frames of a batch; stops whenever as much has happened as is kept."""
+    told = seen.happened
     for frame, time_s in batch.frames:
         seen.take(frame, time_s)
+        if seen.happened - told == MOST_HAPPENINGS:
+            told = seen.happened
+            yield
     seen.load.pass_time(batch.now_s)

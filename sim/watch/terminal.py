@@ -35,6 +35,8 @@ ARROWS = {
 }
 HEAVIEST = 8
 """Messages that are listed with the load of the bus."""
+OTHERS = "other identifiers"
+"""Frames of unknown identifiers that are not counted each by itself."""
 
 
 def show(seen: FlightView, batches: Iterator[None], source: str) -> None:
@@ -203,4 +205,6 @@ def _load(seen: FlightView) -> Table:
     table.add_row("broken frames", str(seen.broken))
     for can_id, count in seen.frames.most_common(HEAVIEST):
         table.add_row(NAMES.get(can_id, f"0x{can_id:03X}"), str(count))
+    if seen.other_frames:
+        table.add_row(OTHERS, str(seen.other_frames))
     return table

@@ -88,7 +88,7 @@ def ended():
                 suites[name] = conformance(bench_bus, *options)
             suites["nobody"] = conformance(loop())
             result = {
-                name: (*suite.communicate(timeout=200), suite.returncode) for name, suite in suites.items()
+                name: (*suite.communicate(timeout=300), suite.returncode) for name, suite in suites.items()
             }
         finally:
             for process in (*boards, *suites.values()):

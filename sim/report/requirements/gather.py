@@ -1,5 +1,7 @@
 """Gathers one index over the window of a requirement, block by block, in constant memory."""
 
+from math import ceil
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,6 +16,9 @@ from sim.scenario.schema import Scenario, orbit_period_s
 from sim.statistics.indices import magnitudes, mean_and_relative
 
 Array = NDArray[np.float64]
+
+HELD_S = 600.0
+"""Time for which an error must have stayed under its threshold, to the end of the flight, to have settled."""
 
 
 class Gathered:
@@ -40,8 +45,10 @@ class Gathered:
         self.statistic = Statistic(section.probability)
         self._scenario = scenario
         self._taken = 0
+        self._held_ticks = ceil(HELD_S * scenario.time.tick_hz)
         self._average = max(1, round(section.average_s * scenario.time.tick_hz))
-        self._waiting = np.empty((0, 3))
+        self._recent = np.empty((0, 3))  # errors of the last averaging time
+        self._waiting = 0  # how many of them are in no average yet
 
     @property
     def threshold(self) -> float:
@@ -50,8 +57,14 @@ class Gathered:
 
     @property
     def settled(self) -> bool:
-        """Whether it has settled by the end of the flight."""
-        return self._taken > 0 and self.settled_at < self._taken
+        """Whether it has settled: at the end of the flight it has held for ``HELD_S``."""
+        return self._taken - self.settled_at >= self._held_ticks
+
+    @property
+    def long_enough_to_settle(self) -> bool:
+        """False where settling is asked for, and the flight is too short to show it."""
+        asked = self.section.index == "settling" or self.section.window == "settled"
+        return not asked or self.ticks >= self._held_ticks
 
     @property
     def window_from(self) -> int:
@@ -79,15 +92,17 @@ class Gathered:
         if row:
             self.settled_at = first + row
             if self.section.window == "settled":
-                self.statistic, self._waiting = Statistic(self.section.probability), np.empty((0, 3))
+                self.statistic = Statistic(self.section.probability)
+                self._recent, self._waiting = np.empty((0, 3)), 0
         since = max(0, self.window_from - first)
         if since < rows:
             self._take(truth, estimates, error, slice(since, rows))
 
     def value(self) -> float | None:
-        """The statistic of the index over the window; None where the window is empty."""
-        if len(self._waiting) and not self.statistic.mean.count:
-            self._take_means(self._waiting)
+        """The statistic of the index over the window, once all blocks are taken; None where it is empty."""
+        if self._waiting:
+            self._take_means(self._recent, self._waiting)
+            self._waiting = 0
         return self.statistic.value
 
     def _take(self, truth: Histories, estimates: Estimates, error: Array, rows: slice) -> None:
@@ -112,16 +127,23 @@ class Gathered:
         self.statistic.take(values[truth["lit"][rows] > 0.5] if self.section.sunlit else values)
 
     def _average_over(self, error: Array) -> None:
-        """Count the means over whole windows; the rest waits for the next block."""
-        waiting = np.concatenate((self._waiting.reshape(-1, error.shape[1]), error))
-        whole = len(waiting) // self._average * self._average
-        self._waiting = waiting[whole:]
-        if whole:
-            self._take_means(waiting[:whole])
+        """Count the means over whole averaging times; the rest waits for the next block."""
+        rows = np.concatenate((self._recent.reshape(-1, error.shape[1]), error))
+        waiting = self._waiting + len(error)
+        self._waiting = waiting % self._average
+        first, end = len(rows) - waiting, len(rows) - self._waiting
+        if end > first:
+            self._take_means(rows[first:end], end - first)
+        self._recent = rows[-self._average :]
 
-    def _take_means(self, error: Array) -> None:
+    def _take_means(self, error: Array, fresh: int) -> None:
+        """The means of these errors; of the deviations from them, those of the last ``fresh`` errors.
+
+        The last averaging time ends with the window and overlaps the one before, so that every tick counts,
+        and each mean is over the same time.
+        """
         mean, relative = mean_and_relative(error, self._average)
-        self.statistic.take(mean if self.section.index == "mpe" else relative)
+        self.statistic.take(mean if self.section.index == "mpe" else relative[-fresh:])
 
 
 def _pointed(scenario: Scenario) -> str:

@@ -9,7 +9,7 @@ from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.requirements.causes import reasons
 from sim.report.requirements.evidence import EvidenceGatherer, Missed
-from sim.report.requirements.gather import Gathered
+from sim.report.requirements.gather import HELD_S, Gathered
 from sim.report.requirements.words import number, orbits
 from sim.scenario.requirements import DEG, INDICES, OF, ORBITS
 from sim.scenario.schema import Scenario
@@ -62,6 +62,11 @@ class Judgement:
                 outcome = _not_judged(
                     f"judged by orbit {one.section.by_orbit:g}, flown were {orbits(one.flown_orbits)}"
                 )
+            elif not one.long_enough_to_settle:
+                flown_s = one.ticks / self._scenario.time.tick_hz
+                outcome = _not_judged(
+                    f"settled is what stays under its threshold for {HELD_S:g} s, flown were {flown_s:g} s"
+                )
             else:
                 outcome = self._judged(one, audit, isolated_s)
             outcomes.append(_stated(one) | outcome | {"text": f"{_name(one)}{outcome['text']}"})
@@ -109,13 +114,14 @@ def _measured(one: Gathered, scenario: Scenario, audit: AuditReport) -> tuple[fl
     if section.index == "settling":
         value = one.settled_at / one.ticks_per_orbit if one.settled else None
         if value is None:
-            return None, f"not under {under} at the end, {limit}"
+            return None, f"not under {under} for the last {HELD_S:g} s, {limit}"
         return value, f"under {under} from {orbits(value)} on, {limit}"
     if section.window == "settled" and not (
         one.settled and one.settled_at <= section.by_orbit * one.ticks_per_orbit
     ):
-        when = f", but from {orbits(one.settled_at / one.ticks_per_orbit)} on" if one.settled else ""
-        return None, f"not settled, under {under}, by orbit {section.by_orbit:g}{when}; {limit}"
+        when = f"but from {orbits(one.settled_at / one.ticks_per_orbit)} on"
+        but = when if one.settled else f"nor for the last {HELD_S:g} s"
+        return None, f"not settled, under {under}, by orbit {section.by_orbit:g}, {but}; {limit}"
     value = _of_coils(one, scenario, audit) if section.index in ("duty", "energy") else one.value()
     if value is None:
         return None, f"has no value over {_window(one)}, {limit}"

@@ -59,7 +59,8 @@ def test_it_conforms_with_other_limits(link_to, pulse_ms, backoff_ms, deadman_s,
 )
 def test_sensors_conform(link_to, kind, make, failures):
     verdicts = run_checks(link_to(make, kind=kind), BoardLimits(), armed=False)
-    assert [verdict.name for verdict in verdicts] == ["boot", "noise", "lost_count", "all_along"]
+    names = [verdict.name for verdict in verdicts]
+    assert names == ["boot", "noise", "lost_count", "heartbeats", "all_along"]
     assert failures(verdicts) == {}
 
 

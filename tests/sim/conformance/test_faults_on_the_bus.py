@@ -98,7 +98,7 @@ ON_THE_BUS = {
     "two statuses now and then": (times(2), "all_along"),
     "a counter that stands still": (changed(CoilStatus, lambda m, tick: m._replace(counter=3)), "all_along"),
     "broken frames": ({"outward": staticmethod(break_crc)}, "all_along"),
-    "no heartbeat": (changed(CoilHeartbeat, lambda m, tick: None), "all_along"),
+    "no heartbeat": (changed(CoilHeartbeat, lambda m, tick: None), "heartbeats"),
     "sign lost": (changed(CoilStatus, lambda m, tick: m._replace(level=abs(m.level))), "boot_lockout"),
     "always coil 0": (changed(CoilStatus, lambda m, tick: m._replace(coil=0)), "boot"),
     "no current": (changed(CoilStatus, lambda m, tick: m._replace(current_ma=0)), "boot_lockout"),
@@ -140,3 +140,18 @@ def test_a_fault_on_the_bus_is_found(link_to, parts, finds, failures):
     )
     assert found
     assert finds is None or finds in found, found
+
+
+def test_no_heartbeat_is_found_without_pulses_too(link_to, failures):
+    """The board is kept awake until one is due."""
+    faulty = type("Faulty", (FaultyBench,), ON_THE_BUS["no heartbeat"][0])
+    link = link_to(lambda: CoilBoard(CoilLimits(1)), bench=faulty)
+    found = failures(run_checks(link, BoardLimits(), armed=False))
+    assert found == {"heartbeats": "no heartbeat in tick 60, 60 s after boot or the last one"}
+
+
+def test_without_a_boot_message_no_heartbeat_is_called_in_time(link_to, failures):
+    faulty = type("Faulty", (FaultyBench,), ON_THE_BUS["no boot message"][0])
+    link = link_to(lambda: CoilBoard(CoilLimits(1)), bench=faulty)
+    found = failures(run_checks(link, BoardLimits(), armed=False))
+    assert "no boot message" in found["heartbeats"]

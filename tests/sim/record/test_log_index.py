@@ -14,6 +14,7 @@ import pytest
 from fsw.wire.messages import FswBoot, MagField, TickDone
 from sim.errors import FlightError
 from sim.record import bus_log
+from sim.record.binding import sha256_of
 from sim.record.bus_log import BLOCK_WRITES, BusLog
 from sim.record.candump import LogTruncatedError, read_log
 from sim.record.log_index import SUFFIX, LogIndex, LogStanding, check_against_index, index_path
@@ -27,7 +28,12 @@ def frames(tick):
 
 def write(log, ticks=TICKS):
     """What a flight of so many ticks leaves."""
-    with BusLog(log, "vcan0", lambda: 0.0) as file:
+    fill(BusLog(log, "vcan0", lambda: 0.0), ticks)
+
+
+def fill(file, ticks=TICKS):
+    """The same, with a log that was opened."""
+    with file:
         file.write(0, [FswBoot(0, 1, 2).encode()])
         for tick in range(ticks):
             file.write(1_000_000 * tick, frames(tick))
@@ -274,6 +280,30 @@ def test_a_full_disk_keeps_whole_ticks(tmp_path, monkeypatch, room):
         written = [entry.frame for entry in read_log(log)]
         assert written[0] == FswBoot(0, 1, 2).encode()
         assert written[1:] == [frame for tick in range(len(written) // 2) for frame in frames(tick)]
+
+
+@pytest.mark.parametrize("name", ["bus.log", "bus.log.gz"])
+@pytest.mark.parametrize("ticks", [0, 1, BLOCK_WRITES, 2 * BLOCK_WRITES])
+def test_a_disk_with_room_for_the_log_alone_holds_each_line_once(tmp_path, monkeypatch, name, ticks):
+    """What was written before its index failed is kept, and not written again."""
+    log = tmp_path / name
+    index = LogIndex.add
+
+    def add(self, text, lines):
+        if lines + self._lines > 2 * ticks:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        index(self, text, lines)
+
+    monkeypatch.setattr(LogIndex, "add", add)
+    file = BusLog(log, "vcan0", lambda: 0.0)
+    with pytest.raises(FlightError, match=r": its index cannot be written: No space .*; the log is kept$"):
+        fill(file)
+    written = [entry.frame for entry in read_log(log)]
+    flown = [frame for tick in range(len(written) // 2) for frame in frames(tick)]
+    assert written == [FswBoot(0, 1, 2).encode(), *flown]
+    assert ticks <= len(written) // 2 <= ticks + BLOCK_WRITES
+    assert file.sha256 == sha256_of(log)
+    assert check_against_index(log).standing is LogStanding.OPEN
 
 
 def test_half_a_line_of_the_index_is_taken_back(tmp_path, monkeypatch):

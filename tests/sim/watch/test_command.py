@@ -5,6 +5,7 @@ from click.testing import CliRunner
 
 from fsw.bus.interface import BusError
 from fsw.input.schema import TableError
+from fsw.wire.messages import CoilRefused, CoilRefusedReason
 from sim.errors import HarnessError
 from sim.record.pace import LOCKSTEP
 from sim.watch import command, web
@@ -59,6 +60,13 @@ def test_a_log_that_was_cut_short_is_shown_and_fails(log):
     log.write_text(log.read_text()[:-3])
     code, _, errors = run(log, "--pace", "lockstep")
     assert (code, errors) == (1, f"torquer: {log}: the log was cut short: its last line is incomplete\n")
+
+
+def test_a_log_that_is_read_at_once_tells_all_that_happens(log):
+    refusal = CoilRefused(2, 7, CoilRefusedReason.LOCKOUT, 33).encode()
+    log.write_text(f"(1.000000) x {refusal.can_id:03X}#{refusal.data.hex().upper()}\n" * 4000)
+    code, out, _ = run(log, "--pace", "lockstep")
+    assert (code, len(out.splitlines())) == (0, 4000)
 
 
 @pytest.mark.parametrize(

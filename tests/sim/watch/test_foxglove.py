@@ -6,10 +6,23 @@ import foxglove
 import pytest
 from mcap.reader import make_reader
 
-from fsw.wire.messages import FswBoot, MagField, NavAttitude, Sync
+from fsw.wire.messages import CoilRefused, CoilRefusedReason, FswBoot, MagField, NavAttitude, Sync
 from sim.errors import HarnessError
 from sim.watch.foxglove import Publisher, foxglove_server
-from sim.watch.seen import FlightView
+from sim.watch.seen import MOST_HAPPENINGS, FlightView
+from sim.watch.source import Batch, batches
+
+
+def recorded(path, publish):
+    """Topic, schema and data of what is published."""
+    context = foxglove.Context()
+    with foxglove.open_mcap(path, context=context):
+        publish(Publisher(context, 0))
+    with path.open("rb") as file:
+        return [
+            (channel.topic, schema.name, message.data)
+            for schema, channel, message in make_reader(file).iter_messages()
+        ]
 
 
 def test_attitude_directions_series_and_events_are_sent(tmp_path):
@@ -22,16 +35,12 @@ def test_attitude_directions_series_and_events_are_sent(tmp_path):
         Sync(4, 1427424417),
     ):
         seen.take(message.encode(), 0.0)
-    context = foxglove.Context()
-    with foxglove.open_mcap(path, context=context):
-        publisher = Publisher(context, 0)
+
+    def publish(publisher):
         publisher.publish(seen)
         publisher.publish(seen)
-    with path.open("rb") as file:
-        found = [
-            (channel.topic, schema.name, message.data)
-            for schema, channel, message in make_reader(file).iter_messages()
-        ]
+
+    found = recorded(path, publish)
     topics = [topic for topic, _, _ in found]
     assert topics.count("/tf") == topics.count("/scene") == topics.count("/state") == 2
     assert topics.count("/events") == 1, "what has happened is told once"
@@ -42,6 +51,34 @@ def test_attitude_directions_series_and_events_are_sent(tmp_path):
         "foxglove.SceneUpdate",
         "foxglove.Log",
     }
+
+
+def test_all_that_happens_in_one_batch_is_an_event(tmp_path):
+    seen = FlightView()
+    refusals = [(CoilRefused(2, 7, CoilRefusedReason.LOCKOUT, 33).encode(), 0.0)] * 4000
+
+    class OneBatch:
+        name = "one batch"
+
+        def batches(self):
+            yield Batch([(Sync(4, 1427424417).encode(), 0.0), *refusals], 0.0)
+
+    def publish(publisher):
+        for _ in batches(OneBatch(), seen):
+            publisher.publish(seen)
+
+    topics = [topic for topic, _, _ in recorded(tmp_path / "live.mcap", publish)]
+    assert topics.count("/events") == 4000
+
+
+def test_what_is_forgotten_before_the_first_sync_is_numbered(tmp_path):
+    seen = FlightView()
+    for message in (*[FswBoot(0, 1, 5)] * (MOST_HAPPENINGS + 9), Sync(4, 1427424417)):
+        seen.take(message.encode(), 0.0)
+    told = recorded(tmp_path / "live.mcap", lambda publisher: publisher.publish(seen))
+    first, *others = [data for topic, _, data in told if topic == "/events"]
+    assert b"fsw: started; 9 before it are left out" in first
+    assert not any(b"left out" in data for data in others)
 
 
 def test_a_port_that_is_taken_is_named():

@@ -26,7 +26,8 @@ from fsw.wire.messages import (
 )
 from sim.watch.directions import Around
 from sim.watch.happening import Weight
-from sim.watch.seen import MOST_HAPPENINGS, FlightView
+from sim.watch.seen import MOST_HAPPENINGS, MOST_UNKNOWN, FlightView
+from sim.watch.snapshot import snapshot
 
 UNIX_S = 1427424417
 B_ORBIT_T, SUN_ORBIT = (1e-5, -2e-5, 3e-5), (0.6, 0.0, 0.8)
@@ -207,3 +208,15 @@ class TestBrokenFrames:
         seen.take(Frame(can_id, bytes(8)), 0.0)
         assert seen.frames[can_id] == 1
         assert seen.broken == 0
+
+    def test_of_unknown_identifiers_a_few_are_counted_each_and_the_others_together(self, seen):
+        for can_id in range(10_000):
+            seen.take(Frame(0x8000_0000 + can_id, b""), 0.0)
+        seen.take(Frame(0x8000_0000, b""), 0.0)
+        take(seen, Sync(0, UNIX_S))
+        assert len(seen.frames) == MOST_UNKNOWN + 1
+        assert (seen.frames[0x8000_0000], seen.frames[Sync.ID]) == (2, 1)
+        assert seen.other_frames == 10_000 - MOST_UNKNOWN
+        shown = snapshot(seen, 0, 0)["frames"]
+        assert shown[-1] == ("other identifiers", 10_000 - MOST_UNKNOWN)
+        assert sum(count for _, count in shown) == 10_002

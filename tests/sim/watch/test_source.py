@@ -9,9 +9,11 @@ import pytest
 from fsw.bus.interface import BusError
 from fsw.bus.link import LoopLink
 from fsw.wire.frame import Frame
+from fsw.wire.messages import CoilRefused, CoilRefusedReason
 from sim.errors import HarnessError
 from sim.record.pace import LOCKSTEP, Pace
-from sim.watch.source import BusSource, LogSource
+from sim.watch.seen import MOST_HAPPENINGS, FlightView
+from sim.watch.source import Batch, BusSource, LogSource, batches
 
 LINES = [f"({1000.0 + 0.5 * number:.6f}) loop 7{number:02d}#0{number}" for number in range(5)]
 
@@ -98,3 +100,20 @@ class TestBus:
     def test_there_is_no_such_bus(self):
         with pytest.raises(BusError, match="unknown bus 'nowhere'"):
             BusSource("nowhere")
+
+
+class TestHandingOn:
+    def test_it_stops_before_anything_that_happens_is_forgotten(self):
+        """Of a batch with more than is kept, whoever looks at each stop sees all."""
+        refusal = CoilRefused(2, 7, CoilRefusedReason.LOCKOUT, 33).encode()
+        count = 8 * MOST_HAPPENINGS + 3
+
+        class OneBatch:
+            name = "one batch"
+
+            def batches(self):
+                yield Batch([(refusal, 0.0)] * count, 0.0)
+
+        seen = FlightView()
+        found = {one.number for _ in batches(OneBatch(), seen) for one in seen.happenings}
+        assert found == set(range(1, count + 1))

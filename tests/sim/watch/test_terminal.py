@@ -5,9 +5,10 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
+from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilStatus, FswBoot, MagField, Mode, NavAttitude, NavQuality, NavRate, Sync
 from sim.watch.happening import Occurrence, Weight
-from sim.watch.seen import FlightView
+from sim.watch.seen import MOST_UNKNOWN, FlightView
 from sim.watch.terminal import screen, short_line, show
 
 
@@ -54,6 +55,13 @@ def test_it_shows_mode_attitude_coils_sensors_and_pulses(flying):
         "MAG_FIELD",
     ):
         assert words in shown
+
+
+def test_frames_of_many_unknown_identifiers_have_one_line_together(flying):
+    for can_id in range(MOST_UNKNOWN + 30):
+        flying.take(Frame(0x8000_0000 + can_id, b""), 0.0)
+    assert "other identifiers" in text(flying)
+    assert "30" in text(flying).split("other identifiers")[1].split("\n")[0]
 
 
 def test_before_anything_came_it_says_that_it_waits():

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sim.audit.findings import DrivenPulse
+from sim.report.requirements.gather import HELD_S
 from sim.report.requirements.judge import Outcome
-from sim.statistics.indices import index_histories
 
 
 def ape(**values):
@@ -65,9 +65,34 @@ def test_in_sunlight_alone(judge_made, orbit_ticks):
 def test_means_are_those_of_the_standard_however_the_flight_comes(judge_made, orbit_ticks, index, average_s):
     turn = 2.0 + np.sin(np.arange(orbit_ticks) / 300.0)
     (one,) = judge_made([ape(index=index, average_s=average_s)], turn)
-    error = np.stack((0.0 * turn, 0.0 * turn, turn), axis=1)
-    expected = index_histories(error, error, round(average_s))[index]
-    assert one["measured"] == pytest.approx(np.sqrt(np.mean(expected**2)), rel=1e-9)
+    measured = means_and_deviations(turn, round(average_s))[index]
+    assert one["measured"] == pytest.approx(np.sqrt(np.mean(np.square(measured))), rel=1e-9)
+
+
+def means_and_deviations(turn, average):
+    """Over whole windows, and over the last one that ends with the flight, for the ticks after these."""
+    average = min(average, len(turn))
+    whole = len(turn) // average * average
+    parts = turn[:whole].reshape(-1, average)
+    means, deviations = list(parts.mean(axis=1)), list((parts - parts.mean(axis=1, keepdims=True)).ravel())
+    if whole < len(turn):
+        means.append(turn[-average:].mean())
+        deviations.extend(turn[whole:] - means[-1])
+    return {"mpe": means, "rpe": deviations}
+
+
+@pytest.mark.parametrize("index", ["mpe", "rpe"])
+@pytest.mark.parametrize("average_s", [200.0, 600.0, 50_000.0])
+def test_an_error_in_the_last_seconds_counts_among_means_and_deviations(
+    judge_made, orbit_ticks, index, average_s
+):
+    """Also where no whole averaging time is left of the window."""
+    turn = np.zeros(orbit_ticks)
+    turn[-41:] = 120.0
+    (one,) = judge_made([ape(index=index, average_s=average_s, probability=1.0)], turn)
+    mean = 120.0 * 41 / min(average_s, orbit_ticks)
+    expected = mean if index == "mpe" else 120.0 - mean
+    assert one["measured"] == pytest.approx(expected, rel=0.006)
 
 
 def test_knowledge_and_rate(judge_made, orbit_ticks):
@@ -107,6 +132,35 @@ class TestSettling:
         ):
             (one,) = judge_made([requirement], turn)
             assert (one["verdict"], one["measured"]) == (Outcome.FAILED, None)
+
+    def test_what_is_small_only_at_the_last_has_not_settled(self, judge_made, orbit_ticks):
+        """It has, once it stayed small for the least time."""
+        requirements = [
+            {"index": "settling", "at_most_orbits": 1.0, "by_orbit": 1.0},
+            ape(window="settled", probability=1.0),
+        ]
+        for held, verdict in ((1, "failed"), (round(HELD_S) - 1, "failed"), (round(HELD_S), "met")):
+            turn = np.full(orbit_ticks, 90.0)
+            turn[-held:] = 1.0
+            settling, pointing = judge_made(requirements, turn)
+            assert (settling["verdict"], pointing["verdict"]) == (verdict, verdict)
+            assert (settling["measured"] is None) == (verdict == "failed")
+        turn[-41:-1] = 90.0
+        settling, pointing = judge_made(requirements, turn)
+        assert "not under 5 deg for the last 600 s, at most 1 orbits" in settling["text"]
+        assert "under 5 deg, by orbit 1, nor for the last 600 s; at most 2 deg" in pointing["text"]
+
+    def test_a_flight_that_is_shorter_than_that_cannot_show_it(self, judge_made):
+        requirements = [
+            {"index": "settling", "at_most_orbits": 0.05, "by_orbit": 0.05, "last_orbits": 0.05},
+            ape(window="settled", by_orbit=0.05),
+            ape(by_orbit=0.05, last_orbits=0.05),
+        ]
+        found = judge_made(requirements, np.full(round(HELD_S) - 1, 1.0))
+        assert [one["verdict"] for one in found] == ["not judged", "not judged", "met"]
+        assert found[0]["text"].endswith(
+            ": settled is what stays under its threshold for 600 s, flown were 599 s"
+        )
 
     def test_a_window_from_settling_on_forgets_what_was_before(self, judge_made, orbit_ticks):
         (one,) = judge_made([ape(window="settled", by_orbit=2.0)], self.flight(orbit_ticks))
