@@ -221,6 +221,9 @@ def test_a_fault_of_the_sun_sensor_that_never_shows_is_not_yet_decided(bounds):
 LIGHT, SHADOW = (True,), (False,)
 
 
+NAMED_ROWS = [row for row in ROWS if {"named", "named or doubted"} & {*row.expect}]
+
+
 class TestAFaultThatShowedMustBeNamed:
     """Without any event nothing is named: that fails where the fault showed, and never passes."""
 
