@@ -24,6 +24,7 @@ from sim.fault_table.isolation import (
     uses_unit_again,
 )
 from sim.fault_table.row import Bounds, Check, CheckOutcome, CheckVerdict, FaultRow
+from sim.faults.kinds import KINDS
 from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario, orbit_period_s
 
@@ -81,6 +82,12 @@ def state_is_finite(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) ->
     """All numbers that fsw uses are finite."""
     tick = record.not_finite
     return tick is None, "" if tick is None else f"NaN in the flight state at tick {tick}"
+
+
+def begins_with_a_pulse(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
+    """The pulse from which the phases of a row are counted came."""
+    after_s = record.unfired_s
+    return after_s is None, "" if after_s is None else f"no pulse in the first {after_s:.0f} s, thus no fault"
 
 
 def answers_every_sync(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
@@ -227,10 +234,13 @@ ALWAYS: dict[str, Check] = {
     "no exception": no_exception,
     "no NaN": state_is_finite,
     "answered": answers_every_sync,
+    "fires": begins_with_a_pulse,
     "nobody invented": invents_no_second_sender,
     "no healthy named": isolates_no_healthy_unit,
     "honest": never_wrong_for_long,
 }
+_FROM_INSIDE = ("no exception", "no NaN", "answered", "fires", "honest")
+"""What nothing measures where the flight software is a process of its own."""
 CHECKS: dict[str, Check] = {
     **ALWAYS,
     "limits by time": keeps_limits_over_time,
@@ -254,10 +264,16 @@ CHECKS: dict[str, Check] = {
 }
 
 
+def checks_of(row: FaultRow) -> tuple[str, ...]:
+    """The names of the checks of a row: those of every row that can be measured there, and its own."""
+    unmeasured = _FROM_INSIDE if KINDS[row.kind].by_signal else ()
+    return (*(name for name in ALWAYS if name not in unmeasured), *row.expect)
+
+
 def judge(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[CheckOutcome, ...]:
     """Apply all checks of a row to a flight."""
     outcomes = []
-    for name in (*ALWAYS, *row.expect):
+    for name in checks_of(row):
         holds, finding = CHECKS[name](row, record, bounds)
         verdict = CheckVerdict.OPEN if holds is None else CheckVerdict.PASS if holds else CheckVerdict.FAIL
         outcomes.append(CheckOutcome(name, verdict, finding))
