@@ -194,8 +194,8 @@ class CoilRescaling(Fault):
         plant.scale_coil(round(self.parameters["axis"]), self.parameters["scale"])
 
     def end(self, plant: Plant) -> None:
-        """The coil is as before."""
-        plant.scale_coil(round(self.parameters["axis"]), 1.0)
+        """The coil is as without this fault."""
+        plant.unscale_coil(round(self.parameters["axis"]), self.parameters["scale"])
 
 
 class CoilStuckOn(Fault):

@@ -145,8 +145,12 @@ class Plant:
                 self._wheel.restart()
 
     def scale_coil(self, coil: int, scale: float) -> None:
-        """Scale the dipole that a coil gives for the same current; -1 reverses it."""
+        """Scale the dipole that a coil gives for the same current, beside other scales; -1 reverses it."""
         self._coils.rescale(coil, scale)
+
+    def unscale_coil(self, coil: int, scale: float) -> None:
+        """Take back one such scale."""
+        self._coils.restore(coil, scale)
 
     def end_tick(self) -> None:
         """Drive the coils as the coil driver commands, and advance to the next tick.

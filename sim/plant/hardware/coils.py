@@ -1,6 +1,6 @@
 """Three coils: current, dipole, remanence and read-back."""
 
-from math import exp, expm1
+from math import exp, expm1, prod
 
 from sim.plant.config import CoilConfig
 from sim.plant.hardware.remanence import Remanence
@@ -25,13 +25,24 @@ class Coils:
         self._tau_s = config.time_constant_s
         self._dipole_per_ampere = [config.dipole_per_ampere_am2 * scale for scale in config.dipole_scale]
         self._body_from_coils = _body_from_coils(config.misalignment_rad, config.wiring)
+        self._scales: tuple[list[float], ...] = ([], [], [])
         self._remanence = Remanence(config.remanence_part)
         self._current_a = [0.0, 0.0, 0.0]
 
     def rescale(self, coil: int, scale: float) -> None:
-        """Scale the dipole of a coil from now on."""
+        """Scale the dipole of a coil from now on, in addition to the scales that it has."""
+        self._scales[coil].append(scale)
+        self._apply_scales(coil)
+
+    def restore(self, coil: int, scale: float) -> None:
+        """Take back one of these scales; the others stay."""
+        self._scales[coil].remove(scale)
+        self._apply_scales(coil)
+
+    def _apply_scales(self, coil: int) -> None:
         config = self._config
-        self._dipole_per_ampere[coil] = config.dipole_per_ampere_am2 * config.dipole_scale[coil] * scale
+        nominal = config.dipole_per_ampere_am2 * config.dipole_scale[coil]
+        self._dipole_per_ampere[coil] = nominal * prod(self._scales[coil])
 
     @property
     def dipole_body_am2(self) -> Vec3:
