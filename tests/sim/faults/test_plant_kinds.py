@@ -138,9 +138,24 @@ def test_coils_that_are_cut_or_stuck():
     coil_drive = CoilDrive((0.0, 0.1, 0.0), 0.5)
     assert fault("coil_open", axis=1.0).coil_drive(coil_drive) == CoilDrive((0.0, 0.0, 0.0), 0.5)
     assert fault("coil_open", axis=0.0).coil_drive(coil_drive) == coil_drive
-    assert fault("coil_stuck_on", axis=2.0, ampere=0.4).coil_drive(coil_drive) == CoilDrive(
-        (0.0, 0.1, 0.4), 1.0
-    )
+    stuck = fault("coil_stuck_on", axis=2.0, ampere=0.4).coil_drive(coil_drive)
+    assert stuck == CoilDrive((0.0, 0.1, 0.4), 0.5, (0.0, 0.0, 0.4))
+    assert fault("coil_open", axis=2.0).coil_drive(stuck) == coil_drive
+
+
+@pytest.mark.parametrize(
+    ("commanded", "fraction"),
+    [((0.1, -0.05, 0.2), 0.8), ((0.0, 0.1, 0.0), 0.5), ((0.0, 0.1, 0.0), 1.0), ((0.0, 0.0, 0.0), 0.0)],
+)
+@pytest.mark.parametrize("substeps", [1, 4])
+def test_a_coil_that_is_stuck_on_lengthens_no_other(commanded, fraction, substeps):
+    """Over a tick of 1 s with the coil x stuck; a current without lag, so that its mean is its share."""
+    coils = Coils(CoilConfig((1.0, 2.0, 4.0), dipole_per_ampere_am2=1.0, time_constant_s=0.0))
+    stuck = fault("coil_stuck_on", axis=0.0, ampere=-0.4).coil_drive(CoilDrive(commanded, fraction))
+    ends = [min(max(fraction * substeps - substep, 0.0), 1.0) / substeps for substep in range(substeps)]
+    steps = [coils.advance(stuck.current_a, on_s, 1.0 / substeps, stuck.held_a) for on_s in ends]
+    mean = [sum(axis) / substeps for axis in zip(*steps, strict=True)]
+    assert mean == pytest.approx([-0.4, commanded[1] * fraction, commanded[2] * fraction])
 
 
 class Bench:
