@@ -177,13 +177,17 @@ def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
     return "\n".join([*lines, _KINDS_HEAD, *map(_kind_row, KINDS), ""])
 
 
+_THERE = {"": "yes", "sun": "with a Sun sensor", "cells": "with Sun cells"}
+
+
 def _kind_row(name: str) -> str:
     kind = KINDS[name]
     parameters = ", ".join(
         f"{parameter} = {default:g} ({low:g} to {high:g})"
         for parameter, (default, low, high) in kind.parameters.items()
     )
-    return f"| `{name}` | {parameters} | {'yes' if kind.in_plant else 'no'} |"
+    there = _THERE[kind.sensor] if kind.in_plant else "no"
+    return f"| `{name}` | {parameters} | {there} |"
 
 
 def injected(row: FaultRow) -> str:
