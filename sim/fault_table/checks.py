@@ -85,9 +85,9 @@ def state_is_finite(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) ->
 
 
 def begins_with_a_pulse(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
-    """The pulse from which the phases of a row are counted came."""
+    """A pulse came where one was awaited, to count from."""
     after_s = record.unfired_s
-    return after_s is None, "" if after_s is None else f"no pulse in the first {after_s:.0f} s, thus no fault"
+    return after_s is None, "" if after_s is None else f"no pulse in {after_s:.0f} s"
 
 
 def answers_every_sync(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
@@ -239,7 +239,7 @@ ALWAYS: dict[str, Check] = {
     "no healthy named": isolates_no_healthy_unit,
     "honest": never_wrong_for_long,
 }
-_FROM_INSIDE = ("no exception", "no NaN", "answered", "fires", "honest")
+_FROM_INSIDE = ("no exception", "no NaN", "answered", "honest")
 """What nothing measures where the flight software is a process of its own."""
 CHECKS: dict[str, Check] = {
     **ALWAYS,

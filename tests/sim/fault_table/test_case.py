@@ -53,7 +53,7 @@ def fly(monkeypatch):
 def test_a_flight_software_that_never_fires_fails_where_a_pulse_is_awaited(fly, expect):
     rig = RigThatNeverFires()
     failed = fly(FaultRow("planted", "", "coil_open", expect=expect, unit="coil 0"), rig)
-    assert failed["fires"] == "no pulse in the first 4300 s, thus no fault"
+    assert failed["fires"] == "no pulse in 4300 s"
     assert rig.plant.tick == case.PATIENCE_S
 
 
