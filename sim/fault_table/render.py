@@ -29,8 +29,9 @@ current that the plant drove), raise no exception in a step, have no NaN in the 
 SYNC, isolate no healthy unit, call no attitude valid that is more than 5 deg wrong for over 120 s (unless
 nothing aboard can tell, as the row says; with one sensor left 15 deg), and meet what its row expects. `only
 UNIT named`: it may be isolated. `named or doubted`: it is isolated, or both sensors are said to disagree.
-`not yet`: nothing could identify the unit in the time of the row; a coil can only be judged by pulses that it
-fires in the light while the sensors are not in dispute, and there it has fired fewer than five. Every second
+`not yet`: nothing could identify the unit in the time of the row. A Sun sensor shows most faults in the light
+alone, a lamp in the shadow alone, and there was none; a coil can only be judged by pulses that it fires in the
+light while the sensors are not in dispute, and there it has fired fewer than five. Every second
 case flies a satellite of the population `50kg` (`sim/campaign/population.py`), each another. Figures are the
 worst over all cases. Phases that are counted from a pulse need one: a case without it fails. Where a real
 process is killed or stopped, its steps and its state are not seen: there it is judged by what is on the bus.
@@ -57,6 +58,8 @@ second sender, but limits, replay and completeness must hold.
     at_s = 600.0
     lasts_s = 300.0
     parameters = {axis = 1, nt = 10000}
+
+A fault of a sensor that the satellite does not have, or of a cell that is not there, is refused.
 
 `per_s` is the change of `nt`, `scale` or `deg` in each second after the onset: `nt = 0, per_s = 0.2` is a
 bias that drifts by 0.2 nT/s. A kind that ends in `_late` delays the samples of one sensor.
