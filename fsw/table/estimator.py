@@ -25,8 +25,8 @@ GATE_NIS = 16.27
 """Chi-square with 3 degrees of freedom: 1 in 1000 sound samples is refused."""
 START_SIGMA_RAD = radians(5.0)
 """Of the attitude that TRIAD gives at worst."""
-CELLS_START = 1.5
-"""The same from cells, as a multiple of their excess: one of the three may see the Earth and not the Sun."""
+CELLS_START = 2.0
+"""The same from cells, in their ``model_sigma``: one of the three may see the Earth and not the Sun."""
 MIN_SEPARATION_RAD = radians(15.0)
 """Of field and Sun at the start: TRIAD's error about the axis between them is then below 4 times theirs."""
 MAX_REFUSALS = 60
@@ -55,7 +55,7 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
             sun_sigma_rad=_sun_sigma_rad(table),
             attitude_sigma_rad=START_SIGMA_RAD
             if cells is None
-            else max(START_SIGMA_RAD, 2.0 * cells.model_sigma),
+            else max(START_SIGMA_RAD, CELLS_START * cells.model_sigma),
             rate_sigma_radps=radians(tuning.rate_sigma_degps),
             torque_noise_nm_rts=max(
                 TORQUE_NOISE_RTS * known.torque_nm, LEAST_NOISE_RTS * mean_moment(table.body.inertia)

@@ -39,10 +39,11 @@ def pulses(drives: Sequence[CoilDrive], tick_hz: int) -> list[CurrentPulse]:
     """The pulses in the plant's currents, ordered by start."""
     found: list[CurrentPulse] = []
     under_way: dict[int, Fraction] = {}
-    for tick, (current_a, fraction) in enumerate(drives):
-        now, part = Fraction(tick, tick_hz), Fraction(round(fraction * PER_TICK), PER_TICK * tick_hz)
+    for tick, drive in enumerate(drives):
+        now = Fraction(tick, tick_hz)
         for coil in range(3):
-            on = bool(current_a[coil]) and part > 0
+            part = Fraction(round(_share(drive, coil) * PER_TICK), PER_TICK * tick_hz)
+            on = part > 0
             start = under_way.pop(coil, None)
             if start is not None and not on:
                 found.append(CurrentPulse(coil, start, now))
@@ -62,14 +63,21 @@ def violations(drives: Sequence[CoilDrive], limits: CurrentLimits) -> list[str]:
 
 def _momentary(drives: Sequence[CoilDrive], limits: CurrentLimits) -> list[str]:
     found = []
-    for tick, (current_a, fraction) in enumerate(drives):
-        flowing = [current for current in current_a if current and fraction]
+    for tick, drive in enumerate(drives):
+        flowing = [current for coil, current in enumerate(drive.current_a) if _share(drive, coil)]
         if len(flowing) > 1:
             found.append(f"tick {tick}: {len(flowing)} coils at once")
         for current in flowing:
             if not any(isclose(abs(current), level, rel_tol=1e-9) for level in limits.levels_a):
                 found.append(f"tick {tick}: {current:g} A is no level")
     return found
+
+
+def _share(drive: CoilDrive, coil: int) -> float:
+    """The fraction of a tick in which a current flows through a coil."""
+    if drive.held_a[coil]:
+        return 1.0
+    return drive.fraction if drive.current_a[coil] else 0.0
 
 
 def lasting(found: Sequence[CurrentPulse], limits: CurrentLimits) -> list[str]:

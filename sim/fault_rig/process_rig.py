@@ -35,6 +35,8 @@ BOOT_S = 60.0
 WITHIN_TICK_S = 0.003
 """Longest delay of a signal after SYNC; a step takes about a third of it."""
 CYCLE_TICKS = 103
+PATIENCE_TICKS = 40 * CYCLE_TICKS
+"""In which a pulse begins, if the process fires at all."""
 MOST_STOPPED_TICKS = 8
 
 
@@ -65,17 +67,18 @@ class ProcessRig:
         self.record = FaultFlightRecord(scenario.time.tick_hz)
 
     def fly(self, strikes: list[Strike]) -> FaultFlightRecord:
-        """Fly until all signals were sent, and the last process has fired."""
+        """Fly until all signals were sent, and the last process has fired; or until one does not fire."""
         with self._bus():
             self._await_boot()
             for strike in strikes:
-                self._until_pulse()
+                if not self._until_pulse():
+                    return self.record
                 for _ in range(strike.ticks):
                     self._tick()
                 self._tick(strike)
-            self._until_pulse()
-            for _ in range(CYCLE_TICKS):
-                self._tick()
+            if self._until_pulse():
+                for _ in range(CYCLE_TICKS):
+                    self._tick()
         return self.record
 
     @contextmanager
@@ -109,17 +112,17 @@ class ProcessRig:
                 return
         raise HarnessError("the flight software's process does not boot")
 
-    def _until_pulse(self) -> None:
-        """Tick until a pulse begins; the next tick is its second."""
-        patience = self.plant.tick + 40 * CYCLE_TICKS
+    def _until_pulse(self) -> bool:
+        """Tick until a pulse begins; the next tick is its second. False, and noted: none does."""
         before = True
-        while self.plant.tick < patience:
+        for _ in range(PATIENCE_TICKS):
             self._tick()
             now = any(self.record.coil_drives[-1].current_a)
             if now and not before:
-                return
+                return True
             before = now
-        raise HarnessError("the flight software's process does not fire")
+        self.record.unfired_s = PATIENCE_TICKS / self.record.tick_hz
+        return False
 
     def _tick(self, strike: Strike | None = None) -> None:
         plant, record = self.plant, self.record

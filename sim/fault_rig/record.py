@@ -67,6 +67,7 @@ class FaultFlightRecord:
         modes: by tick; None while fsw does not run.
         events: FSW_EVENT.
         board_events: COIL_EVENT.
+        unfired_s: how long a pulse was awaited in vain [s]; None if none was missed.
         crash: exception that a step raised; None if none did.
         not_finite: first tick with a number in the state that is not finite.
         unanswered: ticks whose SYNC reached a running fsw and was not answered.
@@ -94,6 +95,7 @@ class FaultFlightRecord:
     modes: list[Mode | None] = field(default_factory=list)
     events: list[ReportedEvent] = field(default_factory=list)
     board_events: list[BoardEvent] = field(default_factory=list)
+    unfired_s: float | None = None
     crash: str | None = None
     not_finite: int | None = None
     unanswered: list[int] = field(default_factory=list)

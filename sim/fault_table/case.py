@@ -32,6 +32,8 @@ PLACE_DEG = 36.0
 CYCLE_S = 103.0
 ORDER = (1.0, 0.0, 2.0, 3.0, 102.0, 50.0, 4.0, 101.0, 99.0, 25.0, 100.0, 75.0)
 """First phases in a pulse and its back-off [s]; further ones are random."""
+PATIENCE_S = ARMED_S + 40.0 * CYCLE_S
+"""By when there is a first pulse, if there ever is one [s]."""
 SPACING_S = 37.0
 INITIAL_TURN = ("initial.axis=[0.9, 0.3, -0.2]", "initial.rate_degps=[0.05, -0.07, 0.04]")
 FIRST_DEG, STEP_DEG = 75.0, 47.0
@@ -100,6 +102,8 @@ def _fly_fault(row: FaultRow, phase: int, seed: int, rig: Rig, orbit_s: float) -
     hz, record = rig.record.tick_hz, rig.record
     offset_s = phase_s(row.when, phase, rng)
     reference = _fly_to_reference(row.when, rig, orbit_s)
+    if reference is None:
+        return rig.finish()
     onset = reference + round(offset_s * hz)
     for fault, planned in zip(faults, row.faults, strict=True):
         first = onset + round(planned.after_s * hz)
@@ -130,16 +134,24 @@ def phase_s(when: When, phase: int, rng: Random) -> float:
     return 0.0 if when in (When.BOOT, When.ORBIT) else phase * SPACING_S
 
 
-def _fly_to_reference(when: When, rig: Rig, orbit_s: float) -> int:
-    """Fly until the reference tick of the phases: the next tick, or the one before."""
-    hz = rig.record.tick_hz
+def _fly_to_reference(when: When, rig: Rig, orbit_s: float) -> int | None:
+    """Fly until the reference tick of the phases: the next tick, or the one before.
+
+    None: there is none, since a step raised an exception or no pulse came.
+    """
+    hz, record = rig.record.tick_hz, rig.record
     after_s = {When.BOOT: 0.0, When.SUNLIT: ARMED_S, When.ECLIPSE: ECLIPSE_S, When.ORBIT: orbit_s}
-    until_s = after_s.get(when, inf)
+    until_s = after_s.get(when, PATIENCE_S)
     while rig.plant.tick < until_s * hz:
         rig.tick()
         tick = rig.plant.tick
-        if when is When.PULSE and tick > ARMED_S * hz and any(rig.record.coil_drives[-1].current_a):
+        if record.crash is not None:
+            return None
+        if when is When.PULSE and tick > ARMED_S * hz and any(record.coil_drives[-1].current_a):
             return tick - 1
+    if when is When.PULSE:
+        record.unfired_s = until_s
+        return None
     return rig.plant.tick
 
 

@@ -9,6 +9,7 @@ from sim.audit.limits import limits_in
 from sim.fault_rig import currents
 from sim.fault_rig.currents import CurrentLimits
 from sim.fault_rig.record import FaultFlightRecord
+from sim.fault_table.honesty import never_wrong_for_long
 from sim.fault_table.isolation import (
     SECOND_SENDER,
     board_identifies_unit,
@@ -22,17 +23,14 @@ from sim.fault_table.isolation import (
     monitor_trips_for_silent_board,
     uses_unit_again,
 )
-from sim.fault_table.row import Bounds, Check, CheckOutcome, CheckVerdict, FaultRow, Unseen
+from sim.fault_table.row import Bounds, Check, CheckOutcome, CheckVerdict, FaultRow
+from sim.faults.kinds import KINDS
 from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario, orbit_period_s
 
 GOOD_DEG = 2.0
 GOOD_FOR_S = 600.0
-WRONG_DEG, ALONE_DEG, WRONG_S = 5.0, 15.0, 120.0
-"""A valid attitude may be this wrong for this long while a new fault is being found."""
 CYCLES = 4.0
-FIRST_S = 600.0
-"""Length of the first minutes, in which both sensors may agree on what is wrong [s]."""
 FAR_DEG, LAST_S = 15.0, 300.0
 """Three times the standard deviation up to which fsw marks an estimate as valid."""
 FORGERY_EVENTS = (Event.STRANGE_SYNC, Event.PLANT_RESTARTED, Event.FALSE_END)
@@ -84,6 +82,12 @@ def state_is_finite(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) ->
     """All numbers that fsw uses are finite."""
     tick = record.not_finite
     return tick is None, "" if tick is None else f"NaN in the flight state at tick {tick}"
+
+
+def begins_with_a_pulse(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
+    """A pulse came where one was awaited, to count from."""
+    after_s = record.unfired_s
+    return after_s is None, "" if after_s is None else f"no pulse in {after_s:.0f} s"
 
 
 def answers_every_sync(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
@@ -207,38 +211,6 @@ def reports_forgery(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) ->
     return True, f"reported after {(ticks[0] - onset) / record.tick_hz:.0f} s"
 
 
-def never_wrong_for_long(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
-    """No attitude in the answers is valid and more than 5 deg wrong for over 120 s on end.
-
-    Where nothing on board can show it, because both sensors agree on what is wrong, the row says so. Where
-    there is only one sensor, as in the shadow, or an estimate is settling, the limit is 15 deg, three times
-    the largest sigma of a valid attitude.
-    """
-    longest = wrong = 0
-    worst_deg = 0.0
-    settling = _settling(record, bounds) if row.unseen is Unseen.SETTLING else ()
-    first = round(FIRST_S * record.tick_hz) if row.unseen is Unseen.AT_FIRST else 0
-    onset = (record.onset or 0) if row.unseen is Unseen.ALONE else len(record.error_deg)
-    for tick in range(first, len(record.error_deg)):
-        error_deg = record.error_deg[tick]
-        alone = tick >= onset or (row.unseen in (Unseen.IN_SHADOW, Unseen.ALONE) and not record.lit[tick])
-        loose = alone or any(tick in ticks for ticks in settling)
-        limit_deg = ALONE_DEG if loose else WRONG_DEG
-        wrong = wrong + 1 if record.done[tick] and error_deg is not None and error_deg > limit_deg else 0
-        longest = max(longest, wrong)
-        worst_deg = max(worst_deg, error_deg or 0.0) if wrong else worst_deg
-    longest_s = longest / record.tick_hz
-    finding = f"valid while up to {worst_deg:.0f} deg wrong, for {longest_s:.0f} s on end" if longest else ""
-    return row.unseen is Unseen.ALWAYS or longest_s <= WRONG_S, finding
-
-
-def _settling(record: FaultFlightRecord, bounds: Bounds) -> list[range]:
-    """The orbit after each start of the filter, ticks."""
-    orbit = round(bounds.orbit_s * record.tick_hz)
-    started = [event.tick for event in record.events if event.number == Event.FILTER_STARTED]
-    return [range(tick, tick + orbit) for tick in started]
-
-
 def isolates_nothing(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
     """Without a fault no unit is isolated and no monitor trips."""
     units = isolations(record) + monitor_trips(record)
@@ -262,10 +234,13 @@ ALWAYS: dict[str, Check] = {
     "no exception": no_exception,
     "no NaN": state_is_finite,
     "answered": answers_every_sync,
+    "fires": begins_with_a_pulse,
     "nobody invented": invents_no_second_sender,
     "no healthy named": isolates_no_healthy_unit,
     "honest": never_wrong_for_long,
 }
+_FROM_INSIDE = ("no exception", "no NaN", "answered", "honest")
+"""What nothing measures where the flight software is a process of its own."""
 CHECKS: dict[str, Check] = {
     **ALWAYS,
     "limits by time": keeps_limits_over_time,
@@ -289,10 +264,16 @@ CHECKS: dict[str, Check] = {
 }
 
 
+def checks_of(row: FaultRow) -> tuple[str, ...]:
+    """The names of the checks of a row: those of every row that can be measured there, and its own."""
+    unmeasured = _FROM_INSIDE if KINDS[row.kind].by_signal else ()
+    return (*(name for name in ALWAYS if name not in unmeasured), *row.expect)
+
+
 def judge(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[CheckOutcome, ...]:
     """Apply all checks of a row to a flight."""
     outcomes = []
-    for name in (*ALWAYS, *row.expect):
+    for name in checks_of(row):
         holds, finding = CHECKS[name](row, record, bounds)
         verdict = CheckVerdict.OPEN if holds is None else CheckVerdict.PASS if holds else CheckVerdict.FAIL
         outcomes.append(CheckOutcome(name, verdict, finding))

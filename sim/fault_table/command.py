@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from sim.console import answer, say
@@ -49,8 +49,9 @@ def faults(
         workers: processes; None: one per core.
         slow: include rows that run real processes.
         keep: file in which each row is kept once it is done, in the form of faults.json; it need not exist.
-            Rows in it count where they are not flown now; those that the present code has flown, in at least
-            as many phases with as many seeds, are not flown again.
+            Rows in it count where they are not flown now, with a mark where it was other code that flew them;
+            those that the present code has flown, in at least as many phases with as many seeds, are not
+            flown again.
         write_docs: write docs/faults.md of the repository.
         junit: file for the verdicts as JUnit XML; None: not written.
 
@@ -77,30 +78,34 @@ def faults(
     def report(result: RowResult) -> None:
         by_name[result.row.name] = result
         if keep is not None:
-            _write(keep, render.as_json(_in_order(by_name)))
+            kept = _in_order(by_name)
+            _write(keep, render.as_json(kept, render.otherwise_flown(kept, phases, seeds)))
         if not bar:
-            _print(result)
+            _print(result, frozenset())
 
     with progress("injecting faults", len(to_fly) * phases * seeds) as watch:
         fly_rows(to_fly, phases, seeds, workers or os.cpu_count() or 1, watch, report)
     results = _in_order(by_name)
+    other = render.otherwise_flown(results, phases, seeds)
     for result in results if bar else ():
-        _print(result)
-    say(render.tally(results))
-    answer(render.json_values(results))
-    _write_reports(results, out, junit)
+        _print(result, other)
+    say(render.tally(results, other))
+    answer(render.json_values(results, other))
+    _write_reports(results, other, out, junit)
     if page is not None:
         _write(page, render.markdown(results, phases, seeds))
         say(f"page: {page}")
     return int(any(result.verdict is CheckVerdict.FAIL for result in results))
 
 
-def _write_reports(results: Sequence[RowResult], out: Path | None, junit: Path | None) -> None:
+def _write_reports(
+    results: Sequence[RowResult], other: Collection[str], out: Path | None, junit: Path | None
+) -> None:
     for file in (junit, None if out is None else out / JUNIT):
-        write_junit(file, "torquer faults", render.suites(results))
+        write_junit(file, "torquer faults", render.suites(results, other))
     if out is not None:
-        _write(out / HTML, render.html(results))
-        _write(out / JSON, render.as_json(results))
+        _write(out / HTML, render.html(results, other))
+        _write(out / JSON, render.as_json(results, other))
 
 
 def _in_order(by_name: dict[str, RowResult]) -> list[RowResult]:
@@ -116,8 +121,8 @@ def _docs_page(names: set[str]) -> Path:
     return repository / "docs" / PAGE
 
 
-def _print(result: RowResult) -> None:
-    say(render.line(result), failed=result.verdict is CheckVerdict.FAIL)
+def _print(result: RowResult, other: Collection[str]) -> None:
+    say(render.line(result, other), failed=result.verdict is CheckVerdict.FAIL)
 
 
 def _write(path: Path, text: str) -> None:

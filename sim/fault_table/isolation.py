@@ -9,6 +9,7 @@ from fsw.wire.messages import Mode
 from hil_stub.coils.events import CoilEventCode
 from sim.fault_rig.record import FaultFlightRecord, ReportedEvent
 from sim.fault_table.row import Bounds, FaultRow, RowFault
+from sim.fault_table.showing import onset_tick, shows
 from sim.flight.isolations import UNITS, isolated_unit
 
 PULSE_S = 3
@@ -74,11 +75,6 @@ def board_identifications(record: FaultFlightRecord) -> list[tuple[int, str]]:
     ]
 
 
-def onset_tick(fault: RowFault, record: FaultFlightRecord) -> int:
-    """The tick in which a fault of the row begins."""
-    return (record.onset or 0) + round(fault.after_s * record.tick_hz)
-
-
 def isolation_s(fault: RowFault, record: FaultFlightRecord) -> float | None:
     """Time from the onset of a fault to the isolation of its unit [s]; None: it is not isolated."""
     onset = onset_tick(fault, record)
@@ -99,8 +95,9 @@ def _given_up_s(fault: RowFault, record: FaultFlightRecord) -> float | None:
     if fault.lasts_s == inf:
         return None
     end = first + round(fault.lasts_s * hz)
-    given_up = not any(record.lit[first:end]) and record.error_deg[end - 1] is None
-    return fault.lasts_s if given_up else None
+    if end > len(record.lit) or any(record.lit[first:end]):
+        return None
+    return fault.lasts_s if record.error_deg[end - 1] is None else None
 
 
 def _doubted(onset: int, record: FaultFlightRecord) -> float:
@@ -110,7 +107,10 @@ def _doubted(onset: int, record: FaultFlightRecord) -> float:
 
 
 def isolates_faulty_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool | None, str]:
-    """Each faulty unit is isolated, in the time that the row gives it, and after the onset no other."""
+    """Each faulty unit is isolated, in the time that the row gives it, and after the onset no other.
+
+    None where a fault has no tick in which it could be seen.
+    """
     return _isolates(row, record, lambda fault: isolation_s(fault, record))
 
 
@@ -138,24 +138,26 @@ def _isolates(
     for tick, unit in isolations(record):
         if tick >= onset and unit not in units:
             return False, f"{unit} isolated in place of {' or '.join(units)} in tick {tick}"
-    after_s = []
+    after_s, undecided = [], []
     for fault in row.faults:
-        if not _shows(fault, record):
+        if not fault.shows:
+            continue
+        if not shows(fault, record):
+            undecided.append(f"the fault of {fault.unit} never shows")
             continue
         named_s = found_s(fault)
         if named_s is None:
-            return _not_isolated(row, fault, record)
-        if named_s > row.within_s:
+            holds, finding = _not_isolated(row, fault, record)
+            if holds is False:
+                return False, finding
+            undecided.append(finding)
+        elif named_s > row.within_s:
             return False, f"{fault.unit} found after {named_s:.0f} s, later than {row.within_s:g} s"
-        after_s.append(f"{named_s:.0f} s")
+        else:
+            after_s.append(f"{named_s:.0f} s")
+    if undecided or not after_s:
+        return None, ", ".join(undecided)
     return True, f"found after {', '.join(after_s)}"
-
-
-def _shows(fault: RowFault, record: FaultFlightRecord) -> bool:
-    """Whether a fault can be found: that of a Sun sensor only where the Sun shines."""
-    first, hz = onset_tick(fault, record), record.tick_hz
-    end = len(record.lit) if fault.lasts_s == inf else first + round(fault.lasts_s * hz)
-    return fault.shows and (fault.unit != "sun sensor" or any(record.lit[first:end]))
 
 
 def isolates_no_healthy_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:

@@ -1,7 +1,7 @@
 """What a fault campaign found: for the terminal, as JSON, JUnit XML, one HTML page and docs/faults.md."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import asdict
 from itertools import groupby
 from math import inf
@@ -10,7 +10,7 @@ from typing import Any
 from sim.console import counted
 from sim.drawing.pages import page
 from sim.fault_table.campaign import is_whole
-from sim.fault_table.checks import ALWAYS
+from sim.fault_table.checks import checks_of
 from sim.fault_table.row import CaseResult, CheckVerdict, FaultRow, RowFault, RowResult
 from sim.faults.kinds import KINDS
 from sim.junit import JunitCase
@@ -29,10 +29,12 @@ current that the plant drove), raise no exception in a step, have no NaN in the 
 SYNC, isolate no healthy unit, call no attitude valid that is more than 5 deg wrong for over 120 s (unless
 nothing aboard can tell, as the row says; with one sensor left 15 deg), and meet what its row expects. `only
 UNIT named`: it may be isolated. `named or doubted`: it is isolated, or both sensors are said to disagree.
-`not yet`: nothing could identify the unit in the time of the row; a coil can only be judged by pulses that it
-fires in the light while the sensors are not in dispute, and there it has fired fewer than five. Every second
-case flies a satellite of the population `50kg` (`sim/campaign/population.py`), each another. Figures are the
-worst over all cases.
+`not yet`: nothing could identify the unit in the time of the row. A Sun sensor shows most faults in the light
+alone, a lamp in the shadow alone, and there was none; a coil can only be judged by pulses that it fires in
+the light while the sensors are not in dispute, and there it has fired fewer than five. Every second case
+flies a satellite of the population `50kg` (`sim/campaign/population.py`), each another. Figures are the worst
+over all cases. Phases that are counted from a pulse need one: a case without it fails. Where a real
+process is killed or stopped, its steps and its state are not seen: there it is judged by what is on the bus.
 """
 
 
@@ -57,6 +59,8 @@ second sender, but limits, replay and completeness must hold.
     lasts_s = 300.0
     parameters = {axis = 1, nt = 10000}
 
+A fault of a sensor that the satellite does not have, or of a cell that is not there, is refused.
+
 `per_s` is the change of `nt`, `scale` or `deg` in each second after the onset: `nt = 0, per_s = 0.2` is a
 bias that drifts by 0.2 nT/s. A kind that ends in `_late` delays the samples of one sensor.
 
@@ -64,8 +68,16 @@ bias that drifts by 0.2 nT/s. A kind that ends in `_late` delays the samples of 
 |---|---|---|"""
 
 
-def tally(results: Sequence[RowResult]) -> str:
-    """How many rows and cases there were, and how many failed."""
+OTHERWISE_FLOWN = "flown by an earlier version, or in fewer phases or with fewer seeds"
+
+
+def otherwise_flown(results: Sequence[RowResult], phases: int, seeds: int) -> frozenset[str]:
+    """The names of the rows that this code has not flown in so many phases with so many seeds."""
+    return frozenset(result.row.name for result in results if not is_whole(result, phases, seeds))
+
+
+def tally(results: Sequence[RowResult], other: Collection[str] = ()) -> str:
+    """How many rows and cases there were, how many failed, and how many were flown otherwise."""
     cases = [case for result in results for case in result.cases]
     rows = {verdict: sum(result.verdict is verdict for result in results) for verdict in CheckVerdict}
     broken = sum(not _holds(case, "limits") for case in cases)
@@ -74,12 +86,15 @@ def tally(results: Sequence[RowResult]) -> str:
     text = f"{flown}: {counted(passed, 'row')} passed, {failed} failed"
     if rows[CheckVerdict.OPEN]:
         text += f", {rows[CheckVerdict.OPEN]} not yet"
-    return f"{text}; {counted(broken, 'violation')} of the coil limits"
+    text += f"; {counted(broken, 'violation')} of the coil limits"
+    return f"{text}; * {counted(len(other), 'row')} {OTHERWISE_FLOWN}" if other else text
 
 
-def line(result: RowResult) -> str:
+def line(result: RowResult, other: Collection[str] = ()) -> str:
     """One row for the terminal."""
-    return f"{result.verdict.value:<8} {result.row.name:<24} {len(result.cases):>4} cases  {_found(result)}"
+    return (
+        f"{_verdict(result, other):<9} {result.row.name:<24} {len(result.cases):>4} cases  {_found(result)}"
+    )
 
 
 def listed(row: FaultRow) -> str:
@@ -92,38 +107,46 @@ def listed_json(row: FaultRow) -> Json:
     return {"row": row.name, "group": row.group, "injected": injected(row), "expected": expected(row)}
 
 
-def as_json(results: Sequence[RowResult]) -> str:
+def as_json(results: Sequence[RowResult], other: Collection[str] = ()) -> str:
     """Everything, for programs: a line for each row, since indentation would nearly double the size."""
-    values = json_values(results)
+    values = json_values(results, other)
     rows = ",\n".join(json.dumps(row, separators=(",", ":")) for row in values["rows"])
     return f'{{"tally": {json.dumps(values["tally"])},\n"rows": [\n{rows}\n]}}\n'
 
 
-def json_values(results: Sequence[RowResult]) -> Json:
+def json_values(results: Sequence[RowResult], other: Collection[str] = ()) -> Json:
     """The same as values of JSON."""
     rows = [
         {
             "row": result.row.name,
             "group": result.row.group,
             "injected": injected(result.row),
-            "expected": [*ALWAYS, *result.row.expect],
+            "expected": list(checks_of(result.row)),
             "verdict": result.verdict.value,
             "measured": result.measured,
             "code": result.code,
+            "otherwise_flown": result.row.name in other,
             "cases": [asdict(case) for case in result.cases],
         }
         for result in results
     ]
-    return {"tally": tally(results), "rows": rows}
+    return {"tally": tally(results, other), "rows": rows}
 
 
-def suites(results: Sequence[RowResult]) -> dict[str, list[JunitCase]]:
-    """For JUnit XML, a suite for each row and a test for each case; an open verdict counts as skipped."""
-    return {result.row.name: [_test(case) for case in result.cases] for result in results}
+def suites(results: Sequence[RowResult], other: Collection[str] = ()) -> dict[str, list[JunitCase]]:
+    """For JUnit XML, a suite for each row and a test for each case.
+
+    An open verdict counts as skipped, and so does what was flown otherwise and has not failed.
+    """
+    return {
+        result.row.name: [_test(case, result.row.name in other) for case in result.cases]
+        for result in results
+    }
 
 
-def _test(case: CaseResult) -> JunitCase:
+def _test(case: CaseResult, is_other: bool) -> JunitCase:
     failed, waiting = _with(case, CheckVerdict.FAIL), _with(case, CheckVerdict.OPEN)
+    waiting += [OTHERWISE_FLOWN] * is_other
     return JunitCase(
         f"faults.{case.row}",
         f"phase {case.phase} seed {case.seed}",
@@ -133,32 +156,32 @@ def _test(case: CaseResult) -> JunitCase:
     )
 
 
-def html(results: Sequence[RowResult]) -> str:
+def html(results: Sequence[RowResult], other: Collection[str] = ()) -> str:
     """One self-contained page."""
     bad = any(result.verdict is CheckVerdict.FAIL for result in results)
     return page(
         "sim.fault_table",
         "faults.html",
         badge="bad" if bad else "good",
-        tally=tally(results),
+        tally=tally(results, other),
         head=_COLUMNS,
-        groups=[(group, [_html_row(result) for result in rows]) for group, rows in _groups(results)],
+        groups=[(group, [_html_row(result, other) for result in rows]) for group, rows in _groups(results)],
     )
 
 
-def _html_row(result: RowResult) -> tuple[tuple[str, ...], str, str]:
+def _html_row(result: RowResult, other: Collection[str]) -> tuple[tuple[str, ...], str, str]:
     """The cells of a row without its verdict, then the style class of the verdict, and the verdict."""
     row, colour = result.row, {CheckVerdict.PASS: "good", CheckVerdict.FAIL: "bad", CheckVerdict.OPEN: "note"}
     cells = (row.name, injected(row), expected(row), str(len(result.cases)), _found(result))
-    return cells, colour[result.verdict], result.verdict.value
+    return cells, colour[result.verdict], _verdict(result, other)
 
 
 def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
     """docs/faults.md."""
     lines = [_HEAD, f"{tally(results)}. Phases {phases}, seeds {seeds} each.", ""]
-    other = {result.row.name for result in results if not is_whole(result, phases, seeds)}
+    other = otherwise_flown(results, phases, seeds)
     if other:
-        lines += ["But \\*: flown by an earlier version, or in fewer phases or with fewer seeds.", ""]
+        lines += [f"But \\*: {OTHERWISE_FLOWN}.", ""]
     for group, rows in _groups(results):
         lines += [f"## {group}", "", f"| {' | '.join(_COLUMNS)} |"]
         lines.append("|---|---|---|---|---|---|")
@@ -169,11 +192,14 @@ def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
                 expected(result.row),
                 str(len(result.cases)),
                 _found(result),
-                result.verdict.value + (" \\*" if result.row.name in other else ""),
+                _verdict(result, other).replace("*", "\\*"),
             )
             lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
         lines.append("")
     return "\n".join([*lines, _KINDS_HEAD, *map(_kind_row, KINDS), ""])
+
+
+_THERE = {"": "yes", "sun": "with a Sun sensor", "cells": "with Sun cells"}
 
 
 def _kind_row(name: str) -> str:
@@ -182,7 +208,8 @@ def _kind_row(name: str) -> str:
         f"{parameter} = {default:g} ({low:g} to {high:g})"
         for parameter, (default, low, high) in kind.parameters.items()
     )
-    return f"| `{name}` | {parameters} | {'yes' if kind.in_plant else 'no'} |"
+    there = _THERE[kind.sensor] if kind.in_plant else "no"
+    return f"| `{name}` | {parameters} | {there} |"
 
 
 def injected(row: FaultRow) -> str:
@@ -221,6 +248,10 @@ def _found(result: RowResult) -> str:
 
 def _figures(result: RowResult) -> str:
     return ", ".join(f"{name} {value:.4g}" for name, value in result.measured.items() if name in _REPEATABLE)
+
+
+def _verdict(result: RowResult, other: Collection[str]) -> str:
+    return result.verdict.value + " *" * (result.row.name in other)
 
 
 def _with(case: CaseResult, verdict: CheckVerdict) -> list[str]:

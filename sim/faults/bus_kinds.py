@@ -59,6 +59,9 @@ def set_flag(flag: int, frames: list[Frame], rng: Random, parameters: Parameters
 
 
 def _flip_bits(frame: Frame, rng: Random) -> Frame:
+    """The frame with one to four bits of its data flipped; without data it is as it was."""
+    if not frame.data:
+        return frame
     data = bytearray(frame.data)
     for _ in range(rng.randint(1, 4)):
         data[rng.randrange(len(data))] ^= 1 << rng.randrange(8)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from random import Random
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG
 from fsw.wire.messages import MagField, SunCells, SunVector
@@ -30,6 +30,7 @@ class FaultKind(NamedTuple):
     ``by_clock``: it needs a coil board with a clock of its own.
     ``breaks``: COIL_STATUS may arrive corrupt, though the board keeps its limits.
     ``forges``: a stranger sends intact frames under identifiers of the flight software.
+    ``sensor``: what it acts on, "sun" or "cells", of which a satellite has one; empty: on anything else.
     """
 
     make: Callable[[Random, Parameters], Fault]
@@ -39,6 +40,7 @@ class FaultKind(NamedTuple):
     by_clock: bool = False
     breaks: bool = False
     forges: bool = False
+    sensor: Literal["", "sun", "cells"] = ""
 
 
 PART = {"part": Parameter(0.1, 0.0, 1.0)}
@@ -100,20 +102,22 @@ KINDS: dict[str, FaultKind] = {
     "mag_turned": FaultKind(plant.field_fault(plant.turn, "deg"), TURN),
     "mag_swapped": FaultKind(plant.field_fault(plant.swap_axes), AXIS),
     "mag_late": FaultKind(bus.sample_delay(MagField.ID), LATE),
-    "sun_nan": FaultKind(plant.sun_fault(plant.set_nan), AXIS),
-    "sun_frozen": FaultKind(plant.SunFrozen),
+    "sun_nan": FaultKind(plant.sun_fault(plant.set_nan), AXIS, sensor="sun"),
+    "sun_frozen": FaultKind(plant.SunFrozen, sensor="sun"),
     "sun_scale": FaultKind(
-        plant.sun_fault(plant.scale, "scale"), {**AXIS, "scale": Parameter(-1.0, -10.0, 10.0), **PER_S}
+        plant.sun_fault(plant.scale, "scale"),
+        {**AXIS, "scale": Parameter(-1.0, -10.0, 10.0), **PER_S},
+        sensor="sun",
     ),
-    "sun_turned": FaultKind(plant.sun_fault(plant.turn, "deg"), TURN),
-    "sun_swapped": FaultKind(plant.sun_fault(plant.swap_axes), AXIS),
-    "sun_late": FaultKind(bus.sample_delay(SunVector.ID), LATE),
-    "cells_late": FaultKind(bus.sample_delay(SunCells.ID), LATE),
-    "sun_unseen": FaultKind(plant.SunBlindness),
-    "albedo": FaultKind(plant.SunDeflection, {"part": Parameter(0.4, 0.0, 1.0)}),
-    "cell_dead": FaultKind(cell.CellDead, CELL),
-    "cell_scaled": FaultKind(cell.CellScaled, {**CELL, "scale": Parameter(0.5, 0.0, 10.0)}),
-    "cell_stuck": FaultKind(cell.CellStuck, {**CELL, "percent": Parameter(0.0, 0.0, 199.0)}),
+    "sun_turned": FaultKind(plant.sun_fault(plant.turn, "deg"), TURN, sensor="sun"),
+    "sun_swapped": FaultKind(plant.sun_fault(plant.swap_axes), AXIS, sensor="sun"),
+    "sun_late": FaultKind(bus.sample_delay(SunVector.ID), LATE, sensor="sun"),
+    "cells_late": FaultKind(bus.sample_delay(SunCells.ID), LATE, sensor="cells"),
+    "sun_unseen": FaultKind(plant.SunBlindness, sensor="sun"),
+    "albedo": FaultKind(plant.SunDeflection, {"part": Parameter(0.4, 0.0, 1.0)}, sensor="sun"),
+    "cell_dead": FaultKind(cell.CellDead, CELL, sensor="cells"),
+    "cell_scaled": FaultKind(cell.CellScaled, {**CELL, "scale": Parameter(0.5, 0.0, 10.0)}, sensor="cells"),
+    "cell_stuck": FaultKind(cell.CellStuck, {**CELL, "percent": Parameter(0.0, 0.0, 199.0)}, sensor="cells"),
     "extreme_codes": FaultKind(plant.ExtremeCodes, {"sun": Parameter(0.0, 0.0, 1.0)}),
     "coil_open": FaultKind(plant.CoilOpen, AXIS),
     "coil_wired": FaultKind(plant.CoilRescaling, {**AXIS, "scale": Parameter(-1.0, -2.0, 2.0)}),

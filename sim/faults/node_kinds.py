@@ -53,7 +53,7 @@ class AllRestart(FswKill):
 
     def end(self, plant: Plant) -> None:
         """The boards boot in the same tick as fsw."""
-        for board in ("magnetometer", "sun", "coil"):
+        for board in ("magnetometer", "sun", "coil", "wheel"):
             plant.restart(board)
 
 

@@ -183,7 +183,10 @@ class CoilOpen(Fault):
 
     def coil_drive(self, drive: CoilDrive) -> CoilDrive:
         """Without this coil's current."""
-        return CoilDrive(replace_axis(drive.current_a, self.parameters, 0.0), drive.fraction)
+        return drive._replace(
+            current_a=replace_axis(drive.current_a, self.parameters, 0.0),
+            held_a=replace_axis(drive.held_a, self.parameters, 0.0),
+        )
 
 
 class CoilRescaling(Fault):
@@ -194,8 +197,8 @@ class CoilRescaling(Fault):
         plant.scale_coil(round(self.parameters["axis"]), self.parameters["scale"])
 
     def end(self, plant: Plant) -> None:
-        """The coil is as before."""
-        plant.scale_coil(round(self.parameters["axis"]), 1.0)
+        """The coil is as without this fault."""
+        plant.unscale_coil(round(self.parameters["axis"]), self.parameters["scale"])
 
 
 class CoilStuckOn(Fault):
@@ -203,8 +206,12 @@ class CoilStuckOn(Fault):
 
     def coil_drive(self, drive: CoilDrive) -> CoilDrive:
         """This coil for the whole tick, the others as the board commands."""
-        current_a = drive.current_a if drive.fraction else ZERO
-        return CoilDrive(replace_axis(current_a, self.parameters, self.parameters["ampere"]), 1.0)
+        current_a, ampere = drive.current_a if drive.fraction else ZERO, self.parameters["ampere"]
+        return CoilDrive(
+            replace_axis(current_a, self.parameters, ampere),
+            drive.fraction,
+            replace_axis(drive.held_a, self.parameters, ampere),
+        )
 
 
 class BoardRestarts(Fault):

@@ -48,6 +48,33 @@ class FaultSection(Section):
 Faults = Annotated[tuple[FaultSection, ...], Strict(False)]
 
 
+def check_sensors(faults: Sequence[FaultSection], cells: int) -> None:
+    """Check that the satellite has what each fault acts on.
+
+    Args:
+        faults: of a scenario.
+        cells: number of its Sun cells; 0: it has a Sun sensor.
+
+    Raises:
+        ValueError: a fault would do nothing.
+    """
+    for number, fault in enumerate(faults):
+        sensor, place = KINDS[fault.kind].sensor, f"fault[{number}]"
+        if sensor == "sun" and cells:
+            raise ValueError(
+                f"{place}.kind = '{fault.kind}' acts on the Sun sensor, in whose place there is sensors.cells"
+            )
+        if sensor == "cells" and not cells:
+            raise ValueError(
+                f"{place}.kind = '{fault.kind}' acts on Sun cells, and there is no sensors.cells"
+            )
+        cell = fault.parameters.get("cell", 1.0)
+        if round(cell) > cells and sensor == "cells":
+            raise ValueError(
+                f"{place}.parameters.cell = {cell:g} is none of the {cells} of sensors.cells.normals"
+            )
+
+
 def break_frames(faults: Sequence[FaultSection]) -> bool:
     """Whether a fault of the scenario may corrupt frames of the coil driver."""
     return any(KINDS[fault.kind].breaks for fault in faults)

@@ -13,7 +13,7 @@ ASK_S = 0.5
 
 FLIGHT_NODES = frozenset({"PLANT", "FSW"})
 """Nodes that must not be on the bus yet where boards may be."""
-ALL_NODES = FLIGHT_NODES | {"COIL", "MAG", "SUN"}
+ALL_NODES = FLIGHT_NODES | {"COIL", "MAG", "SUN", "WHEEL"}
 
 
 def refuse_bus_in_use(bus: Bus, spec: str, senders: frozenset[str] = ALL_NODES) -> None:

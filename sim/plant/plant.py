@@ -145,8 +145,12 @@ class Plant:
                 self._wheel.restart()
 
     def scale_coil(self, coil: int, scale: float) -> None:
-        """Scale the dipole that a coil gives for the same current; -1 reverses it."""
+        """Scale the dipole that a coil gives for the same current, beside other scales; -1 reverses it."""
         self._coils.rescale(coil, scale)
+
+    def unscale_coil(self, coil: int, scale: float) -> None:
+        """Take back one such scale."""
+        self._coils.restore(coil, scale)
 
     def end_tick(self) -> None:
         """Drive the coils as the coil driver commands, and advance to the next tick.
@@ -155,7 +159,7 @@ class Plant:
             PlantError: the motion is not finite, or the orbit or field model ends.
         """
         self.coil_drive = self.interference.coil_drive(self._actuator.drive())
-        driven_a, fraction = self.coil_drive
+        driven_a, fraction, held_a = self.coil_drive
         if self._noise:
             self._noise_body_nm = next(self._noise)
         substeps, step_s, motion, wheel = self.substeps, self._step_s, self.motion, self._wheel
@@ -164,7 +168,7 @@ class Plant:
         sx = sy = sz = 0.0
         for substep in range(substeps):
             on_s = step_s * min(max(fraction * substeps - substep, 0.0), 1.0)
-            mx, my, mz = self._coils.advance(driven_a, on_s, step_s)
+            mx, my, mz = self._coils.advance(driven_a, on_s, step_s, held_a)
             sx, sy, sz = sx + mx, sy + my, sz + mz
             momenta = None
             if wheel is not None:

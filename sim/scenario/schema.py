@@ -31,7 +31,7 @@ from fsw.table import table as onboard
 from fsw.table.own_law import named
 from fsw.table.sections import CIRCULAR_KEYS, ControlTable, TimeTable
 from fsw.table.table import FlightTable
-from sim.faults.section import Faults
+from sim.faults.section import Faults, check_sensors
 from sim.scenario.names import Name
 from sim.scenario.own_effects import Effects, with_digests
 from sim.scenario.requirements import Requirements, expectation
@@ -117,6 +117,8 @@ class Scenario(Section):
             self._check_decay()
         if self.coils.resistance_ohm is None and any(one.index == "energy" for one in self.requirement):
             raise ValueError("a requirement on energy needs coils.resistance_ohm")
+        cells = self.sensors.cells
+        check_sensors(self.fault, 0 if cells is None else len(cells.normals))
         return self
 
     def _check_decay(self) -> None:

@@ -23,6 +23,7 @@ from sim.scenario.schema import Scenario, flight_table
 from sim.sizing.expectation import expect, field_across
 from sim.sizing.levels import levels_against
 from sim.sizing.torques import surface_torque
+from sim.sizing.unbegun_faults import unbegun_faults
 from sim.sizing.unsent_telecommands import unsent_telecommands
 
 DAY_S = 86400.0
@@ -50,7 +51,8 @@ def doubts(scenario: Scenario, ticks: int | None = None) -> list[str]:
     A run of it takes so many ticks; None: as the scenario says.
     """
     told = [doubt for judge in _JUDGES for doubt in judge(scenario)]
-    return told + unsent_telecommands(scenario, ticks_of(scenario, None) if ticks is None else ticks)
+    flown = ticks_of(scenario, None) if ticks is None else ticks
+    return told + unsent_telecommands(scenario, flown) + unbegun_faults(scenario, flown)
 
 
 def _epoch(scenario: Scenario) -> Iterator[str]:

@@ -20,6 +20,8 @@ class CoilDrive(NamedTuple):
     current_a: Vec3
     """Target current of each coil."""
     fraction: float
+    held_a: Vec3 = ZERO
+    """Target current of each coil for the rest of the tick: none, unless a switch does not open."""
 
 
 OFF = CoilDrive(ZERO, 0.0)

@@ -1,6 +1,6 @@
 """Three coils: current, dipole, remanence and read-back."""
 
-from math import exp, expm1
+from math import exp, expm1, prod
 
 from sim.plant.config import CoilConfig
 from sim.plant.hardware.remanence import Remanence
@@ -25,13 +25,24 @@ class Coils:
         self._tau_s = config.time_constant_s
         self._dipole_per_ampere = [config.dipole_per_ampere_am2 * scale for scale in config.dipole_scale]
         self._body_from_coils = _body_from_coils(config.misalignment_rad, config.wiring)
+        self._scales: tuple[list[float], ...] = ([], [], [])
         self._remanence = Remanence(config.remanence_part)
         self._current_a = [0.0, 0.0, 0.0]
 
     def rescale(self, coil: int, scale: float) -> None:
-        """Scale the dipole of a coil from now on."""
+        """Scale the dipole of a coil from now on, in addition to the scales that it has."""
+        self._scales[coil].append(scale)
+        self._apply_scales(coil)
+
+    def restore(self, coil: int, scale: float) -> None:
+        """Take back one of these scales; the others stay."""
+        self._scales[coil].remove(scale)
+        self._apply_scales(coil)
+
+    def _apply_scales(self, coil: int) -> None:
         config = self._config
-        self._dipole_per_ampere[coil] = config.dipole_per_ampere_am2 * config.dipole_scale[coil] * scale
+        nominal = config.dipole_per_ampere_am2 * config.dipole_scale[coil]
+        self._dipole_per_ampere[coil] = nominal * prod(self._scales[coil])
 
     @property
     def dipole_body_am2(self) -> Vec3:
@@ -55,21 +66,22 @@ class Coils:
         x, y, z = self._current_a
         return x + y + z
 
-    def advance(self, driven_a: Vec3, on_s: float, step_s: float) -> Vec3:
+    def advance(self, driven_a: Vec3, on_s: float, step_s: float, held_a: Vec3 = ZERO) -> Vec3:
         """Advance by a step in which coils are driven from its start for ``on_s``; exact mean dipole [A m^2].
 
         The mean, not the end value, carries the impulse: the lag is far shorter than a step.
 
         Args:
             driven_a: current that each coil is driven to, 0 for none.
-            on_s: how long, 0 to ``step_s``; they are off for the rest.
+            on_s: how long, 0 to ``step_s``.
             step_s: length of the step.
+            held_a: current that each coil is driven to for the rest of it.
         """
         if self._remanence.part:
-            self._remanence.advance(driven_a, on_s, step_s)
-        if self._current_a == [0.0, 0.0, 0.0] and not (on_s and any(driven_a)):
+            self._remanence.advance(driven_a, on_s, step_s, held_a)
+        if self._current_a == [0.0, 0.0, 0.0] and not (on_s and any(driven_a)) and held_a == ZERO:
             return ZERO
-        x, y, z = (self._mean_current(coil, driven_a[coil], on_s, step_s) for coil in range(3))
+        x, y, z = (self._mean_current(coil, driven_a[coil], on_s, step_s, held_a[coil]) for coil in range(3))
         return self._dipole((x, y, z))
 
     def _dipole(self, current_a: Vec3) -> Vec3:
@@ -79,9 +91,9 @@ class Coils:
         by_coil = (x * i, y * j, z * k)
         return transform(self._body_from_coils, by_coil) if self._body_from_coils else by_coil
 
-    def _mean_current(self, coil: int, target_a: float, on_s: float, step_s: float) -> float:
+    def _mean_current(self, coil: int, target_a: float, on_s: float, step_s: float, held_a: float) -> float:
         charge_on, turned_off_a = self._follow(self._current_a[coil], target_a, on_s)
-        charge_off, end_a = self._follow(turned_off_a, 0.0, step_s - on_s)
+        charge_off, end_a = self._follow(turned_off_a, held_a, step_s - on_s)
         self._current_a[coil] = end_a if abs(end_a) > _EXTINCT_A else 0.0
         return (charge_on + charge_off) / step_s
 

@@ -22,23 +22,24 @@ class Remanence:
         self.mean_a = ZERO
         """Mean over the last step."""
 
-    def advance(self, driven_a: Vec3, on_s: float, step_s: float) -> None:
+    def advance(self, driven_a: Vec3, on_s: float, step_s: float, held_a: Vec3 = ZERO) -> None:
         """Advance by a step in which coils are driven from its start for ``on_s``.
 
         Args:
             driven_a: current that each coil is driven to, 0 for none.
             on_s: how long, 0 to ``step_s``.
             step_s: length of the step.
+            held_a: current that each coil is driven to for the rest of it, 0 for none.
         """
-        if not on_s:
+        if not on_s and held_a == ZERO:
             self.now_a = self.mean_a = self._kept_a
             return
         off = 1.0 - on_s / step_s
         coils = [
-            (self.part * driven, off) if driven else (kept, 1.0)
-            for driven, kept in zip(driven_a, self._kept_a, strict=True)
+            (self.part * held, 0.0) if held else (self.part * driven, off) if driven and on_s else (kept, 1.0)
+            for driven, held, kept in zip(driven_a, held_a, self._kept_a, strict=True)
         ]
         (x, p), (y, q), (z, r) = coils
         self._kept_a = (x, y, z)
         self.mean_a = (x * p, y * q, z * r)
-        self.now_a = self._kept_a if off else self.mean_a
+        self.now_a = (x if p else x * p, y if q else y * q, z if r else z * r)

@@ -46,6 +46,13 @@ def test_a_pulse_that_ends_within_a_tick_is_as_long_as_it_flowed():
     assert pulses(drives, 10) == [CurrentPulse(1, Fraction(0), Fraction("2.99"))]
 
 
+def test_a_coil_that_is_held_on_flows_for_the_whole_tick_beside_one_that_does_not():
+    drive = CoilDrive((0.1, 0.4, 0.0), 0.5, (0.0, 0.4, 0.0))
+    alone = CoilDrive((0.0, 0.4, 0.0), 0.0, (0.0, 0.4, 0.0))
+    assert pulses([drive, alone, OFF], 1) == [CurrentPulse(0, 0, Fraction(1, 2)), CurrentPulse(1, 0, 2)]
+    assert any("tick 0: 2 coils at once" in one for one in violations([drive, alone, OFF], limits()))
+
+
 def test_a_back_off_of_its_own_holds_between_pulses_of_one_coil_alone():
     drives = [on(0)] * 3 + [OFF] * 2 + [on(1)] * 3 + [OFF] * 2 + [on(0)]
     assert [one for one in violations(drives, limits(shared=False)) if "coil 1" in one] == []

@@ -165,6 +165,51 @@ def test_the_page_marks_the_rows_of_earlier_code_and_with_fewer_phases_or_seeds(
         ]
 
 
+class TestARowOfOtherCode:
+    """Of three rows, ``none`` passed when other code flew it; the others are of the present code."""
+
+    @pytest.fixture
+    def results(self, planted):
+        return [replace(planted[0], code="5eed"), *map(of_this_code, planted[1:])]
+
+    @pytest.fixture
+    def other(self, results):
+        return render.otherwise_flown(results, 1, 1)
+
+    def test_is_marked_in_its_line_and_in_the_tally(self, results, other):
+        assert other == {"none"}
+        assert [render.line(one, other)[:10].strip() for one in results] == ["PASS *", "PASS", "not yet"]
+        assert render.tally(results, other).endswith(f"; * 1 row {render.OTHERWISE_FLOWN}")
+        assert "*" not in render.tally(results[1:], render.otherwise_flown(results[1:], 1, 1))
+
+    def test_is_marked_in_json(self, results, other):
+        values = json.loads(render.as_json(results, other))
+        assert [row["otherwise_flown"] for row in values["rows"]] == [True, False, False]
+        assert values["tally"] == render.tally(results, other)
+
+    def test_is_skipped_in_junit_with_the_reason_unless_it_has_failed(self, results, other):
+        (skipped,) = render.suites(results, other)["none"]
+        assert (skipped.failure, skipped.skipped) == ("", render.OTHERWISE_FLOWN)
+        assert render.suites(results, other)["loss-50"][0].skipped == ""
+        failed = replace(results[0], cases=(case("none", CheckVerdict.FAIL),))
+        (judged,) = render.suites([failed], other)["none"]
+        assert (judged.failure, judged.skipped) == ("check 0: said <0>", "")
+
+    def test_is_marked_on_the_page(self, results, other):
+        assert render.html(results, other).count("PASS *") == 1
+        assert render.OTHERWISE_FLOWN in render.html(results, other)
+
+    def test_is_marked_by_the_command(self, results, monkeypatch, tmp_path, capsys):
+        (tmp_path / "kept.json").write_text(render.as_json(results))
+        monkeypatch.setattr(command, "fly_rows", reporting([]))
+        arguments = ("--keep", tmp_path / "kept.json", "--out", tmp_path / "out")
+        assert run("--row", "second-sender", *arguments) == 0
+        assert f"* 1 row {render.OTHERWISE_FLOWN}" in capsys.readouterr().out
+        written = json.loads((tmp_path / "out" / "faults.json").read_text())
+        assert [row["otherwise_flown"] for row in written["rows"]] == [True, False, False]
+        assert (tmp_path / "out" / "faults.xml").read_text().count(render.OTHERWISE_FLOWN) == 1
+
+
 class TestAStoppedCampaign:
     ROWS = ("--row", "none", "--row", "loss-50", "--phases", 2, "--seeds", 1)
 

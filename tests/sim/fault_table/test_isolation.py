@@ -12,6 +12,7 @@ from hil_stub.coils.events import CoilEventCode
 from sim.fault_rig.record import BoardEvent, FaultFlightRecord, ReportedEvent
 from sim.fault_table import checks, isolation
 from sim.fault_table.row import FaultRow, RowFault
+from sim.fault_table.rows.table import ROWS
 
 
 def record(*events, board=()):
@@ -209,12 +210,69 @@ def test_a_coil_that_was_hardly_used_need_not_be_isolated(pulses, holds, bounds)
     assert checks.isolates_faulty_unit(row, flown, bounds)[0] is holds
 
 
-def test_a_fault_of_the_sun_sensor_shows_only_where_the_sun_shines(bounds):
-    row = FaultRow("planted", "", "none", lasts_s=20.0, unit="sun sensor")
+def test_a_fault_of_the_sun_sensor_that_never_shows_is_not_yet_decided(bounds):
+    row = FaultRow("planted", "", "sun_swapped", lasts_s=20.0, unit="sun sensor")
     flown = record()
     assert checks.isolates_faulty_unit(row, flown, bounds)[0] is False
     flown.lit[100:120] = [False] * 20
-    assert checks.isolates_faulty_unit(row, flown, bounds)[0] is True
+    assert checks.isolates_faulty_unit(row, flown, bounds) == (None, "the fault of sun sensor never shows")
+
+
+LIGHT, SHADOW = (True,), (False,)
+
+
+NAMED_ROWS = [row for row in ROWS if {"named", "named or doubted"} & {*row.expect}]
+
+
+class TestAFaultThatShowedMustBeNamed:
+    """Without any event nothing is named: that fails where the fault showed, and never passes."""
+
+    def judged(self, bounds, row, lit):
+        """The row on a flight in which all coils were fired and fsw reported nothing."""
+        flown = FaultFlightRecord(1, onset=100, lit=list(lit) * 20_000, error_deg=[0.3] * 20_000 * len(lit))
+        flown.request_ticks = list(range(100, 20_000, 100))
+        flown.request_coils = [tick // 100 % 3 for tick in flown.request_ticks]
+        return checks.isolates_faulty_unit(row, flown, bounds)[0]
+
+    @pytest.mark.parametrize(
+        ("kind", "parameters", "unit", "in_light", "in_shadow"),
+        [
+            ("albedo", {"part": 0.0}, "sun sensor", None, False),
+            ("albedo", {"part": 0.4}, "sun sensor", False, False),
+            ("albedo", {}, "sun sensor", False, False),
+            ("sun_frozen", {}, "sun sensor", False, False),
+            ("extreme_codes", {"sun": 1.0}, "sun sensor", False, False),
+            ("sun_swapped", {}, "sun sensor", False, None),
+            ("cell_dead", {}, "cell 1", False, None),
+            ("cell_stuck", {}, "cell 1", False, None),
+            ("cell_stuck", {"percent": 90.0}, "cell 1", False, False),
+            ("mag_swapped", {}, "magnetometer", False, False),
+            ("coil_wired", {}, "coil 1", False, None),
+        ],
+    )
+    @pytest.mark.parametrize("lasts_s", [600.0, inf])
+    def test_where_its_kind_shows(self, bounds, kind, parameters, unit, in_light, in_shadow, lasts_s):
+        row = FaultRow("planted", "", kind, parameters, lasts_s, unit=unit)
+        assert self.judged(bounds, row, LIGHT) is in_light
+        assert self.judged(bounds, row, SHADOW) is in_shadow
+
+    @pytest.mark.parametrize(
+        "row",
+        [row for row in ROWS if {"named", "named or doubted"} & {*row.expect}],
+        ids=lambda row: row.name,
+    )
+    def test_of_every_row(self, bounds, row):
+        assert self.judged(bounds, row, (*LIGHT, *SHADOW)) is False
+        for lit in (LIGHT, SHADOW):
+            assert self.judged(bounds, row, lit) is not True
+
+
+def test_a_fault_that_is_not_yet_decided_excuses_no_other(bounds):
+    second = RowFault("sun_swapped", {}, inf, "sun sensor", 10.0)
+    row = FaultRow("planted", "", "coil_wired", unit="coil 1", then=(second,))
+    assert checks.isolates_faulty_unit(row, record(), bounds) == (False, "sun sensor is not isolated")
+    named = isolated(130, Sensor.SUN_SENSOR)
+    assert checks.isolates_faulty_unit(row, record(named), bounds)[0] is None
 
 
 def test_a_fault_that_nothing_may_show_need_not_be_named_but_no_other_unit_may_be(bounds):

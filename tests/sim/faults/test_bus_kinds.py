@@ -49,6 +49,16 @@ def test_broken_frames_are_broken(kind):
     assert passed <= (0.02 * len(broken) if kind == "corruption" else 0)
 
 
+@pytest.mark.parametrize("first", ["rtr", "wrong_length", "random_frames"])
+def test_frames_that_another_fault_has_left_without_data_are_not_corrupted(first):
+    emptied, corrupting = fault(first), fault("corruption", part=1.0)
+    for tick in range(100):
+        frames = [*emptied.from_boards(tick, list(FRAMES)), *emptied.strangers(tick)]
+        come = corrupting.from_boards(tick, frames)
+        assert [len(frame.data) for frame in come] == [len(frame.data) for frame in frames]
+        assert [f for f in come if not f.data] == [f for f in frames if not f.data]
+
+
 @pytest.mark.parametrize(
     ("kind", "flag"), [("rtr", REMOTE_FLAG), ("extended_id", EXTENDED_FLAG), ("error_frames", ERROR_FLAG)]
 )

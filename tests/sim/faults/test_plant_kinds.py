@@ -3,15 +3,27 @@
 from itertools import pairwise
 from math import inf, isnan, radians
 from random import Random
+from types import SimpleNamespace
 
 import pytest
 
-from fsw.wire.messages import CoilBoot, CoilFire, CoilStatus, MagField, SunCells, SunVector
+from fsw.wire.messages import (
+    CoilBoot,
+    CoilFire,
+    CoilStatus,
+    MagBoot,
+    MagField,
+    SunBoot,
+    SunCells,
+    SunVector,
+    WheelBoot,
+)
 from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.faults.kinds import make
 from sim.faults.node_kinds import count_doubles, flip, flip_bit
-from sim.plant.config import MagnetometerConfig
+from sim.plant.config import CoilConfig, MagnetometerConfig
 from sim.plant.hardware.actuators import CoilDrive
+from sim.plant.hardware.coils import Coils
 from sim.plant.hardware.sensors import MagnetometerPhysics
 from sim.plant.rotation import ZERO
 from sim.scenario.assemble import plant_config
@@ -126,9 +138,24 @@ def test_coils_that_are_cut_or_stuck():
     coil_drive = CoilDrive((0.0, 0.1, 0.0), 0.5)
     assert fault("coil_open", axis=1.0).coil_drive(coil_drive) == CoilDrive((0.0, 0.0, 0.0), 0.5)
     assert fault("coil_open", axis=0.0).coil_drive(coil_drive) == coil_drive
-    assert fault("coil_stuck_on", axis=2.0, ampere=0.4).coil_drive(coil_drive) == CoilDrive(
-        (0.0, 0.1, 0.4), 1.0
-    )
+    stuck = fault("coil_stuck_on", axis=2.0, ampere=0.4).coil_drive(coil_drive)
+    assert stuck == CoilDrive((0.0, 0.1, 0.4), 0.5, (0.0, 0.0, 0.4))
+    assert fault("coil_open", axis=2.0).coil_drive(stuck) == coil_drive
+
+
+@pytest.mark.parametrize(
+    ("commanded", "fraction"),
+    [((0.1, -0.05, 0.2), 0.8), ((0.0, 0.1, 0.0), 0.5), ((0.0, 0.1, 0.0), 1.0), ((0.0, 0.0, 0.0), 0.0)],
+)
+@pytest.mark.parametrize("substeps", [1, 4])
+def test_a_coil_that_is_stuck_on_lengthens_no_other(commanded, fraction, substeps):
+    """Over a tick of 1 s with the coil x stuck; a current without lag, so that its mean is its share."""
+    coils = Coils(CoilConfig((1.0, 2.0, 4.0), dipole_per_ampere_am2=1.0, time_constant_s=0.0))
+    stuck = fault("coil_stuck_on", axis=0.0, ampere=-0.4).coil_drive(CoilDrive(commanded, fraction))
+    ends = [min(max(fraction * substeps - substep, 0.0), 1.0) / substeps for substep in range(substeps)]
+    steps = [coils.advance(stuck.current_a, on_s, 1.0 / substeps, stuck.held_a) for on_s in ends]
+    mean = [sum(axis) / substeps for axis in zip(*steps, strict=True)]
+    assert mean == pytest.approx([-0.4, commanded[1] * fraction, commanded[2] * fraction])
 
 
 class Bench:
@@ -158,6 +185,32 @@ def test_a_coil_wired_the_wrong_way_round_gives_the_opposite_dipole_for_the_same
         for bench in (wrong, right)
     ]
     assert currents[0] == currents[1] == 400
+
+
+def test_a_coil_that_is_wired_wrong_twice_keeps_what_has_not_ended():
+    coils = Coils(CoilConfig((1.0, 2.0, 4.0), dipole_scale=(1.0, 0.9, 1.0)))
+    nominal = coils.advance((0.0, 0.1, 0.0), 1.0, 1.0)[1]
+    plant = SimpleNamespace(scale_coil=coils.rescale, unscale_coil=coils.restore)
+    halved, reversed_ = fault("coil_wired", axis=1.0, scale=0.5), fault("coil_wired", axis=1.0, scale=-1.0)
+    dipoles = []
+    for change in (halved.begin, reversed_.begin, halved.end, halved.begin, reversed_.end, halved.end):
+        change(plant)
+        coils.advance((0.0, 0.0, 0.0), 0.0, 1.0)
+        dipoles.append(coils.advance((0.0, 0.1, 0.0), 1.0, 1.0)[1] / nominal)
+    assert dipoles == pytest.approx([0.5, -0.5, -1.0, -0.5, 0.5, 1.0], rel=0.02)
+
+
+def test_all_boards_are_power_cycled_the_wheel_s_too():
+    plant = FaultyPlant(plant_config(load("microsat-wheel"), 1), [ScheduledFault(fault("all_restart"), 3, 5)])
+    boots = []
+    for _ in range(8):
+        boots.append(
+            {frame.can_id for frame in plant.begin_tick()}
+            & {MagBoot.ID, SunBoot.ID, CoilBoot.ID, WheelBoot.ID}
+        )
+        plant.end_tick()
+    assert boots[5] == boots[0] == {MagBoot.ID, SunBoot.ID, CoilBoot.ID, WheelBoot.ID}
+    assert not any(boots[1:5] + boots[6:])
 
 
 def test_a_coil_driver_that_restarts_in_a_pulse_ends_it_and_locks_out():

@@ -1,10 +1,13 @@
 """``[[fault]]`` in a scenario."""
 
+from random import Random
+
 import pytest
 
 from fsw.input.schema import TableError
 from fsw.wire.messages import MagField
-from sim.faults.faulty_plant import FaultyPlant
+from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
+from sim.faults.kinds import KINDS, make
 from sim.faults.section import make_plant
 from sim.plant.plant import Plant
 from sim.scenario.assemble import plant_config
@@ -41,6 +44,52 @@ def field_nt(frames):
 def test_what_makes_no_sense_is_a_sentence(fault, said):
     with pytest.raises(TableError, match=said):
         scenario(**fault)
+
+
+SUN_KINDS = [name for name, kind in KINDS.items() if kind.sensor == "sun"]
+CELL_KINDS = [name for name, kind in KINDS.items() if kind.sensor == "cells"]
+
+
+@pytest.mark.parametrize(
+    ("flown", "kinds", "said"),
+    [
+        ("microsat", CELL_KINDS, "acts on Sun cells, and there is no sensors.cells"),
+        ("cubesat-cells", SUN_KINDS, "acts on the Sun sensor, in whose place there is sensors.cells"),
+    ],
+)
+def test_a_fault_of_what_the_satellite_does_not_have_is_refused(flown, kinds, said):
+    for kind in kinds:
+        faults = [{"kind": "mag_frozen", "at_s": 1.0}, {"kind": kind, "at_s": 1.0}]
+        with pytest.raises(TableError, match=rf"fault\[1\]\.kind = '{kind}' {said}"):
+            load(flown, {"fault": faults})
+
+
+def test_a_fault_of_a_cell_that_is_not_there_is_refused():
+    cells = load("cubesat-cells").sensors.cells.model_dump(mode="json", exclude_none=True)
+    five = {key: value[:5] if isinstance(value, list) else value for key, value in cells.items()}
+    for cell in (5.0, 6.0):
+        fault = {"kind": "cell_dead", "at_s": 1.0, "parameters": {"cell": cell}}
+        values = {"fault": [fault], "sensors": {"cells": five}}
+        if cell == 5.0:
+            assert load("cubesat-cells", values).fault
+            continue
+        with pytest.raises(TableError, match=r"fault\[0\]\.parameters\.cell = 6 is none of the 5"):
+            load("cubesat-cells", values)
+
+
+@pytest.mark.parametrize("name", ["microsat", "cubesat-cells"])
+@pytest.mark.parametrize("kind", [name for name, kind in KINDS.items() if kind.sensor])
+def test_of_the_kinds_of_sun_sensing_those_of_its_own_change_what_its_board_sends(name, kind):
+    chosen = load(name)
+    plant = Plant(plant_config(chosen, 1))
+    fault = make(kind, {"ticks": 1.0} if "late" in kind else {}, Random(1))
+    changed = FaultyPlant(plant_config(chosen, 1), [ScheduledFault(fault, 0)])
+    acts = False
+    for _ in range(3):
+        acts |= plant.begin_tick() != changed.begin_tick()
+        plant.end_tick()
+        changed.end_tick()
+    assert acts is (KINDS[kind].sensor == ("cells" if chosen.sensors.cells else "sun"))
 
 
 def test_a_flight_without_faults_has_a_plain_plant():

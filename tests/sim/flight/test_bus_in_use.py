@@ -6,7 +6,17 @@ import pytest
 
 from fsw.bus.interface import BusError
 from fsw.wire.frame import Frame
-from fsw.wire.messages import CoilBoot, CoilStatus, FswBoot, MagField, PlantBoot, Sync, TcClear, TickDone
+from fsw.wire.messages import (
+    CoilBoot,
+    CoilStatus,
+    FswBoot,
+    MagField,
+    PlantBoot,
+    Sync,
+    TcClear,
+    TickDone,
+    WheelBoot,
+)
 from sim.flight import bus_in_use
 from sim.flight.bus_in_use import FLIGHT_NODES, refuse_bus_in_use
 
@@ -36,7 +46,7 @@ def test_a_sender_is_identified_without_sending_to_it(frame, named, bus_of):
     assert bus.sent == []
 
 
-@pytest.mark.parametrize("boot", [BOOT, CoilBoot(0, 1, 0).encode()])
+@pytest.mark.parametrize("boot", [BOOT, CoilBoot(0, 1, 0).encode(), WheelBoot(0, 1, 0).encode()])
 def test_who_waits_in_silence_is_asked(boot, bus_of):
     bus = bus_of(when_asked=[boot])
     with pytest.raises(BusError, match="_BOOT"):

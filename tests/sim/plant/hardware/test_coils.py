@@ -210,3 +210,15 @@ def test_an_output_drives_the_coil_that_it_is_wired_to_with_its_own_gain_and_tur
     coils.advance(one(1, 3), 100.0, 100.0)
     turned = Rotation.from_rotvec(turns[1]).apply([0.0, 0.0, -1.0])
     assert coils.dipole_body_am2 == pytest.approx(8.0 * -1.02 * turned)
+
+
+def test_a_core_keeps_nothing_while_its_coil_is_held_on_and_a_part_afterwards():
+    coils = Coils(CoilConfig(LEVELS, 11.0, 0.0, remanence_part=0.1))
+    driven, held = (0.1, -0.2, 0.0), (0.0, -0.2, 0.0)
+    assert coils.advance(driven, 0.25, 1.0, held) == pytest.approx((0.275, -2.2, 0.0))
+    assert coils.mean_remanence_body_am2 == pytest.approx((0.1 * 1.1 * 0.75, 0.0, 0.0))
+    assert coils.remanence_body_am2 == pytest.approx((0.11, 0.0, 0.0))
+    coils.advance(driven, 0.0, 1.0, held)
+    assert coils.mean_remanence_body_am2 == pytest.approx((0.11, 0.0, 0.0))
+    coils.advance((0.0, 0.0, 0.0), 0.0, 1.0)
+    assert coils.remanence_body_am2 == pytest.approx((0.11, -0.22, 0.0))
