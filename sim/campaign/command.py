@@ -187,15 +187,24 @@ def _say_how_to_resume(folder: Path, chosen: Campaign, results: Results) -> None
 
 def _conclude(folder: Path, chosen: Campaign, results: Results, parquet: bool) -> FlownCampaign:
     """Page and export."""
-    from sim.campaign.report.page import write_page  # noqa: PLC0415  matplotlib loads when something is drawn
-
     if parquet:
         export(results, folder / PARQUET)
     analysis = analyse(chosen, results)
-    write_page(folder / PAGE, chosen, analysis, results.meta("torquer_version"))
+    _draw(folder / PAGE, chosen, analysis, results.meta("torquer_version"))
     broken = [int(str(run)) for run, kept in results.each(("run", "limits_ok"), Status.DONE) if not kept]
     failed = results.runs(Status.FAILED)
     return FlownCampaign(folder, chosen, analysis, tuple(failed), tuple(broken))
+
+
+def _draw(path: Path, chosen: Campaign, analysis: CampaignAnalysis, begun_by: str) -> None:
+    """Write the page; one that cannot be made takes no verdict with it, and leaves no earlier page."""
+    from sim.campaign.report.page import write_page  # noqa: PLC0415  matplotlib loads when something is drawn
+
+    try:
+        write_page(path, chosen, analysis, begun_by)
+    except Exception as error:  # a defect of the page: the verdicts do not depend on it
+        path.unlink(missing_ok=True)
+        warn(f"{path} was not made: {type(error).__name__}: {error}; the verdicts are those of all runs")
 
 
 def _listed(runs: tuple[int, ...]) -> str:

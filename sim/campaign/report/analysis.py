@@ -70,6 +70,7 @@ class CampaignAnalysis:
         inputs: numeric inputs by column, of the runs that were flown.
         sensitivities: the strongest first.
         errors: pointing error over time by run.
+        orbits: how long each of these runs was.
     """
 
     done: int
@@ -82,6 +83,7 @@ class CampaignAnalysis:
     inputs: dict[str, Array]
     sensitivities: tuple[Sensitivity, ...]
     errors: dict[int, Array]
+    orbits: Array
 
 
 def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
@@ -92,7 +94,7 @@ def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
     total = len(done) + len(failures)
     limited = {entry.figure: entry for entry in campaign.requirements}
     names = list(dict.fromkeys((*limited, *MAIN_FIGURES)))
-    columns = results.numbers(names)
+    columns = results.numbers((*names, "orbits"))
     known = [_figure(name, columns[name], done, limited.get(name), campaign) for name in names]
     figures = tuple(figure for figure in known if len(figure.values))
     met = {entry: sum(map(entry.met_by, columns[entry.figure].tolist())) for entry in campaign.requirements}
@@ -117,6 +119,7 @@ def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
         if figures
         else (),
         errors=results.profiles(ERROR_HISTORY),
+        orbits=np.where(np.isfinite(columns["orbits"]), columns["orbits"], campaign.base["time"]["orbits"]),
     )
 
 

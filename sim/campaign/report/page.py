@@ -23,7 +23,7 @@ def write_page(path: Path, campaign: Campaign, analysis: CampaignAnalysis, versi
         "Campaign",
         campaign.name,
         facts=[
-            f"{runs} of {campaign.runs} runs of {campaign.base['time']['orbits']:g} orbits",
+            f"{runs} of {campaign.runs} runs of {text.length(campaign, analysis)}",
             f"scenario {campaign.base['name']}",
             f"seed {campaign.seed}",
             f"{len(analysis.inputs)} dispersed numbers",
@@ -82,7 +82,7 @@ def _sections(campaign: Campaign, analysis: CampaignAnalysis) -> Iterator[PageSe
     ))  # fmt: skip
     note = f"By {first}. torquer sil --from DIR --run NUMBER flies one again."
     yield PageSection("worst", "Worst runs", note, (text.worst_table(analysis),), (
-        chart("worst-runs", pictures.worst_runs(analysis, campaign.base["time"]["orbits"]),
+        chart("worst-runs", pictures.worst_runs(analysis),
                "Pointing error over the flight, RMS of short stretches."),
     ))  # fmt: skip
     if any(each.correlation for each in analysis.sensitivities):

@@ -1,5 +1,6 @@
 """The pictures of a campaign."""
 
+from collections.abc import Sequence
 from math import ceil
 from textwrap import wrap
 
@@ -115,14 +116,17 @@ def scatter(analysis: CampaignAnalysis) -> Figure:
     return figure
 
 
-def worst_runs(analysis: CampaignAnalysis, orbits: float) -> Figure:
-    """The pointing error of the worst runs over that of all: median, half and nine tenths of the runs."""
+def worst_runs(analysis: CampaignAnalysis) -> Figure:
+    """The pointing error of the worst runs over that of all: median, half and nine tenths of the runs.
+
+    Where runs differ in length, those of the runs that last as long.
+    """
     figure = Figure(figsize=(WIDTH_IN, PANEL_IN + 0.9), layout="constrained")
     panel = figure.subplots()
-    errors = np.array(list(analysis.errors.values()))
+    x, errors = over_time(list(analysis.errors.values()), analysis.orbits)
     runs, first = list(analysis.errors), analysis.figures[0]
-    x = (np.arange(errors.shape[1]) + 0.5) * orbits / errors.shape[1]
-    low, quarter, middle, three, high = np.quantile(errors, (0.05, 0.25, 0.5, 0.75, 0.95), axis=0)
+    quantile = np.nanquantile if np.isnan(errors).any() else np.quantile
+    low, quarter, middle, three, high = quantile(errors, (0.05, 0.25, 0.5, 0.75, 0.95), axis=0)
     panel.fill_between(x, low, high, color="#e4edf5", linewidth=0.0, label="90 % of runs")
     panel.fill_between(x, quarter, three, color=BAND, linewidth=0.0, label="50 %")
     panel.plot(x, middle, color=INK, label="median")
@@ -138,6 +142,30 @@ def worst_runs(analysis: CampaignAnalysis, orbits: float) -> Figure:
     panel.set_title("Worst runs over the rest")
     legend(panel)
     return figure
+
+
+def over_time(errors: Sequence[Array], orbits: Array) -> tuple[Array, Array]:
+    """The errors of all runs at the same times.
+
+    Args:
+        errors: of each run, the RMS of its stretches; their number may differ.
+        orbits: the length of each run.
+
+    Returns:
+        Times in orbits, and the errors at them, (runs, times); NaN after the end of a run.
+    """
+    points = max(map(len, errors))
+    x = _middles(points, float(orbits.max()))
+    rows = [
+        np.where(x <= length, np.interp(x, _middles(len(error), length), error), np.nan)
+        for error, length in zip(errors, orbits.tolist(), strict=True)
+    ]
+    return x, np.array(rows)
+
+
+def _middles(count: int, length: float) -> Array:
+    """The middles of ``count`` stretches."""
+    return (np.arange(count) + 0.5) * length / count
 
 
 def converging(analysis: CampaignAnalysis, settings: StatisticsSection) -> Figure:

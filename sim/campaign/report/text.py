@@ -16,6 +16,8 @@ INDEX_NAMES = {
     "rpe": "RPE, relative performance error",
     "ake": "AKE, absolute knowledge error",
 }
+ALIKE = 0.01
+"""Runs whose length differs by less than this part have the scenario's: it is rounded to ticks."""
 STRONGEST = 3
 """Most dependences listed on the terminal."""
 _ABSENT = "–"
@@ -23,8 +25,8 @@ _ABSENT = "–"
 
 def lines(campaign: Campaign, analysis: CampaignAnalysis) -> list[str]:
     """A few lines for the terminal."""
-    orbits = campaign.base["time"]["orbits"]
-    heading = f"{campaign.name}: {analysis.done + len(analysis.failures)} runs of {orbits:g} orbits"
+    runs = analysis.done + len(analysis.failures)
+    heading = f"{campaign.name}: {runs} runs of {length(campaign, analysis)}"
     rows = [heading, f"  success    {proportion(analysis.success, campaign)}"]
     rows += [f"  required   {one}" for one in verdicts(campaign, analysis) if one.group == "requirement"]
     rows += [f"  {figure.name}: {_percentiles(figure)}" for figure in analysis.figures]
@@ -48,6 +50,16 @@ def lines(campaign: Campaign, analysis: CampaignAnalysis) -> list[str]:
         run, why = next(iter(analysis.failures.items()))
         rows.append(f"  failed     {len(analysis.failures)}, first run {run}: {why}")
     return rows
+
+
+def length(campaign: Campaign, analysis: CampaignAnalysis) -> str:
+    """How long the runs are: the range where they differ from the scenario's length."""
+    nominal = float(campaign.base["time"]["orbits"])
+    shortest, longest = (analysis.orbits.min(), analysis.orbits.max()) if analysis.done else (nominal,) * 2
+    if max(abs(shortest - nominal), abs(longest - nominal)) <= ALIKE * nominal:
+        return f"{nominal:g} orbits"
+    least, most = f"{shortest:.3g}", f"{longest:.3g}"
+    return f"{least} orbits" if least == most else f"{least} to {most} orbits"
 
 
 def requirement_table(campaign: Campaign, analysis: CampaignAnalysis) -> Table:

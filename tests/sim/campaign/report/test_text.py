@@ -1,5 +1,9 @@
 """The words about a campaign: a few lines, and tables of the page."""
 
+from dataclasses import replace
+
+import numpy as np
+
 from sim.campaign.report import text
 
 
@@ -47,3 +51,11 @@ def test_worst_runs_come_with_their_inputs(analysis):
     assert table.head[:2] == ("run", "pointing_deg_rms_last_orbit")
     assert table.rows[0][:3] == ("39", "78.5", "157")
     assert table.rows[0][table.head.index("initial_angle_deg")] == "39"
+
+
+def test_runs_of_different_lengths_are_not_given_the_scenarios(campaign_of_40, analysis):
+    orbits = np.linspace(0.0102, 0.0299, analysis.done)
+    assert text.length(campaign_of_40, replace(analysis, orbits=orbits)) == "0.0102 to 0.0299 orbits"
+    assert text.length(campaign_of_40, replace(analysis, orbits=np.array([0.03]))) == "0.03 orbits"
+    rounded = np.array([0.02001, 0.01999])  # to whole ticks
+    assert text.length(campaign_of_40, replace(analysis, orbits=rounded)) == "0.02 orbits"
