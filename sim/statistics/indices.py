@@ -16,9 +16,9 @@ from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtri
+from scipy.special import stdtrit
 
-from sim.statistics.order_statistics import least_part_bounded, upper_bound
+from sim.statistics.order_statistics import least_part_bounded, runs_needed, upper_bound
 
 Array = NDArray[np.float64]
 
@@ -63,9 +63,11 @@ def mean_and_relative(error: Array, window: int) -> tuple[Array, Array]:
 
 
 def profile(values: Array) -> Array:
-    """The distribution of values over time: ``POINTS`` - 1 quantiles at equal steps, then the largest."""
+    """The distribution of values over time: quantiles at the middles of ``POINTS`` - 1 equal steps, then the
+    largest value.
+    """
     middles = (np.arange(POINTS - 1) + 0.5) / (POINTS - 1)
-    return np.append(np.quantile(values, middles), values.max())
+    return np.append(np.quantile(values, middles, method="hazen"), values.max())
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,25 +102,36 @@ def percentile(
     that of Woodruff (1952), runs being the clusters.
     """
     if interpretation is Interpretation.TEMPORAL:
-        worst = float(np.quantile(profiles[:, :-1], probability, axis=1).max())
+        worst = max(_pooled(run[None], probability) for run in profiles)
         return IndexPercentile(worst, worst, least_part_bounded(len(profiles), confidence))
     if interpretation is Interpretation.ENSEMBLE:
         largest = profiles[:, -1]
         bound = upper_bound(largest, probability, confidence)
         return IndexPercentile(float(np.quantile(largest, probability)), bound, probability)
-    pooled = profiles[:, :-1].ravel()
-    value = float(np.quantile(pooled, probability))
-    return IndexPercentile(value, _woodruff(profiles[:, :-1], value, probability, confidence), probability)
+    value = _pooled(profiles, probability)
+    return IndexPercentile(value, _woodruff(profiles, value, probability, confidence), probability)
+
+
+def _pooled(profiles: Array, probability: float) -> float:
+    """The quantile over all times of the runs; above the last one that is kept, the largest value of all."""
+    quantiles = profiles[:, :-1]
+    if probability > 1.0 - 0.5 / quantiles.size:
+        return float(profiles[:, -1].max())
+    return float(np.quantile(quantiles, probability, method="hazen"))  # each is the middle of its step
 
 
 def _woodruff(profiles: Array, value: float, probability: float, confidence: float) -> float | None:
-    """The pooled quantile at P + z s / sqrt(n), s the deviation between runs of the fraction <= ``value``."""
+    """The pooled quantile at P + t s / sqrt(n), s the deviation between runs of the fraction <= ``value``.
+
+    t is Student's quantile with n - 1 degrees of freedom. Runs whose values hardly change over time are n
+    values: there is no bound with fewer runs than their largest needs to be one.
+    """
     runs = len(profiles)
-    if runs < 2:
+    if runs < max(2, runs_needed(probability, confidence)):
         return None
-    parts = np.mean(profiles <= value, axis=1)
-    shifted = probability + ndtri(confidence) * float(parts.std(ddof=1)) / sqrt(runs)
-    return float(np.quantile(profiles, shifted)) if shifted < 1.0 else None
+    parts = np.mean(profiles[:, :-1] <= value, axis=1)
+    shifted = probability + stdtrit(runs - 1, confidence) * float(parts.std(ddof=1)) / sqrt(runs)
+    return _pooled(profiles, shifted) if shifted < 1.0 else None
 
 
 def table(

@@ -126,7 +126,7 @@ def index_note(campaign: Campaign, analysis: CampaignAnalysis) -> str:
         f"Ensemble: at all times in {percent} of the runs. Mixed: at {percent} of all times of all runs. "
         f"Temporal: at {percent} of the time in the worst of these runs, which bounds {100.0 * held:.1f} % "
         "of the ensemble. "
-        f"Bounds are one-sided with {confidence} confidence; that of the ensemble needs {needed} runs."
+        f"Bounds are one-sided with {confidence} confidence; those of ensemble and mixed need {needed} runs."
     )
 
 
