@@ -12,13 +12,13 @@ A requirement on one of them holds with probability P
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from math import sqrt
+from math import inf, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from sim.statistics.order_statistics import least_part_bounded, runs_needed, upper_bound
+from sim.statistics.order_statistics import least_part_bounded, quantile, runs_needed, upper_bound
 
 Array = NDArray[np.float64]
 
@@ -63,9 +63,7 @@ def mean_and_relative(error: Array, window: int) -> tuple[Array, Array]:
 
 
 def profile(values: Array) -> Array:
-    """The distribution of values over time: quantiles at the middles of ``POINTS`` - 1 equal steps, then the
-    largest value.
-    """
+    """The distribution over time: quantiles at the middles of ``POINTS`` - 1 steps, then the largest."""
     middles = (np.arange(POINTS - 1) + 0.5) / (POINTS - 1)
     return np.append(np.quantile(values, middles, method="hazen"), values.max())
 
@@ -75,7 +73,7 @@ class IndexPercentile:
     """A percentile over a campaign.
 
     Attributes:
-        value: the estimate.
+        value: the estimate; infinite where it falls on runs that failed.
         bound: one-sided upper bound of it with the confidence; None where there are too few runs for one.
         held: for the temporal interpretation, the fraction of the ensemble that is at most ``value`` with the
             confidence; otherwise the probability.
@@ -93,23 +91,36 @@ class IndexPercentile:
 
 
 def percentile(
-    profiles: Array, interpretation: Interpretation, probability: float, confidence: float
+    profiles: Array, interpretation: Interpretation, probability: float, confidence: float, failed: int = 0
 ) -> IndexPercentile:
     """A percentile of an index over runs, from their profiles, (runs, ``POINTS``).
+
+    ``failed`` more runs have none: their index is infinite at all times. Temporal has no bound then, since
+    one of them may be the worst, and is infinite where they are more than 1 - ``probability`` of all.
 
     Temporal takes the worst of the runs, which bounds a fraction of the ensemble. Ensemble takes the largest
     value of each run, its bound from order statistics. Mixed pools all runs with equal weight; its bound is
     that of Woodruff (1952), runs being the clusters.
     """
     if interpretation is Interpretation.TEMPORAL:
-        worst = max(_pooled(run[None], probability) for run in profiles)
-        return IndexPercentile(worst, worst, least_part_bounded(len(profiles), confidence))
+        return _worst(profiles, probability, confidence, failed)
+    profiles = np.vstack((profiles, np.full((failed, POINTS), np.inf)))
     if interpretation is Interpretation.ENSEMBLE:
         largest = profiles[:, -1]
         bound = upper_bound(largest, probability, confidence)
-        return IndexPercentile(float(np.quantile(largest, probability)), bound, probability)
+        return IndexPercentile(quantile(largest, probability), bound, probability)
     value = _pooled(profiles, probability)
     return IndexPercentile(value, _woodruff(profiles, value, probability, confidence), probability)
+
+
+def _worst(profiles: Array, probability: float, confidence: float, failed: int) -> IndexPercentile:
+    """The largest of the runs' percentiles over time."""
+    runs = len(profiles) + failed
+    held = least_part_bounded(runs, confidence, failed)
+    if failed > (1.0 - probability) * runs + 1e-9:
+        return IndexPercentile(inf, None, held)
+    worst = max(_pooled(run[None], probability) for run in profiles)
+    return IndexPercentile(worst, None if failed else worst, held)
 
 
 def _pooled(profiles: Array, probability: float) -> float:
@@ -117,7 +128,7 @@ def _pooled(profiles: Array, probability: float) -> float:
     quantiles = profiles[:, :-1]
     if probability > 1.0 - 0.5 / quantiles.size:
         return float(profiles[:, -1].max())
-    return float(np.quantile(quantiles, probability, method="hazen"))  # each is the middle of its step
+    return quantile(quantiles.ravel(), probability, middles=True)
 
 
 def _woodruff(profiles: Array, value: float, probability: float, confidence: float) -> float | None:
@@ -135,10 +146,10 @@ def _woodruff(profiles: Array, value: float, probability: float, confidence: flo
 
 
 def table(
-    profiles: Mapping[str, Array], probability: float, confidence: float
+    profiles: Mapping[str, Array], probability: float, confidence: float, failed: int = 0
 ) -> dict[str, dict[Interpretation, IndexPercentile]]:
-    """Every index under every interpretation."""
+    """Every index under every interpretation; ``failed`` runs have no profile."""
     return {
-        name: {how: percentile(values, how, probability, confidence) for how in Interpretation}
+        name: {how: percentile(values, how, probability, confidence, failed) for how in Interpretation}
         for name, values in profiles.items()
     }

@@ -6,7 +6,7 @@ from pathlib import Path
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report import pictures, text
 from sim.campaign.report.analysis import CampaignAnalysis
-from sim.campaign.report.verdicts import verdicts
+from sim.campaign.report.verdicts import value_words, verdicts
 from sim.drawing.canvas import style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import PageHeader, PageSection, Tile, sections_page
@@ -51,7 +51,7 @@ def _badges(campaign: Campaign, analysis: CampaignAnalysis) -> list[tuple[str, s
 def _tiles(campaign: Campaign, analysis: CampaignAnalysis) -> list[Tile]:
     probability = campaign.statistics.probability
     return [
-        Tile(figure.name.replace("_", " "), f"{found.value:.4g}", f"{100.0 * probability:g} % of runs")
+        Tile(figure.name.replace("_", " "), value_words(found.value), f"{100.0 * probability:g} % of runs")
         for figure in analysis.figures[:MOST_TILES]
         for found in figure.percentiles
         if found.probability == probability
@@ -68,7 +68,10 @@ def _sections(campaign: Campaign, analysis: CampaignAnalysis) -> Iterator[PageSe
     if not analysis.figures:
         return
     first = analysis.figures[0].name
-    note = f"Percentiles over runs, in brackets two-sided bounds by order statistics, {confidence}."
+    note = (
+        f"Percentiles over all runs, in brackets two-sided bounds by order statistics, {confidence}. "
+        "A run that failed or has no such figure is the worst; mean and largest are of those that have it."
+    )
     yield PageSection("figures", "Figures", note, (text.figure_table(analysis),), (
         chart("distributions", pictures.distributions(analysis),
                "Distribution of each figure, its percentiles with bounds; red: requirement."),

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics
-from sim.campaign.report.verdicts import WORDS, meets, proportion, verdicts
+from sim.campaign.report.verdicts import WORDS, meets, proportion, value_words, verdicts
 from sim.drawing.page_parts import Table
 from sim.statistics.indices import IndexPercentile, Interpretation
 from sim.statistics.order_statistics import Percentile, runs_needed
@@ -86,7 +86,7 @@ def figure_table(analysis: CampaignAnalysis) -> Table:
     rows = [
         (
             figure.name,
-            str(len(figure.values)),
+            f"{len(figure.values)}" + (f" of {len(figure.ranked)}" if figure.without else ""),
             f"{figure.values.mean():.4g}",
             *map(with_bounds, figure.percentiles),
             f"{figure.values.max():.4g}",
@@ -109,9 +109,9 @@ def index_table(campaign: Campaign, analysis: CampaignAnalysis) -> Table:
 
 def _index_cell(found: IndexPercentile, how: Interpretation, limit: float | None) -> str:
     """The percentile, its bound where it has one of its own, and the verdict."""
-    bound = "" if how is Interpretation.TEMPORAL else f" (bound {_bound(found.bound)})"
+    bound = "" if how is Interpretation.TEMPORAL else f" (bound {value_words(found.bound)})"
     verdict = "" if limit is None else f": {WORDS[found.within(limit)]}"
-    return f"{found.value:.4g}{bound}{verdict}"
+    return f"{value_words(found.value)}{bound}{verdict}"
 
 
 def index_note(campaign: Campaign, analysis: CampaignAnalysis) -> str:
@@ -167,12 +167,8 @@ def failure_table(analysis: CampaignAnalysis) -> Table:
 
 
 def with_bounds(found: Percentile) -> str:
-    """A percentile with its bounds; a dash where there are too few runs for one."""
-    return f"{found.value:.4g} ({_bound(found.low)} to {_bound(found.high)})"
-
-
-def _bound(value: float | None) -> str:
-    return _ABSENT if value is None else f"{value:.4g}"
+    """A percentile with its bounds."""
+    return f"{value_words(found.value)} ({value_words(found.low)} to {value_words(found.high)})"
 
 
 def _value_of(figure: FigureStatistics, run: int) -> str:

@@ -141,9 +141,33 @@ def test_the_bound_of_mixed_covers_the_truth_however_much_runs_differ(runs, betw
 
 
 def test_the_bound_of_mixed_uses_students_quantile():
-    """Half of the runs at 1, half at 2: the fraction up to 1 is 1 or 0, its deviation 0.5 sqrt(n / (n - 1))."""
+    """Half of the runs up to the value, half above it: the deviation is 0.5 sqrt(n / (n - 1))."""
     levels = np.repeat([1.0, 2.0], 4)
     pool = levels[:, None] * np.ones(POINTS) + np.linspace(0.0, 0.5, POINTS)
     found = percentile(pool, MIXED, 0.5, 0.9)
     shift = stdtrit(7, 0.9) * 0.5 * (8.0 / 7.0) ** 0.5 / 8.0**0.5
     assert found.bound == pytest.approx(np.quantile(pool[:, :-1], 0.5 + shift, method="hazen"))
+
+
+@pytest.mark.parametrize("how", list(Interpretation))
+def test_a_limit_is_missed_where_more_runs_failed_than_it_leaves(how):
+    found = percentile(profiles_of(np.full(90, 1.0)), how, 0.9, 0.9, failed=11)
+    assert found.value == np.inf
+    assert found.within(5.0) is False
+
+
+@pytest.mark.parametrize("how", list(Interpretation))
+def test_with_some_runs_failed_a_limit_is_not_met(how):
+    found = percentile(profiles_of(np.full(90, 1.0)), how, 0.9, 0.9, failed=10)
+    assert found.value <= 1.0
+    assert found.within(5.0) is None
+
+
+def test_with_few_runs_failed_most_of_the_ensemble_still_meets_a_limit():
+    found = percentile(profiles_of(np.full(98, 1.0)), ENSEMBLE, 0.9, 0.9, failed=2)
+    assert found.within(5.0) is True
+
+
+@pytest.mark.parametrize("how", list(Interpretation))
+def test_where_no_run_was_flown_nothing_is_met(how):
+    assert percentile(np.empty((0, POINTS)), how, 0.95, 0.9, failed=3).within(5.0) is False
