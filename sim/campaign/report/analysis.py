@@ -108,9 +108,7 @@ def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
     successes = int(results.numbers(("success",))["success"].sum())
     numeric = [name for name, kind in results.kinds().items() if name.startswith("input_") and kind != "TEXT"]
     inputs = results.numbers(numeric)
-    profiles = {
-        name: np.array(list(results.profiles(name).values())).reshape(len(done), POINTS) for name in INDICES
-    }
+    profiles = {name: np.array(list(results.profiles(name).values())).reshape(-1, POINTS) for name in INDICES}
     return CampaignAnalysis(
         done=len(done),
         failures=failures,
