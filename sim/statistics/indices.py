@@ -26,6 +26,9 @@ INDICES = ("ape", "mpe", "rpe", "ake")
 POINTS = 256
 """Numbers that represent the distribution of an index over a run, the last being its largest value."""
 
+LAST_KEPT = 1.0 - 0.5 / (POINTS - 1)
+"""Probability of the last quantile among them; above it the largest value stands for the percentile."""
+
 
 class Interpretation(StrEnum):
     """How a probability is meant."""
@@ -119,7 +122,10 @@ def _worst(profiles: Array, probability: float, confidence: float, failed: int) 
     held = least_part_bounded(runs, confidence, failed)
     if failed > (1.0 - probability) * runs + 1e-9:
         return IndexPercentile(inf, None, held)
-    worst = max(_pooled(run[None], probability) for run in profiles)
+    if probability > LAST_KEPT:
+        worst = float(profiles[:, -1].max())
+    else:
+        worst = float(np.quantile(profiles[:, :-1], probability, axis=1, method="hazen").max())
     return IndexPercentile(worst, None if failed else worst, held)
 
 
@@ -141,7 +147,7 @@ def _woodruff(profiles: Array, value: float, probability: float, confidence: flo
     if runs < max(2, runs_needed(probability, confidence)):
         return None
     parts = np.mean(profiles[:, :-1] <= value, axis=1)
-    shifted = probability + stdtrit(runs - 1, confidence) * float(parts.std(ddof=1)) / sqrt(runs)
+    shifted = probability + float(stdtrit(runs - 1, confidence) * parts.std(ddof=1)) / sqrt(runs)
     return _pooled(profiles, shifted) if shifted < 1.0 else None
 
 

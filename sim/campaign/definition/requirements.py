@@ -46,7 +46,7 @@ def requirements_in(values: Nested, source: str) -> tuple[FigureRequirement, ...
         TableError: there is no such figure, a figure has two entries or no limit, or a limit is not a number.
     """
     names: dict[str, str] = {}
-    found = []
+    found: list[FigureRequirement] = []
     for name, limit in _flat(values):
         requirement = _requirement(name, limit, source)
         earlier = names.setdefault(requirement.figure, name)
