@@ -140,14 +140,19 @@ def _pooled(profiles: Array, probability: float) -> float:
 def _woodruff(profiles: Array, value: float, probability: float, confidence: float) -> float | None:
     """The pooled quantile at P + t s / sqrt(n), s the deviation between runs of the fraction <= ``value``.
 
-    t is Student's quantile with n - 1 degrees of freedom. Runs whose values hardly change over time are n
+    t is Student's quantile with n - 1 degrees of freedom. Where a few runs have small fractions, the term of
+    Johnson (1978) for their third moment is added. Runs whose values hardly change over time are n
     values: there is no bound with fewer runs than their largest needs to be one.
     """
     runs = len(profiles)
     if runs < max(2, runs_needed(probability, confidence)):
         return None
     parts = np.mean(profiles[:, :-1] <= value, axis=1)
-    shifted = probability + float(stdtrit(runs - 1, confidence) * parts.std(ddof=1)) / sqrt(runs)
+    deviation, student = float(parts.std(ddof=1)), float(stdtrit(runs - 1, confidence))
+    shifted = probability + student * deviation / sqrt(runs)
+    third = float(np.mean((parts - parts.mean()) ** 3))
+    if third < 0.0:
+        shifted -= third * (1.0 + 2.0 * student**2) / (6.0 * deviation**2 * runs)
     return _pooled(profiles, shifted) if shifted < 1.0 else None
 
 

@@ -137,7 +137,7 @@ def test_the_bound_of_mixed_covers_the_truth_however_much_runs_differ(runs, betw
         pool = between * random.normal(size=(runs, 1)) + within * QUANTILES
         bound = percentile(np.hstack((pool, pool[:, -1:])), MIXED, 0.95, 0.9).bound
         covered += bound is None or bound >= truth
-    assert covered / trials > 0.81  # 0.9 as stated, less three standard deviations of 150 trials and 0.02
+    assert covered / trials > 0.85  # 0.9 as stated, less two standard deviations of the trials
 
 
 def test_the_bound_of_mixed_uses_students_quantile():
