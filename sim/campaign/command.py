@@ -12,6 +12,7 @@ from pathlib import Path
 
 from fsw.input.schema import Nested
 from fsw.table.config import flight_config
+from sim.campaign.code_digest import code_digest
 from sim.campaign.definition.campaign import FILE, SCENARIO, Campaign
 from sim.campaign.definition.campaign_file import load_campaign
 from sim.campaign.executors.cluster import Cluster
@@ -22,7 +23,7 @@ from sim.campaign.report.analysis import CampaignAnalysis, analyse
 from sim.campaign.report.verdicts import CampaignVerdict, verdicts
 from sim.campaign.results.parquet import check_parquet, export
 from sim.campaign.results.row import RunRow, Status
-from sim.campaign.results.store import LOCK, RESULTS, Results, open_results
+from sim.campaign.results.store import CODE, LOCK, RESULTS, Results, open_results
 from sim.console import detail, warn
 from sim.errors import HarnessError
 from sim.progress import note, progress
@@ -124,7 +125,7 @@ def campaign(
         there = set(results.runs(Status.DONE) if retry else results.runs())
         missing = [run for run in range(chosen.runs) if run not in there]
         if missing:
-            _check_version(folder, results)
+            _check_code(folder, results)
         detail(f"{len(missing)} of {chosen.runs} runs are not in {folder}")
         task = RunTask(chosen, Keep(keep), folder.absolute())
         try:
@@ -144,10 +145,21 @@ def _check_resumable(source: str, over: Nested, settings: Nested, out: Path | No
         )
 
 
-def _check_version(folder: Path, results: Results) -> None:
+def _check_code(folder: Path, results: Results) -> None:
+    """The runs to be flown must be of the code that the others are of."""
     theirs, ours = results.meta("torquer_version"), version("torquer")
     if theirs != ours:
         raise HarnessError(f"{folder} was begun by torquer {theirs}, this is {ours}: choose another --out")
+    begun = results.all_meta().get(CODE)
+    if begun is None:
+        warn(
+            f"{folder} does not say by which code of torquer {ours} it was begun, which may differ from this"
+        )
+    elif begun != code_digest():
+        raise HarnessError(
+            f"{folder} was begun by other code of torquer {ours}, of digest {begun}, "
+            f"this is {code_digest()}: choose another --out"
+        )
 
 
 def _fly(executor: Executor, task: RunTask, missing: list[int], results: Results) -> None:
@@ -187,15 +199,24 @@ def _say_how_to_resume(folder: Path, chosen: Campaign, results: Results) -> None
 
 def _conclude(folder: Path, chosen: Campaign, results: Results, parquet: bool) -> FlownCampaign:
     """Page and export."""
-    from sim.campaign.report.page import write_page  # noqa: PLC0415  matplotlib loads when something is drawn
-
     if parquet:
         export(results, folder / PARQUET)
     analysis = analyse(chosen, results)
-    write_page(folder / PAGE, chosen, analysis, results.meta("torquer_version"))
+    _draw(folder / PAGE, chosen, analysis, results.meta("torquer_version"))
     broken = [int(str(run)) for run, kept in results.each(("run", "limits_ok"), Status.DONE) if not kept]
     failed = results.runs(Status.FAILED)
     return FlownCampaign(folder, chosen, analysis, tuple(failed), tuple(broken))
+
+
+def _draw(path: Path, chosen: Campaign, analysis: CampaignAnalysis, begun_by: str) -> None:
+    """Write the page; one that cannot be made takes no verdict with it, and leaves no earlier page."""
+    from sim.campaign.report.page import write_page  # noqa: PLC0415  matplotlib loads when something is drawn
+
+    try:
+        write_page(path, chosen, analysis, begun_by)
+    except Exception as error:  # a defect of the page: the verdicts do not depend on it
+        path.unlink(missing_ok=True)
+        warn(f"{path} was not made: {type(error).__name__}: {error}; the verdicts are those of all runs")
 
 
 def _listed(runs: tuple[int, ...]) -> str:

@@ -9,7 +9,6 @@ from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
-from multiprocessing.process import BaseProcess
 from threading import current_thread, main_thread
 from typing import Any
 
@@ -93,7 +92,6 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
         for place, number, task in tasks:
             yield place, number, _run_timed(task)
         return
-    others = multiprocessing.active_children()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one task, one core
     with ProcessPoolExecutor(min(workers, len(tasks)), multiprocessing.get_context("spawn")) as pool:
         with children_ignore_interrupt():
@@ -104,13 +102,13 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
             for future in as_completed(places):
                 yield *places[future], future.result()
         except BrokenProcessPool:
-            end_children(others)
+            end_workers(pool)
             done = sum(future.done() and future.exception() is None for future in places)
             raise WorkerLostError(
                 f"a worker process was ended from outside: {done} of {len(places)} tasks were done"
             ) from None
         except BaseException:
-            end_children(others)  # breaks the pool, which then cancels waiting tasks and is joined
+            end_workers(pool)  # breaks the pool, which then cancels waiting tasks and is joined
             raise
 
 
@@ -130,12 +128,12 @@ def children_ignore_interrupt() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def end_children(others: Sequence[BaseProcess]) -> None:
-    """End the processes of this one that are not among the others."""
-    mine = [process for process in multiprocessing.active_children() if process not in others]
-    for process in mine:
+def end_workers(pool: ProcessPoolExecutor) -> None:
+    """End the processes of a pool, and no other child of this process; the pool is broken then."""
+    workers = list((pool._processes or {}).values())  # public from Python 3.14 on: terminate_workers()
+    for process in workers:
         process.terminate()
-    for process in mine:
+    for process in workers:
         process.join()
 
 

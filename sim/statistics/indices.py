@@ -12,19 +12,22 @@ A requirement on one of them holds with probability P
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from math import sqrt
+from math import inf, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtri
+from scipy.special import stdtrit
 
-from sim.statistics.order_statistics import least_part_bounded, upper_bound
+from sim.statistics.order_statistics import least_part_bounded, quantile, runs_needed, upper_bound
 
 Array = NDArray[np.float64]
 
 INDICES = ("ape", "mpe", "rpe", "ake")
 POINTS = 256
 """Numbers that represent the distribution of an index over a run, the last being its largest value."""
+
+LAST_KEPT = 1.0 - 0.5 / (POINTS - 1)
+"""Probability of the last quantile among them; above it the largest value stands for the percentile."""
 
 
 class Interpretation(StrEnum):
@@ -63,9 +66,9 @@ def mean_and_relative(error: Array, window: int) -> tuple[Array, Array]:
 
 
 def profile(values: Array) -> Array:
-    """The distribution of values over time: ``POINTS`` - 1 quantiles at equal steps, then the largest."""
+    """The distribution over time: quantiles at the middles of ``POINTS`` - 1 steps, then the largest."""
     middles = (np.arange(POINTS - 1) + 0.5) / (POINTS - 1)
-    return np.append(np.quantile(values, middles), values.max())
+    return np.append(np.quantile(values, middles, method="hazen"), values.max())
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +76,7 @@ class IndexPercentile:
     """A percentile over a campaign.
 
     Attributes:
-        value: the estimate.
+        value: the estimate; infinite where it falls on runs that failed.
         bound: one-sided upper bound of it with the confidence; None where there are too few runs for one.
         held: for the temporal interpretation, the fraction of the ensemble that is at most ``value`` with the
             confidence; otherwise the probability.
@@ -91,41 +94,73 @@ class IndexPercentile:
 
 
 def percentile(
-    profiles: Array, interpretation: Interpretation, probability: float, confidence: float
+    profiles: Array, interpretation: Interpretation, probability: float, confidence: float, failed: int = 0
 ) -> IndexPercentile:
     """A percentile of an index over runs, from their profiles, (runs, ``POINTS``).
+
+    ``failed`` more runs have none: their index is infinite at all times. Temporal has no bound then, since
+    one of them may be the worst, and is infinite where they are more than 1 - ``probability`` of all.
 
     Temporal takes the worst of the runs, which bounds a fraction of the ensemble. Ensemble takes the largest
     value of each run, its bound from order statistics. Mixed pools all runs with equal weight; its bound is
     that of Woodruff (1952), runs being the clusters.
     """
     if interpretation is Interpretation.TEMPORAL:
-        worst = float(np.quantile(profiles[:, :-1], probability, axis=1).max())
-        return IndexPercentile(worst, worst, least_part_bounded(len(profiles), confidence))
+        return _worst(profiles, probability, confidence, failed)
+    profiles = np.vstack((profiles, np.full((failed, POINTS), np.inf)))
     if interpretation is Interpretation.ENSEMBLE:
         largest = profiles[:, -1]
         bound = upper_bound(largest, probability, confidence)
-        return IndexPercentile(float(np.quantile(largest, probability)), bound, probability)
-    pooled = profiles[:, :-1].ravel()
-    value = float(np.quantile(pooled, probability))
-    return IndexPercentile(value, _woodruff(profiles[:, :-1], value, probability, confidence), probability)
+        return IndexPercentile(quantile(largest, probability), bound, probability)
+    value = _pooled(profiles, probability)
+    return IndexPercentile(value, _woodruff(profiles, value, probability, confidence), probability)
+
+
+def _worst(profiles: Array, probability: float, confidence: float, failed: int) -> IndexPercentile:
+    """The largest of the runs' percentiles over time."""
+    runs = len(profiles) + failed
+    held = least_part_bounded(runs, confidence, failed)
+    if failed > (1.0 - probability) * runs + 1e-9:
+        return IndexPercentile(inf, None, held)
+    if probability > LAST_KEPT:
+        worst = float(profiles[:, -1].max())
+    else:
+        worst = float(np.quantile(profiles[:, :-1], probability, axis=1, method="hazen").max())
+    return IndexPercentile(worst, None if failed else worst, held)
+
+
+def _pooled(profiles: Array, probability: float) -> float:
+    """The quantile over all times of the runs; above the last one that is kept, the largest value of all."""
+    quantiles = profiles[:, :-1]
+    if probability > 1.0 - 0.5 / quantiles.size:
+        return float(profiles[:, -1].max())
+    return quantile(quantiles.ravel(), probability, middles=True)
 
 
 def _woodruff(profiles: Array, value: float, probability: float, confidence: float) -> float | None:
-    """The pooled quantile at P + z s / sqrt(n), s the deviation between runs of the fraction <= ``value``."""
+    """The pooled quantile at P + t s / sqrt(n), s the deviation between runs of the fraction <= ``value``.
+
+    t is Student's quantile with n - 1 degrees of freedom. Where a few runs have small fractions, the term of
+    Johnson (1978) for their third moment is added. Runs whose values hardly change over time are n
+    values: there is no bound with fewer runs than their largest needs to be one.
+    """
     runs = len(profiles)
-    if runs < 2:
+    if runs < max(2, runs_needed(probability, confidence)):
         return None
-    parts = np.mean(profiles <= value, axis=1)
-    shifted = probability + ndtri(confidence) * float(parts.std(ddof=1)) / sqrt(runs)
-    return float(np.quantile(profiles, shifted)) if shifted < 1.0 else None
+    parts = np.mean(profiles[:, :-1] <= value, axis=1)
+    deviation, student = float(parts.std(ddof=1)), float(stdtrit(runs - 1, confidence))
+    shifted = probability + student * deviation / sqrt(runs)
+    third = float(np.mean((parts - parts.mean()) ** 3))
+    if third < 0.0:
+        shifted -= third * (1.0 + 2.0 * student**2) / (6.0 * deviation**2 * runs)
+    return _pooled(profiles, shifted) if shifted < 1.0 else None
 
 
 def table(
-    profiles: Mapping[str, Array], probability: float, confidence: float
+    profiles: Mapping[str, Array], probability: float, confidence: float, failed: int = 0
 ) -> dict[str, dict[Interpretation, IndexPercentile]]:
-    """Every index under every interpretation."""
+    """Every index under every interpretation; ``failed`` runs have no profile."""
     return {
-        name: {how: percentile(values, how, probability, confidence) for how in Interpretation}
+        name: {how: percentile(values, how, probability, confidence, failed) for how in Interpretation}
         for name, values in profiles.items()
     }

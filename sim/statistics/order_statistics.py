@@ -6,11 +6,11 @@ P(B >= k) (David and Nagaraja, Order Statistics, 2003, section 7.1).
 """
 
 from dataclasses import dataclass
-from math import ceil, log
+from math import ceil, isfinite, log
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import bdtr
+from scipy.special import bdtr, betaincinv
 
 Array = NDArray[np.float64]
 
@@ -28,9 +28,31 @@ class Percentile:
 def percentile(values: Array, probability: float, confidence: float) -> Percentile:
     """A percentile with two-sided bounds, half of the remaining probability on each side."""
     side = 0.5 * (1.0 + confidence)
-    estimate = float(np.quantile(values, probability))
+    estimate = quantile(values, probability)
     low, high = lower_bound(values, probability, side), upper_bound(values, probability, side)
     return Percentile(probability, estimate, low, high)
+
+
+def quantile(values: Array, probability: float, middles: bool = False) -> float:
+    """The quantile of a sample that may hold infinite values, linear between its values.
+
+    Where one of the two is infinite, the least value that is not exceeded by the fraction of the sample.
+
+    Args:
+        values: at least one.
+        probability: of the quantile.
+        middles: the k-th of n values is the quantile of (k - 0.5) / n; otherwise of (k - 1) / (n - 1).
+    """
+    last = len(values) - 1
+    place = len(values) * probability - 0.5 if middles else last * probability
+    place = min(max(round(place, 9), 0.0), float(last))
+    below = int(place)
+    reached = max(ceil(round(len(values) * probability, 9)) - 1, 0)
+    ordered = np.partition(values, sorted({below, min(below + 1, last), reached}))
+    low, high = float(ordered[below]), float(ordered[min(below + 1, last)])
+    if not isfinite(low) or not isfinite(high):
+        return float(ordered[reached])
+    return low + (place - below) * (high - low)
 
 
 def upper_bound(values: Array, probability: float, confidence: float) -> float | None:
@@ -46,9 +68,12 @@ def lower_bound(values: Array, probability: float, confidence: float) -> float |
     return None if below is None else -below
 
 
-def least_part_bounded(count: int, confidence: float) -> float:
-    """The fraction of the distribution that the largest of ``count`` values bounds with the confidence."""
-    return float((1.0 - confidence) ** (1.0 / count))
+def least_part_bounded(count: int, confidence: float, above: int = 0) -> float:
+    """The fraction of the distribution that a value bounds with the confidence.
+
+    It is the largest of ``count`` values but for ``above``; of all, (1 - confidence)^(1 / count).
+    """
+    return float(betaincinv(count - above, above + 1, 1.0 - confidence)) if above < count else 0.0
 
 
 def runs_needed(probability: float, confidence: float) -> int:

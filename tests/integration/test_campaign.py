@@ -1,5 +1,6 @@
 """``torquer campaign`` as a process: killed and resumed, its runs flown again, its results and page."""
 
+import json
 import re
 import signal
 import sqlite3
@@ -212,3 +213,44 @@ def test_a_wrong_command_is_one_sentence(campaign, words, sentence, tmp_path):
     assert sentence in done.stderr
     assert done.stderr.startswith("torquer: ")
     assert done.stderr.count("\n") == 1
+
+
+OF_DIFFERENT_LENGTHS = """
+scenario = "microsat"
+runs = 3
+orbits = 0.02
+index.ape = 1.0
+
+[[disperse]]
+key = "time.orbits"
+distribution = "uniform"
+low = 0.01
+high = 0.06
+"""
+
+
+def test_runs_of_different_lengths_have_a_page(tmp_path):
+    (tmp_path / "some.toml").write_text(OF_DIFFERENT_LENGTHS)
+    words = ("campaign", tmp_path / "some.toml", "--workers", "1", "--out", tmp_path / "out")
+    ended = torquer(*words, "--junit", tmp_path / "junit.xml")
+    assert ended.exit_code == 1, "an index is missed"
+    heading = re.search(r"microsat: 3 runs of (0\.0\d+) to (0\.0\d+) orbits", ended.stdout)
+    assert 0.01 <= float(heading[1]) < float(heading[2]) <= 0.06
+    assert heading[0].removeprefix("microsat: ") in (tmp_path / "out" / "campaign.html").read_text().replace(
+        "3 of 3 runs", "3 runs"
+    )
+    assert "<failure" in (tmp_path / "junit.xml").read_text()
+
+
+def test_a_page_that_cannot_be_made_takes_no_verdict_with_it(campaign, monkeypatch):
+    folder, _ = campaign
+
+    def broken(*_):
+        raise ValueError("no ink")
+
+    monkeypatch.setattr("sim.campaign.report.page.write_page", broken)
+    again = torquer("campaign", folder, "--json")
+    assert again.exit_code == 1
+    assert json.loads(again.stdout)["success"]["total"] == RUNS
+    assert "campaign.html was not made: ValueError: no ink" in again.stderr
+    assert not (folder / "campaign.html").exists()

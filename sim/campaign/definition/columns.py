@@ -49,10 +49,11 @@ def cells(summary: Mapping[str, Any]) -> dict[str, Cell]:
     """The figures of a summary by column; those that it does not have are absent."""
     flat = dict(_flat(summary))
     known = {name: flat[name] for name in (*NUMBERS, *TEXTS) if name in flat}
-    units = summary["isolated"]
+    units, outcomes = summary["isolated"], [one["verdict"] for one in summary["requirements"]]
     return {
         **known,
-        "requirements_failed": sum(one["verdict"] == Outcome.FAILED for one in summary["requirements"]),
+        # Without a judgement of each, nobody knows how many are missed: no limit on it is met then.
+        "requirements_failed": None if Outcome.NOT_JUDGED in outcomes else outcomes.count(Outcome.FAILED),
         "isolated": ", ".join(units),
         "isolated_units": len(units),
         "event_count": len(summary["events"]),

@@ -118,9 +118,11 @@ class Choice(OneKey):
             raise ValueError("weights must be as many as values, and one of them above 0")
         if any(weight < 0.0 for weight in self.weights):
             raise ValueError("weights must not be below 0")
-        if len({_kind(value) for value in self.values}) > 1:
+        first, *others = map(_columns, self.values)
+        if any(other != first for other in others):
             raise ValueError(
-                "values must be all numbers, all texts, all switches, or lists of the same shape"
+                "values must be all numbers, all texts, all switches, lists of the same shape, "
+                "or tables with the same keys"
             )
         return self
 
@@ -225,6 +227,12 @@ AnyDispersion = Annotated[
 ]
 
 
-def _kind(value: object) -> tuple[bool, bool, Shape]:
-    """Values of one kind have the same columns in the results."""
-    return isinstance(value, str), isinstance(value, bool), np.shape(value) if isinstance(value, list) else ()
+def _columns(value: object, name: str = "") -> dict[str, str]:
+    """The columns that a value has in the results, by key with dots, and what is in each."""
+    if isinstance(value, dict | list | tuple):
+        parts = value.items() if isinstance(value, dict) else enumerate(value)
+        found: dict[str, str] = {}
+        for key, part in parts:
+            found |= _columns(part, f"{name}.{key}" if name else f"{key}")
+        return found or {name: "empty"}
+    return {name: "text" if isinstance(value, str) else "switch" if isinstance(value, bool) else "number"}

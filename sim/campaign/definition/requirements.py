@@ -43,26 +43,37 @@ def requirements_in(values: Nested, source: str) -> tuple[FigureRequirement, ...
     """The requirements in ``[requirement]``: a number as the upper limit, or a table of at_least and at_most.
 
     Raises:
-        TableError: there is no such figure, or a limit is not a number.
+        TableError: there is no such figure, a figure has two entries or no limit, or a limit is not a number.
     """
-    return tuple(_requirement(name, limit, source) for name, limit in _flat(values))
+    names: dict[str, str] = {}
+    found: list[FigureRequirement] = []
+    for name, limit in _flat(values):
+        requirement = _requirement(name, limit, source)
+        earlier = names.setdefault(requirement.figure, name)
+        if len(names) == len(found):
+            both = f"{requirement.figure} has two entries, requirement.{earlier} and requirement.{name}"
+            raise TableError(f"{source}: {both}: write one")
+        found.append(requirement)
+    return tuple(found)
 
 
 def _flat(values: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str, object]]:
     """Limits by figure, its dots as underscores."""
     for key, value in values.items():
-        if isinstance(value, dict) and not (value and value.keys() <= _SIDES):
+        if isinstance(value, dict) and value and not value.keys() <= _SIDES:
             yield from _flat(value, f"{prefix}{key}_")
         else:
             yield f"{prefix}{key}", value
 
 
 def _requirement(name: str, limit: object, source: str) -> FigureRequirement:
+    limits: Nested = limit if isinstance(limit, dict) else {"at_most": limit}
+    if not limits:
+        raise TableError(f"{source}: requirement.{name} has no limit: give a number, at_least or at_most")
     figure = SHORT.get(name, name)
     if figure not in NUMBERS:
         hint = did_you_mean(figure, [*SHORT, *NUMBERS]) or f": one is {next(iter(SHORT))}"
         raise TableError(f"{source}: requirement.{name} is no figure of a run{hint}")
-    limits: Nested = limit if isinstance(limit, dict) else {"at_most": limit}
     for side, value in limits.items():
         if isinstance(value, bool) or not isinstance(value, int | float) or not -inf < value < inf:
             where = f"requirement.{name}" + (f".{side}" if isinstance(limit, dict) else "")

@@ -12,6 +12,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from sim.campaign.code_digest import code_digest
 from sim.campaign.one_run import RunTask, lost_run
 from sim.campaign.results.row import RunRow
 from sim.errors import FlightError, HarnessError, needing
@@ -37,7 +38,7 @@ class Cluster:
         """The rows of the runs, chunk by chunk as they come.
 
         Raises:
-            HarnessError: the package is missing, there is no scheduler, or a worker has another torquer.
+            HarnessError: the package is missing, there is no scheduler, or a worker has other code.
             ClusterLostError: the scheduler ended.
         """
         with needing("--scheduler", "distributed", "cluster"):
@@ -59,10 +60,11 @@ class Cluster:
             yield from self._chunks(client, task, runs, threads)
 
     def _ready(self, client: Any) -> int:  # noqa: ANN401  (of an extra)
-        """The number of worker threads; every worker has this torquer."""
+        """The number of worker threads; every worker has this code."""
         try:
             client.wait_for_workers(1, timeout=WORKERS_S)
             versions = client.run(version, "torquer")
+            digests = client.run(code_digest)
         except TimeoutError:
             raise HarnessError(
                 f"--scheduler {self.scheduler}: it has had no worker for {WORKERS_S:.0f} s"
@@ -73,6 +75,12 @@ class Cluster:
         for worker, theirs in versions.items():
             if theirs != ours:
                 raise HarnessError(f"--scheduler: {worker} has torquer {theirs}, and this is {ours}")
+        for worker, digest in digests.items():
+            if digest != code_digest():
+                raise HarnessError(
+                    f"--scheduler: {worker} has other code of torquer {ours}, of digest {digest}, this is "
+                    f"{code_digest()}"
+                )
         return sum(client.nthreads().values())
 
     def _chunks(

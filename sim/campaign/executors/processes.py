@@ -15,7 +15,7 @@ from types import ModuleType
 
 from sim.campaign.one_run import RunTask, lost_run
 from sim.campaign.results.row import RunRow
-from sim.campaign.runner import children_ignore_interrupt, end_children
+from sim.campaign.runner import children_ignore_interrupt, end_workers
 
 MOST_LOSSES = 3
 """A run whose worker was ended this many times is given up."""
@@ -49,7 +49,6 @@ class Processes:
 
         Runs that were in flight at a loss are flown one at a time, which shows the one that causes it.
         """
-        others = multiprocessing.active_children()
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one run, one core
         workers = min(self.workers, len(waiting))
         context = multiprocessing.get_context("spawn")
@@ -67,7 +66,7 @@ class Processes:
             except BrokenProcessPool:
                 return
             finally:
-                end_children(others)  # breaks the pool, which is then joined
+                end_workers(pool)  # breaks the pool, which is then joined
 
 
 @contextmanager

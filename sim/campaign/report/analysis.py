@@ -10,7 +10,7 @@ from sim.campaign.definition.requirements import FigureRequirement
 from sim.campaign.one_run import ERROR_HISTORY
 from sim.campaign.results.row import Status
 from sim.campaign.results.store import Results
-from sim.statistics.indices import INDICES, IndexPercentile, Interpretation, table
+from sim.statistics.indices import INDICES, POINTS, IndexPercentile, Interpretation, table
 from sim.statistics.order_statistics import Percentile, percentile
 from sim.statistics.proportion import Proportion, clopper_pearson
 from sim.statistics.sensitivity import RankCorrelation, spearman
@@ -24,27 +24,33 @@ WORST = 5
 
 @dataclass(frozen=True, slots=True)
 class FigureStatistics:
-    """A figure over all runs that have it.
+    """A figure over all runs.
 
     Attributes:
         name: its column.
-        values: of the runs, in order of their number.
+        values: of the runs that have it, in order of their number.
         runs: these numbers.
-        percentiles: 5 %, 50 %, and the probability of the campaign.
+        ranked: of all runs in order; one that failed or has no such figure counts as the worst, infinite.
+        percentiles: of all runs: 5 %, 50 %, and the probability of the campaign.
         requirement: the limits; None if there are none.
     """
 
     name: str
     values: Array
     runs: NDArray[np.int64]
+    ranked: Array
     percentiles: tuple[Percentile, ...]
     requirement: FigureRequirement | None
 
     @property
     def worst_first(self) -> NDArray[np.int64]:
         """Places of the runs, the worst first: the largest value, or the least where that is limited."""
-        falls = self.requirement is not None and self.requirement.at_most == np.inf
-        return np.argsort(self.values if falls else -self.values, kind="stable")
+        return np.argsort(self.values if falls(self.requirement) else -self.values, kind="stable")
+
+    @property
+    def without(self) -> int:
+        """How many runs have no such figure."""
+        return len(self.ranked) - len(self.values)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +71,12 @@ class CampaignAnalysis:
         success: runs that meet all requirements, of those that have a result; a failed one does not.
         by_requirement: the same for each requirement.
         figures: the first is the one that runs are ranked by.
-        indices: percentiles of each pointing index; empty without runs.
-        profiles: of each index, (runs, points).
+        indices: percentiles of each pointing index over all runs.
+        profiles: of each index, (runs that were flown, points).
         inputs: numeric inputs by column, of the runs that were flown.
         sensitivities: the strongest first.
         errors: pointing error over time by run.
+        orbits: how long each of these runs was.
     """
 
     done: int
@@ -82,6 +89,7 @@ class CampaignAnalysis:
     inputs: dict[str, Array]
     sensitivities: tuple[Sensitivity, ...]
     errors: dict[int, Array]
+    orbits: Array
 
 
 def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
@@ -92,16 +100,15 @@ def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
     total = len(done) + len(failures)
     limited = {entry.figure: entry for entry in campaign.requirements}
     names = list(dict.fromkeys((*limited, *MAIN_FIGURES)))
-    columns = results.numbers(names)
-    known = [_figure(name, columns[name], done, limited.get(name), campaign) for name in names]
+    columns = results.numbers((*names, "orbits"))
+    runs = np.union1d(done, list(failures)).astype(int)
+    known = [_figure(name, columns[name], done, runs, limited.get(name), campaign) for name in names]
     figures = tuple(figure for figure in known if len(figure.values))
     met = {entry: sum(map(entry.met_by, columns[entry.figure].tolist())) for entry in campaign.requirements}
     successes = int(results.numbers(("success",))["success"].sum())
     numeric = [name for name, kind in results.kinds().items() if name.startswith("input_") and kind != "TEXT"]
     inputs = results.numbers(numeric)
-    profiles = (
-        {name: np.array(list(results.profiles(name).values())) for name in INDICES} if len(done) else {}
-    )
+    profiles = {name: np.array(list(results.profiles(name).values())).reshape(-1, POINTS) for name in INDICES}
     return CampaignAnalysis(
         done=len(done),
         failures=failures,
@@ -110,28 +117,37 @@ def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
             entry: clopper_pearson(count, total, settings.confidence) for entry, count in met.items()
         },
         figures=figures,
-        indices=table(profiles, settings.probability, settings.confidence),
+        indices=table(profiles, settings.probability, settings.confidence, len(failures)),
         profiles=profiles,
         inputs=inputs,
         sensitivities=_sensitivities(inputs, columns[figures[0].name], settings.confidence)
         if figures
         else (),
         errors=results.profiles(ERROR_HISTORY),
+        orbits=np.where(np.isfinite(columns["orbits"]), columns["orbits"], campaign.base["time"]["orbits"]),
     )
 
 
 def _figure(
     name: str,
     column: Array,
+    done: NDArray[np.int64],
     runs: NDArray[np.int64],
     requirement: FigureRequirement | None,
     campaign: Campaign,
 ) -> FigureStatistics:
     known = np.isfinite(column)
     values, settings = column[known], campaign.statistics
+    ranked = np.full(len(runs), -np.inf if falls(requirement) else np.inf)
+    ranked[np.searchsorted(runs, done[known])] = values
     wanted = sorted({0.05, 0.5, settings.probability}) if len(values) else []
-    percentiles = tuple(percentile(values, each, settings.confidence) for each in wanted)
-    return FigureStatistics(name, values, runs[known], percentiles, requirement)
+    percentiles = tuple(percentile(ranked, each, settings.confidence) for each in wanted)
+    return FigureStatistics(name, values, done[known], ranked, percentiles, requirement)
+
+
+def falls(requirement: FigureRequirement | None) -> bool:
+    """Whether a figure is the worse the less it is."""
+    return requirement is not None and requirement.at_most == np.inf
 
 
 def _sensitivities(inputs: dict[str, Array], results: Array, confidence: float) -> tuple[Sensitivity, ...]:

@@ -13,9 +13,10 @@ def suites(
     """Each requirement and each limit on an index as a test; then that all runs flew and kept the limits."""
     failed = "; ".join(f"run {run}: {why}" for run, why in analysis.failures.items())
     kept = ", ".join(f"run {run}" for run in broken)
+    unflown = "" if analysis.done else "no run was flown"
     runs = [
         JunitCase("campaign.runs", "every run flew", failure=failed),
-        JunitCase("campaign.runs", "every run kept the limits of the coils", failure=kept),
+        JunitCase("campaign.runs", "every run kept the limits of the coils", failure=kept, skipped=unflown),
     ]
     return {
         "requirements": [_test(one) for one in verdicts if one.group == "requirement"],

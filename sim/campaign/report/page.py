@@ -6,7 +6,7 @@ from pathlib import Path
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report import pictures, text
 from sim.campaign.report.analysis import CampaignAnalysis
-from sim.campaign.report.verdicts import verdicts
+from sim.campaign.report.verdicts import value_words, verdicts
 from sim.drawing.canvas import style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import PageHeader, PageSection, Tile, sections_page
@@ -23,7 +23,7 @@ def write_page(path: Path, campaign: Campaign, analysis: CampaignAnalysis, versi
         "Campaign",
         campaign.name,
         facts=[
-            f"{runs} of {campaign.runs} runs of {campaign.base['time']['orbits']:g} orbits",
+            f"{runs} of {campaign.runs} runs of {text.length(campaign, analysis)}",
             f"scenario {campaign.base['name']}",
             f"seed {campaign.seed}",
             f"{len(analysis.inputs)} dispersed numbers",
@@ -51,7 +51,7 @@ def _badges(campaign: Campaign, analysis: CampaignAnalysis) -> list[tuple[str, s
 def _tiles(campaign: Campaign, analysis: CampaignAnalysis) -> list[Tile]:
     probability = campaign.statistics.probability
     return [
-        Tile(figure.name.replace("_", " "), f"{found.value:.4g}", f"{100.0 * probability:g} % of runs")
+        Tile(figure.name.replace("_", " "), value_words(found.value), f"{100.0 * probability:g} % of runs")
         for figure in analysis.figures[:MOST_TILES]
         for found in figure.percentiles
         if found.probability == probability
@@ -68,7 +68,10 @@ def _sections(campaign: Campaign, analysis: CampaignAnalysis) -> Iterator[PageSe
     if not analysis.figures:
         return
     first = analysis.figures[0].name
-    note = f"Percentiles over runs, in brackets two-sided bounds by order statistics, {confidence}."
+    note = (
+        f"Percentiles over all runs, in brackets two-sided bounds by order statistics, {confidence}. "
+        "A run that failed or has no such figure is the worst; mean and largest are of those that have it."
+    )
     yield PageSection("figures", "Figures", note, (text.figure_table(analysis),), (
         chart("distributions", pictures.distributions(analysis),
                "Distribution of each figure, its percentiles with bounds; red: requirement."),
@@ -82,7 +85,7 @@ def _sections(campaign: Campaign, analysis: CampaignAnalysis) -> Iterator[PageSe
     ))  # fmt: skip
     note = f"By {first}. torquer sil --from DIR --run NUMBER flies one again."
     yield PageSection("worst", "Worst runs", note, (text.worst_table(analysis),), (
-        chart("worst-runs", pictures.worst_runs(analysis, campaign.base["time"]["orbits"]),
+        chart("worst-runs", pictures.worst_runs(analysis),
                "Pointing error over the flight, RMS of short stretches."),
     ))  # fmt: skip
     if any(each.correlation for each in analysis.sensitivities):

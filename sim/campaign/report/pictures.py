@@ -1,5 +1,6 @@
 """The pictures of a campaign."""
 
+from collections.abc import Sequence
 from math import ceil
 from textwrap import wrap
 
@@ -10,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from sim.campaign.definition.campaign import IndexLimits, StatisticsSection
-from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics
+from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics, falls
 from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, MORE_COLOURS, MUTED, WIDTH_IN, legend, log_x, log_y
 from sim.statistics.convergence import convergence
 from sim.statistics.order_statistics import Percentile
@@ -35,9 +36,9 @@ def distributions(analysis: CampaignAnalysis) -> Figure:
         bins = min(MOST_BINS, max(6, round(2.0 * len(shown.values) ** 0.5)))
         panel.hist(shown.values, bins=bins, color=BAR, edgecolor="white", linewidth=0.4)
         for number, found in enumerate(shown.percentiles):
-            _mark(panel, found, number)
+            _mark(panel, found, number, float(shown.values.max()))
         _limits(panel, shown)
-        panel.set_title(shown.name)
+        panel.set_title(_title(shown))
         panel.set_ylabel("runs")
         panel.yaxis.set_major_locator(MaxNLocator(integer=True))
     return figure
@@ -49,16 +50,17 @@ def cumulative(analysis: CampaignAnalysis, confidence: float) -> Figure:
     for panel, shown in zip(panels, analysis.figures, strict=False):
         values, count = np.sort(shown.values), len(shown.values)
         steps = np.unique(np.linspace(1, count, min(count, MOST_STEPS)).round().astype(int))
-        bounds = [clopper_pearson(int(step), count, confidence) for step in steps]
+        below = steps + (shown.without if falls(shown.requirement) else 0)
+        bounds = [clopper_pearson(int(step), len(shown.ranked), confidence) for step in below]
         x = values[steps - 1]
         low, high = [each.low for each in bounds], [each.high for each in bounds]
         panel.fill_between(
             x, low, high, step="post", color=BAND, linewidth=0.0, label=f"{100.0 * confidence:g} % bounds"
         )
-        panel.step(x, steps / count, where="post", color=AXES_COLOURS[0], label="part of runs")
+        panel.step(x, below / len(shown.ranked), where="post", color=AXES_COLOURS[0], label="part of runs")
         _limits(panel, shown)
         panel.set_ylim(0.0, 1.02)
-        panel.set_title(shown.name)
+        panel.set_title(_title(shown))
         legend(panel)
     return figure
 
@@ -115,14 +117,17 @@ def scatter(analysis: CampaignAnalysis) -> Figure:
     return figure
 
 
-def worst_runs(analysis: CampaignAnalysis, orbits: float) -> Figure:
-    """The pointing error of the worst runs over that of all: median, half and nine tenths of the runs."""
+def worst_runs(analysis: CampaignAnalysis) -> Figure:
+    """The pointing error of the worst runs over that of all: median, half and nine tenths of the runs.
+
+    Where runs differ in length, those of the runs that last as long.
+    """
     figure = Figure(figsize=(WIDTH_IN, PANEL_IN + 0.9), layout="constrained")
     panel = figure.subplots()
-    errors = np.array(list(analysis.errors.values()))
+    x, errors = over_time(list(analysis.errors.values()), analysis.orbits)
     runs, first = list(analysis.errors), analysis.figures[0]
-    x = (np.arange(errors.shape[1]) + 0.5) * orbits / errors.shape[1]
-    low, quarter, middle, three, high = np.quantile(errors, (0.05, 0.25, 0.5, 0.75, 0.95), axis=0)
+    quantile = np.nanquantile if np.isnan(errors).any() else np.quantile
+    low, quarter, middle, three, high = quantile(errors, (0.05, 0.25, 0.5, 0.75, 0.95), axis=0)
     panel.fill_between(x, low, high, color="#e4edf5", linewidth=0.0, label="90 % of runs")
     panel.fill_between(x, quarter, three, color=BAND, linewidth=0.0, label="50 %")
     panel.plot(x, middle, color=INK, label="median")
@@ -140,19 +145,45 @@ def worst_runs(analysis: CampaignAnalysis, orbits: float) -> Figure:
     return figure
 
 
+def over_time(errors: Sequence[Array], orbits: Array) -> tuple[Array, Array]:
+    """The errors of all runs at the same times.
+
+    Args:
+        errors: of each run, the RMS of its stretches; their number may differ.
+        orbits: the length of each run.
+
+    Returns:
+        Times in orbits, and the errors at them, (runs, times); NaN after the end of a run.
+    """
+    points = max(map(len, errors))
+    x = _middles(points, float(orbits.max()))
+    rows = [
+        np.where(x <= length, np.interp(x, _middles(len(error), length), error), np.nan)
+        for error, length in zip(errors, orbits.tolist(), strict=True)
+    ]
+    return x, np.array(rows)
+
+
+def _middles(count: int, length: float) -> Array:
+    """The middles of ``count`` stretches."""
+    return (np.arange(count) + 0.5) * length / count
+
+
 def converging(analysis: CampaignAnalysis, settings: StatisticsSection) -> Figure:
     """The percentile of the first figure by number of runs."""
     figure = Figure(figsize=(WIDTH_IN, PANEL_IN + 0.4), layout="constrained")
     panel = figure.subplots()
     first = analysis.figures[0]
     probability, confidence = settings.probability, settings.confidence
-    found = convergence(first.values, probability, confidence)
+    found = convergence(first.ranked, probability, confidence)
     least, largest = first.values.min(), first.values.max()
-    low, high = np.nan_to_num(found.low, nan=least), np.nan_to_num(found.high, nan=largest)
+    low = np.clip(np.nan_to_num(found.low, nan=least), least, largest)
+    high = np.clip(np.nan_to_num(found.high, nan=largest), least, largest)
     bounds = f"{100.0 * confidence:g} % bounds, all values where runs are too few for one"
     panel.fill_between(found.runs, low, high, color=BAND, linewidth=0.0, label=bounds)
+    value = np.where(np.isfinite(found.value), found.value, np.nan)
     panel.plot(
-        found.runs, found.value, color=AXES_COLOURS[0], label=f"{100.0 * probability:g} % of the runs so far"
+        found.runs, value, color=AXES_COLOURS[0], label=f"{100.0 * probability:g} % of the runs so far"
     )
     panel.set_xlabel("runs")
     panel.set_ylabel(first.name)
@@ -178,10 +209,18 @@ def _words(column: str) -> list[str]:
     return [line.replace(" ", "") for line in lines]
 
 
-def _mark(panel: Axes, found: Percentile, number: int) -> None:
+def _title(shown: FigureStatistics) -> str:
+    return shown.name + (f"\n{shown.without} of {len(shown.ranked)} runs have none" if shown.without else "")
+
+
+def _mark(panel: Axes, found: Percentile, number: int, largest: float) -> None:
     colour = (MUTED, INK, AXES_COLOURS[1])[min(number, 2)]
     if found.low is not None and found.high is not None:
-        panel.axvspan(found.low, found.high, color=colour, alpha=0.15, linewidth=0.0)
+        panel.axvspan(
+            min(found.low, largest), min(found.high, largest), color=colour, alpha=0.15, linewidth=0.0
+        )
+    if not np.isfinite(found.value):
+        return
     panel.axvline(found.value, color=colour, linewidth=1.0)
     panel.annotate(
         f"{100.0 * found.probability:g} %", (found.value, 1.0), (2.0, -8.0 - 9.0 * number),

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics
-from sim.campaign.report.verdicts import WORDS, meets, proportion, verdicts
+from sim.campaign.report.verdicts import WORDS, meets, proportion, value_words, verdicts
 from sim.drawing.page_parts import Table
 from sim.statistics.indices import IndexPercentile, Interpretation
 from sim.statistics.order_statistics import Percentile, runs_needed
@@ -16,6 +16,8 @@ INDEX_NAMES = {
     "rpe": "RPE, relative performance error",
     "ake": "AKE, absolute knowledge error",
 }
+ALIKE = 0.01
+"""Runs whose length differs by less than this part have the scenario's: it is rounded to ticks."""
 STRONGEST = 3
 """Most dependences listed on the terminal."""
 _ABSENT = "–"
@@ -23,8 +25,8 @@ _ABSENT = "–"
 
 def lines(campaign: Campaign, analysis: CampaignAnalysis) -> list[str]:
     """A few lines for the terminal."""
-    orbits = campaign.base["time"]["orbits"]
-    heading = f"{campaign.name}: {analysis.done + len(analysis.failures)} runs of {orbits:g} orbits"
+    runs = analysis.done + len(analysis.failures)
+    heading = f"{campaign.name}: {runs} runs of {length(campaign, analysis)}"
     rows = [heading, f"  success    {proportion(analysis.success, campaign)}"]
     rows += [f"  required   {one}" for one in verdicts(campaign, analysis) if one.group == "requirement"]
     rows += [f"  {figure.name}: {_percentiles(figure)}" for figure in analysis.figures]
@@ -48,6 +50,16 @@ def lines(campaign: Campaign, analysis: CampaignAnalysis) -> list[str]:
         run, why = next(iter(analysis.failures.items()))
         rows.append(f"  failed     {len(analysis.failures)}, first run {run}: {why}")
     return rows
+
+
+def length(campaign: Campaign, analysis: CampaignAnalysis) -> str:
+    """How long the runs are: the range where they differ from the scenario's length."""
+    nominal = float(campaign.base["time"]["orbits"])
+    shortest, longest = (analysis.orbits.min(), analysis.orbits.max()) if analysis.done else (nominal,) * 2
+    if max(abs(shortest - nominal), abs(longest - nominal)) <= ALIKE * nominal:
+        return f"{nominal:g} orbits"
+    least, most = f"{shortest:.3g}", f"{longest:.3g}"
+    return f"{least} orbits" if least == most else f"{least} to {most} orbits"
 
 
 def requirement_table(campaign: Campaign, analysis: CampaignAnalysis) -> Table:
@@ -74,7 +86,7 @@ def figure_table(analysis: CampaignAnalysis) -> Table:
     rows = [
         (
             figure.name,
-            str(len(figure.values)),
+            f"{len(figure.values)}" + (f" of {len(figure.ranked)}" if figure.without else ""),
             f"{figure.values.mean():.4g}",
             *map(with_bounds, figure.percentiles),
             f"{figure.values.max():.4g}",
@@ -97,9 +109,9 @@ def index_table(campaign: Campaign, analysis: CampaignAnalysis) -> Table:
 
 def _index_cell(found: IndexPercentile, how: Interpretation, limit: float | None) -> str:
     """The percentile, its bound where it has one of its own, and the verdict."""
-    bound = "" if how is Interpretation.TEMPORAL else f" (bound {_bound(found.bound)})"
+    bound = "" if how is Interpretation.TEMPORAL else f" (bound {value_words(found.bound)})"
     verdict = "" if limit is None else f": {WORDS[found.within(limit)]}"
-    return f"{found.value:.4g}{bound}{verdict}"
+    return f"{value_words(found.value)}{bound}{verdict}"
 
 
 def index_note(campaign: Campaign, analysis: CampaignAnalysis) -> str:
@@ -114,7 +126,7 @@ def index_note(campaign: Campaign, analysis: CampaignAnalysis) -> str:
         f"Ensemble: at all times in {percent} of the runs. Mixed: at {percent} of all times of all runs. "
         f"Temporal: at {percent} of the time in the worst of these runs, which bounds {100.0 * held:.1f} % "
         "of the ensemble. "
-        f"Bounds are one-sided with {confidence} confidence; that of the ensemble needs {needed} runs."
+        f"Bounds are one-sided with {confidence} confidence; those of ensemble and mixed need {needed} runs."
     )
 
 
@@ -155,12 +167,8 @@ def failure_table(analysis: CampaignAnalysis) -> Table:
 
 
 def with_bounds(found: Percentile) -> str:
-    """A percentile with its bounds; a dash where there are too few runs for one."""
-    return f"{found.value:.4g} ({_bound(found.low)} to {_bound(found.high)})"
-
-
-def _bound(value: float | None) -> str:
-    return _ABSENT if value is None else f"{value:.4g}"
+    """A percentile with its bounds."""
+    return f"{value_words(found.value)} ({value_words(found.low)} to {value_words(found.high)})"
 
 
 def _value_of(figure: FigureStatistics, run: int) -> str:

@@ -6,13 +6,22 @@ from typing import Any
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report.analysis import CampaignAnalysis, FigureStatistics
 from sim.campaign.report.verdicts import meets, verdicts
+from sim.console import plain
 from sim.statistics.proportion import Proportion
 
 Json = dict[str, Any]
 
 
 def as_json(campaign: Campaign, analysis: CampaignAnalysis) -> Json:
-    """The figures of the page; a bound for which there are too few runs is None."""
+    """The figures of the page.
+
+    A bound for which there are too few runs is None, and so is a percentile that falls on runs without value.
+    """
+    values: Json = plain(_values(campaign, analysis))
+    return values
+
+
+def _values(campaign: Campaign, analysis: CampaignAnalysis) -> Json:
     return {
         "name": campaign.name,
         "runs": analysis.done + len(analysis.failures),
@@ -45,6 +54,7 @@ def _proportion(found: Proportion) -> Json:
 def _figure(figure: FigureStatistics) -> Json:
     return {
         "runs": len(figure.values),
+        "without": figure.without,
         "mean": float(figure.values.mean()),
         "largest": float(figure.values.max()),
         "percentiles": {f"{each.probability:g}": asdict(each) for each in figure.percentiles},

@@ -1,5 +1,6 @@
 """Each requirement of a campaign, and each limit on an index: met, missed, or undecided without more runs."""
 
+from math import isfinite
 from typing import NamedTuple
 
 from sim.campaign.definition.campaign import Campaign
@@ -55,13 +56,20 @@ def verdicts(campaign: Campaign, analysis: CampaignAnalysis) -> list[CampaignVer
             "index",
             f"{name} <= {limit:g} deg, {how}",
             found.within(limit),
-            f"it is {found.value:.4g} deg",
+            f"it is {found.value:.4g} deg" if isfinite(found.value) else "it falls on runs that failed",
         )
         for name, percentiles in analysis.indices.items()
         if (limit := getattr(campaign.index, name)) is not None
         for how, found in percentiles.items()
     ]
     return requirements + indices
+
+
+def value_words(value: float | None) -> str:
+    """A percentile or bound: a dash where runs are too few, words where it falls on runs without any."""
+    if value is None:
+        return "–"
+    return f"{value:.4g}" if isfinite(value) else "no value"
 
 
 def proportion(found: Proportion, campaign: Campaign) -> str:

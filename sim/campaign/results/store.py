@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.campaign.code_digest import code_digest
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.definition.columns import NUMBERS, TEXTS, Cell, input_cells
 from sim.campaign.results.row import RunRow, Status
@@ -23,6 +24,8 @@ from sim.errors import HarnessError
 from sim.record.run_dir import fingerprint
 
 RESULTS, LOCK = "results.sqlite", "campaign.lock"
+CODE = "code_digest"
+"""Key in ``meta`` of the digest of the code that began the campaign; results of before it have none."""
 SCHEMA_VERSION = 1
 DIGESTS = ("frames_sha256", "commands_sha256")
 FIGURES = dict.fromkeys(NUMBERS, "REAL") | dict.fromkeys((*TEXTS, *DIGESTS), "TEXT")
@@ -182,6 +185,7 @@ def _create(results: Results, campaign: Campaign) -> None:
     meta = {
         "schema_version": str(SCHEMA_VERSION),
         "torquer_version": version("torquer"),
+        CODE: code_digest(),
         "campaign_sha256": campaign.digest,
         "platform": json.dumps(fingerprint()),
     }

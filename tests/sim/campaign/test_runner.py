@@ -53,6 +53,24 @@ class TestRunner:
         assert not multiprocessing.active_children()
 
 
+@pytest.mark.long
+def test_a_process_that_a_study_did_not_start_outlives_one_that_fails():
+    other = multiprocessing.get_context("spawn").Process(target=time.sleep, args=(60.0,))
+
+    def start_another(done):
+        other.start()
+
+    tasks = (partial(int, 1), partial(time.sleep, 60.0), partial(int, "no number"))
+    try:
+        with pytest.raises(ValueError, match="no number"):
+            run([Study("x", tasks, lambda results: [])], 2, start_another, lambda done: None)
+        assert other.is_alive()
+        assert multiprocessing.active_children() == [other]
+    finally:
+        other.terminate()
+        other.join()
+
+
 def ended_from_outside():
     os.kill(os.getpid(), signal.SIGKILL)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.special import ndtri
+from scipy.special import ndtri, stdtrit
 
 from sim.statistics.indices import POINTS, Interpretation, index_histories, percentile, profile, table
 
@@ -94,3 +94,80 @@ def test_one_run_has_no_bound_and_a_table_has_every_index():
     found = table(profiles, 0.9, 0.9)
     assert found["ape"][MIXED].bound is None
     assert found["mpe"][TEMPORAL].value == pytest.approx(1.8, rel=0.01)
+
+
+@pytest.mark.parametrize("probability", [0.5, 0.9, 0.95, 0.99, 0.998])
+@pytest.mark.parametrize("how", [TEMPORAL, MIXED])
+def test_a_probability_over_time_is_taken_where_it_is_stated(how, probability):
+    """The index is uniform from 0 to 1: its percentile is the probability."""
+    found = percentile(profiles_of([1.0], size=400_000), how, probability, 0.9)
+    assert found.value == pytest.approx(probability, abs=1e-5)
+
+
+@pytest.mark.parametrize("how", [TEMPORAL, MIXED])
+def test_above_the_last_quantile_the_largest_value_counts(how):
+    values = np.append(np.linspace(0.0, 1.0, 99_999), 50.0)
+    assert percentile(profile(values)[None], how, 0.9999, 0.9).value == 50.0
+
+
+def test_few_values_over_time_are_no_less_than_what_holds():
+    """Of nine windows, only the largest value holds for 95 % of them."""
+    assert percentile(profile(np.arange(9.0))[None], TEMPORAL, 0.95, 0.9).value == 8.0
+
+
+@pytest.mark.parametrize("runs", [1, 2, 5, 44])
+@pytest.mark.parametrize("spread", [0.0, 1.0])
+def test_few_runs_have_no_bound_of_mixed(runs, spread):
+    """ln(1 - 0.9) / ln 0.95 is 45 runs, alike or not."""
+    found = percentile(profiles_of(1.0 + spread * np.arange(runs)), MIXED, 0.95, 0.9)
+    assert found.bound is None
+    assert found.within(1e3) is None
+
+
+QUANTILES = ndtri((np.arange(POINTS - 1) + 0.5) / (POINTS - 1))
+
+
+@pytest.mark.parametrize("runs", [45, 100])
+@pytest.mark.parametrize(("between", "within"), [(1.0, 0.001), (1.0, 0.3), (1.0, 1.0), (0.3, 1.0)])
+def test_the_bound_of_mixed_covers_the_truth_however_much_runs_differ(runs, between, within):
+    """The pool is Gaussian with the variance between runs and that within."""
+    random, truth = np.random.default_rng(12), np.hypot(between, within) * ndtri(0.95)
+    covered, trials = 0, 150
+    for _ in range(trials):
+        pool = between * random.normal(size=(runs, 1)) + within * QUANTILES
+        bound = percentile(np.hstack((pool, pool[:, -1:])), MIXED, 0.95, 0.9).bound
+        covered += bound is None or bound >= truth
+    assert covered / trials > 0.85  # 0.9 as stated, less two standard deviations of the trials
+
+
+def test_the_bound_of_mixed_uses_students_quantile():
+    """Half of the runs up to the value, half above it: the deviation is 0.5 sqrt(n / (n - 1))."""
+    levels = np.repeat([1.0, 2.0], 4)
+    pool = levels[:, None] * np.ones(POINTS) + np.linspace(0.0, 0.5, POINTS)
+    found = percentile(pool, MIXED, 0.5, 0.9)
+    shift = stdtrit(7, 0.9) * 0.5 * (8.0 / 7.0) ** 0.5 / 8.0**0.5
+    assert found.bound == pytest.approx(np.quantile(pool[:, :-1], 0.5 + shift, method="hazen"))
+
+
+@pytest.mark.parametrize("how", list(Interpretation))
+def test_a_limit_is_missed_where_more_runs_failed_than_it_leaves(how):
+    found = percentile(profiles_of(np.full(90, 1.0)), how, 0.9, 0.9, failed=11)
+    assert found.value == np.inf
+    assert found.within(5.0) is False
+
+
+@pytest.mark.parametrize("how", list(Interpretation))
+def test_with_some_runs_failed_a_limit_is_not_met(how):
+    found = percentile(profiles_of(np.full(90, 1.0)), how, 0.9, 0.9, failed=10)
+    assert found.value <= 1.0
+    assert found.within(5.0) is None
+
+
+def test_with_few_runs_failed_most_of_the_ensemble_still_meets_a_limit():
+    found = percentile(profiles_of(np.full(98, 1.0)), ENSEMBLE, 0.9, 0.9, failed=2)
+    assert found.within(5.0) is True
+
+
+@pytest.mark.parametrize("how", list(Interpretation))
+def test_where_no_run_was_flown_nothing_is_met(how):
+    assert percentile(np.empty((0, POINTS)), how, 0.95, 0.9, failed=3).within(5.0) is False

@@ -10,6 +10,7 @@ from sim.statistics.order_statistics import (
     least_part_bounded,
     lower_bound,
     percentile,
+    quantile,
     runs_needed,
     upper_bound,
 )
@@ -64,3 +65,26 @@ def test_a_percentile_without_enough_runs_has_no_bound_on_that_side():
     assert found.high is None
     assert found.low is not None
     assert found.value == pytest.approx(8.55)
+
+
+@pytest.mark.parametrize("probability", [0.0, 0.05, 0.5, 0.77, 0.95, 1.0])
+@pytest.mark.parametrize(("middles", "method"), [(False, "linear"), (True, "hazen")])
+def test_a_quantile_of_finite_values_is_linear_between_them(probability, middles, method):
+    values = np.random.default_rng(4).normal(size=41)
+    expected = np.quantile(values, probability, method=method)
+    assert quantile(values, probability, middles) == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_quantile_between_a_value_and_an_infinite_one_is_what_the_part_does_not_exceed():
+    values = np.append(np.arange(38.0), [np.inf, np.inf])
+    assert quantile(values, 0.95) == 37.0, "38 of 40"
+    assert quantile(values, 0.951) == np.inf
+    assert quantile(-values, 0.05) == -np.inf
+    assert quantile(np.full(3, np.inf), 0.5) == np.inf
+
+
+@pytest.mark.parametrize(("count", "above"), [(10, 1), (40, 2), (40, 39)])
+def test_what_all_but_some_values_bound_is_a_binomial_sum(count, above):
+    part = least_part_bounded(count, 0.9, above)
+    assert confidence_of(count - above, count, part) == pytest.approx(0.9)
+    assert least_part_bounded(count, 0.9, count) == 0.0

@@ -4,6 +4,7 @@ import pytest
 
 from fsw.input.schema import TableError
 from sim.campaign.definition.campaign_file import load_campaign
+from sim.campaign.definition.columns import input_cells
 from sim.errors import HarnessError
 
 HEAD = 'scenario = "microsat"\nruns = 2\n'
@@ -72,6 +73,17 @@ REFUSED = {
         disperse(BACKOFF, 'distribution = "choice"\nvalues = ["shared", 1]'),
         "values must be all numbers",
     ),
+    "tables": (
+        disperse(
+            "sensors.magnetometer",
+            'distribution = "choice"\nvalues = [{noise_nt = 1.0}, {bias_nt = [1, 2, 3]}]',
+        ),
+        "disperse.0.*tables with the same keys",
+    ),
+    "text and number in a table": (
+        disperse("control", 'distribution = "choice"\nvalues = [{k_w = 1.0}, {k_w = "x"}]'),
+        "disperse.0.*tables with the same keys",
+    ),
     "weights": (
         disperse(BACKOFF, 'distribution = "choice"\nvalues = ["shared"]\nweights = [1.0, 2.0]'),
         "weights must be as many as values",
@@ -95,6 +107,18 @@ REFUSED = {
         "gives initial.angle_deg twice",
     ),
     "requirement": (HEAD + "requirement.pointing = 3.0", "requirement.pointing is no figure .*'pointing_deg"),
+    "one figure twice": (
+        HEAD + "requirement.pointing_deg = 3.0\nrequirement.pointing_deg_rms_last_orbit = 9.0",
+        "_rms_last_orbit has two entries, requirement.pointing_deg and requirement.pointing_deg_rms_last_",
+    ),
+    "one figure twice by dots": (
+        HEAD + "requirement.nees_mean = 3.0\n[requirement.nees]\nmean.at_least = 1.0",
+        "nees_mean has two entries",
+    ),
+    "no limit": (
+        HEAD + "[requirement.pointing_deg]",
+        "requirement.pointing_deg has no limit: give a number, at_least or at_most",
+    ),
     "limit": (
         HEAD + 'requirement.pointing_deg = "x"',
         "pointing_deg = 'x' is not allowed: allowed is a number",
@@ -138,3 +162,13 @@ def test_a_scenario_file_lies_beside_its_campaign(tmp_path):
     path.write_text('scenario = "mine.toml"\nruns = 2')
     assert load_campaign(str(path), {}, {}).name == "mine"
     assert load_campaign(str(tmp_path / "mine.toml"), {}, {}).name == "mine"
+
+
+def test_a_choice_of_tables_with_the_same_keys_has_their_columns(tmp_path):
+    path = tmp_path / "tables.toml"
+    values = "[{noise_nt = 1.0, bias_nt = [1.0, 2.0, 3.0]}, {noise_nt = 2.0, bias_nt = [0.0, 0.0, 0.0]}]"
+    path.write_text(disperse("sensors.magnetometer", f'distribution = "choice"\nvalues = {values}'))
+    campaign = load_campaign(str(path), {}, {})
+    columns = {tuple(input_cells(campaign.draw(run).inputs)) for run in range(20)}
+    assert len(columns) == 1
+    assert "input_sensors_magnetometer_noise_nt" in columns.pop()

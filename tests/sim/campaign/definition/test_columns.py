@@ -3,6 +3,7 @@
 import pytest
 
 from sim.campaign.definition.columns import NUMBERS, TEXTS, cells, input_cells
+from sim.campaign.definition.requirements import FigureRequirement
 from sim.campaign.flight import record_scenario
 from sim.scenario.schema import load
 
@@ -14,7 +15,7 @@ SUMMARY = {
     "estimate_deg": {"within_3sigma": None},
     "parameters": {"delay_s": {"value": [0.5, 0.25], "sigma": [0.1, 0.2], "bound": [1.0, 1.0]}},
     "mode_final": "POINT",
-    "requirements": [{"verdict": "met"}, {"verdict": "failed"}, {"verdict": "not judged"}],
+    "requirements": [{"verdict": "met"}, {"verdict": "failed"}],
     "isolated": ["coil 1", "sun sensor"],
     "events": [{}, {}, {}],
 }
@@ -43,6 +44,15 @@ def test_keys_become_columns():
         "isolated_units": 2,
         "event_count": 3,
     }
+
+
+def test_failed_requirements_are_not_counted_while_one_is_not_judged():
+    """A limit on their number is not met then."""
+    unjudged = SUMMARY | {"requirements": [{"verdict": "met"}, {"verdict": "not judged"}]}
+    failed = cells(unjudged)["requirements_failed"]
+    assert failed is None
+    assert not FigureRequirement("requirements_failed", at_most=0.0).met_by(failed)
+    assert cells(SUMMARY | {"requirements": []})["requirements_failed"] == 0
 
 
 SHARED = {"scenario", "seed", "wall_seconds", "realtime_factor", "events"}

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from sim.campaign.code_digest import code_digest
 from sim.campaign.executors.cluster import Cluster, ClusterLostError
 from sim.campaign.one_run import Keep, RunTask
 from sim.campaign.results.row import RunRow, Status
@@ -98,3 +99,25 @@ def test_without_the_package_it_says_what_to_install(small, monkeypatch):
     monkeypatch.setattr(builtins, "__import__", missing)
     with pytest.raises(HarnessError, match=r"torquer\[cluster\]"):
         next(Cluster("tcp://127.0.0.1:9").rows(RunTask(small, Keep.NONE, Path()), [0]))
+
+
+class OneWorker:
+    """A client whose worker has the version and the code that it is told."""
+
+    def __init__(self, digest):
+        self.digest = digest
+
+    def wait_for_workers(self, count, timeout):
+        assert count == 1
+
+    def run(self, function, *arguments):
+        return {"tcp://w": self.digest if function is code_digest else function(*arguments)}
+
+    def nthreads(self):
+        return {"tcp://w": 4}
+
+
+def test_a_worker_with_other_code_of_the_same_version_is_refused():
+    assert Cluster("s")._ready(OneWorker(code_digest())) == 4
+    with pytest.raises(HarnessError, match=r"tcp://w has other code of torquer .*, of digest 0123, this is "):
+        Cluster("s")._ready(OneWorker("0123"))

@@ -68,5 +68,20 @@ def test_a_campaign_that_is_given_up_waits_for_no_run(small):
     assert time.monotonic() - began < 30.0
 
 
+def test_a_process_that_the_campaign_did_not_start_outlives_it(small):
+    """One of another thread, say, that is started while the campaign flies."""
+    rows = Processes(1).rows(Sleeps(small, Keep.NONE, Path()), range(4))
+    next(rows)
+    other = multiprocessing.get_context("spawn").Process(target=time.sleep, args=(60.0,))
+    other.start()
+    try:
+        rows.close()
+        assert other.is_alive()
+        assert multiprocessing.active_children() == [other]
+    finally:
+        other.terminate()
+        other.join()
+
+
 def test_no_run_needs_no_worker(small):
     assert list(Processes(2).rows(RunTask(small, Keep.NONE, Path()), [])) == []

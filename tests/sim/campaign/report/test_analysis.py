@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sim.campaign.definition.requirements import FigureRequirement
 from sim.campaign.report.analysis import MAIN_FIGURES, analyse
 from sim.campaign.results.store import open_results
 from sim.statistics.indices import Interpretation
@@ -31,7 +32,7 @@ def test_figures_begin_with_what_is_required(analysis):
     assert first.requirement is not None
     assert analysis.figures[1].requirement is None
     assert [each.probability for each in first.percentiles] == [0.05, 0.5, 0.95]
-    assert first.percentiles[1].value == pytest.approx(np.median(first.values))
+    assert first.percentiles[1].value == pytest.approx(np.median(np.append(first.values, [np.inf, np.inf])))
 
 
 def test_the_worst_come_first(analysis):
@@ -52,12 +53,36 @@ def test_inputs_are_ranked_by_what_depends_on_them(analysis):
 def test_indices_are_there_under_every_interpretation(analysis):
     assert set(analysis.indices) == {"ape", "mpe", "rpe", "ake"}
     ape = analysis.indices["ape"]
-    assert ape[Interpretation.TEMPORAL].value > ape[Interpretation.MIXED].value
+    assert ape[Interpretation.ENSEMBLE].value > ape[Interpretation.TEMPORAL].value
 
 
 def test_without_a_run_that_was_flown_there_are_no_figures(small, tmp_path, failed_row):
     with open_results(tmp_path, small) as results:
         results.add(failed_row(3))
         found = analyse(small, results)
-    assert (found.done, found.figures, found.indices, found.sensitivities) == (0, (), {}, ())
+    assert (found.done, found.figures, found.sensitivities) == (0, (), ())
     assert found.success.count == 0
+    assert {each.value for index in found.indices.values() for each in index.values()} == {np.inf}
+
+
+def test_runs_without_a_figure_rank_as_the_worst(small, tmp_path, done_row):
+    """Of 20 runs, 12 have no time of convergence: half of the runs have none."""
+    wanted = replace(small, requirements=(FigureRequirement("nees_mean", at_least=2.0),))
+    with open_results(tmp_path, wanted) as results:
+        for run in range(20):
+            row = done_row(run)
+            known = {"converged_at_s": 100.0 + run, "nees_mean": 3.0 + run} if run < 8 else {}
+            results.add(replace(row, cells=row.cells | known))
+        figures = {figure.name: figure for figure in analyse(wanted, results).figures}
+    assert figures["converged_at_s"].without == 12
+    assert [each.value for each in figures["converged_at_s"].percentiles] == [100.95, np.inf, np.inf]
+    assert figures["converged_at_s"].percentiles[2].high is None
+    assert [each.value for each in figures["nees_mean"].percentiles] == [-np.inf, -np.inf, 9.05]
+    assert len(figures["pointing_deg_max_last_orbit"].ranked) == 20
+
+
+def test_a_run_that_failed_ranks_as_the_worst(analysis):
+    first = analysis.figures[0]
+    assert first.without == 2
+    assert np.flatnonzero(np.isinf(first.ranked)).tolist() == [7, 21]
+    assert first.percentiles[2].value == 78.5, "38 of 40 runs are 95 %"

@@ -76,3 +76,23 @@ def test_indices(analysis, low, high):
 
 def test_inputs_of_long_names_and_small_numbers(narrow):
     assert_readable(lambda: pictures.scatter(narrow))
+
+
+def test_runs_of_different_lengths_are_compared_at_the_same_times():
+    x, errors = pictures.over_time([np.array([4.0, 2.0]), np.full(4, 1.0)], np.array([0.5, 1.0]))
+    assert x.tolist() == [0.125, 0.375, 0.625, 0.875]
+    assert errors[0, :2].tolist() == [4.0, 2.0]
+    assert np.isnan(errors[0, 2:]).all(), "the first run has ended"
+    assert errors[1].tolist() == [1.0] * 4
+
+
+def test_runs_of_one_length_are_shown_as_they_are():
+    given = [np.linspace(9.0, 1.0, 7), np.linspace(3.0, 2.0, 7)]
+    _, errors = pictures.over_time(given, np.array([3.0, 3.0]))
+    assert np.array_equal(errors, given)
+
+
+def test_the_worst_runs_are_drawn_where_lengths_differ(analysis):
+    errors = {run: values[: 5 + run % 3] for run, values in analysis.errors.items()}
+    orbits = np.array([0.01 * len(values) for values in errors.values()])
+    assert_readable(lambda: pictures.worst_runs(replace(analysis, errors=errors, orbits=orbits)))

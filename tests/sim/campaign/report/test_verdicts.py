@@ -9,10 +9,12 @@ from sim.campaign.command import FlownCampaign
 from sim.campaign.definition.campaign import IndexLimits
 from sim.campaign.definition.requirements import FigureRequirement
 from sim.campaign.report import text
+from sim.campaign.report.analysis import analyse
 from sim.campaign.report.documents import suites
 from sim.campaign.report.page import write_page
 from sim.campaign.report.values import as_json
 from sim.campaign.report.verdicts import meets, verdicts
+from sim.campaign.results.store import open_results
 from sim.junit import junit_xml
 from sim.statistics.proportion import clopper_pearson
 
@@ -69,3 +71,34 @@ def test_what_more_runs_must_tell_is_no_failure(campaign_of_40, analysis, tmp_pa
     xml = junit_xml("x", suites(done.verdicts, done.analysis, done.broken))
     assert ("<failure" in xml, xml.count("<skipped")) == (False, 1)
     assert any("more runs must tell: " in line for line in text.lines(unlimited, done.analysis))
+
+
+def test_where_no_run_was_flown_no_limit_is_met_and_the_coils_are_not_judged(small, tmp_path, failed_row):
+    with open_results(tmp_path, small) as results:
+        for run in range(3):
+            results.add(failed_row(run))
+        found = analyse(small, results)
+    done = FlownCampaign(tmp_path, small, found, (0, 1, 2), ())
+    limits = [one for one in done.verdicts if one.group == "index"]
+    assert len(limits) == 9, "three limits under three interpretations"
+    assert {(one.met, one.found) for one in limits} == {(False, "it falls on runs that failed")}
+    tests = {case.name: case for case in suites(done.verdicts, found, ())["runs"]}
+    coils = tests["every run kept the limits of the coils"]
+    assert (coils.failure, coils.skipped) == ("", "no run was flown")
+    assert any("no value" in line for line in text.lines(small, found))
+    json.dumps(as_json(small, found), allow_nan=False)
+
+
+@pytest.mark.long
+def test_a_figure_that_few_runs_have_is_drawn_and_told(small, tmp_path, done_row):
+    with open_results(tmp_path, small) as results:
+        for run in range(20):
+            row = done_row(run)
+            known = {"converged_at_s": 100.0 + run} if run < 8 else {}
+            results.add(replace(row, cells=row.cells | known))
+        found = analyse(small, results)
+    percentiles = json.loads(json.dumps(as_json(small, found), allow_nan=False))["figures"]["converged_at_s"]
+    assert (percentiles["without"], percentiles["percentiles"]["0.95"]["value"]) == (12, None)
+    assert any("converged_at_s: 50 % no value" in line for line in text.lines(small, found))
+    write_page(tmp_path / "page.html", small, found, "0")
+    assert "12 of 20 runs have none" in (tmp_path / "page.html").read_text()
