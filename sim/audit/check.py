@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from fsw.input.toml_text import load_toml
-from fsw.wire.messages import CoilBoot, FswBoot, MagBoot, PlantBoot, SunBoot, intact
+from fsw.wire.messages import CoilBoot, FswBoot, MagBoot, PlantBoot, SunBoot, WheelBoot, intact
 from sim.audit.auditor import audit
 from sim.audit.findings import AuditLimits, AuditReport, seconds_text
 from sim.audit.limits import is_shared, limits_in
@@ -20,7 +20,7 @@ from sim.record.signature import PublicKey
 SCENARIO_NAME = "scenario.toml"
 CONTRACT_VERSION = 1
 """Version of the bus contract that is judged here; each node reports its own in its boot message."""
-_BOOTS = {boot.ID: boot for boot in (PlantBoot, FswBoot, CoilBoot, MagBoot, SunBoot)}
+_BOOTS = {boot.ID: boot for boot in (PlantBoot, FswBoot, CoilBoot, MagBoot, SunBoot, WheelBoot)}
 _SHOWN = 50
 """Violations that are printed one by one; the log of a board out of control may hold thousands."""
 

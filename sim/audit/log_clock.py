@@ -16,6 +16,8 @@ from sim.record.candump import LogEntry
 MICRO = 1_000_000
 _PEEK = 100_000
 """Entries that may be read before the rate must be decided."""
+_MOST_HZ = 1000
+"""Ticks a second: the fastest rate that is looked for; a scenario may state a faster one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +79,7 @@ def read_clock(entries: Iterator[LogEntry], tick_hz: int | None) -> tuple[LogClo
         is_new = unix not in seconds
         seconds[unix] = (tick if is_new else seconds[unix][0], tick)
         if len(seconds) > 1 and is_new:
-            rates = _rates(seconds, rates)
+            rates = _rates(seconds, rates, tick_hz)
             if rates is not None and len(rates) <= 1:
                 break
     clock = None if first is None else _tick_clock(first, rates, tick_hz)
@@ -86,19 +88,28 @@ def read_clock(entries: Iterator[LogEntry], tick_hz: int | None) -> tuple[LogClo
     return clock, chain(peeked, entries)
 
 
-def _rates(seconds: dict[int, tuple[int, int]], before: list[int] | None) -> list[int] | None:
+def _rates(
+    seconds: dict[int, tuple[int, int]], before: list[int] | None, stated: int | None
+) -> list[int] | None:
     """The tick rates that give unix_time_s - tick // tick_hz one value; None if it is too early to say.
 
     Args:
         seconds: first and last tick of each unix_time_s so far.
         before: the rates that have fitted until now; None if it was too early to say.
+        stated: by a scenario.
     """
     (unix, (tick, _)), *_, (last_unix, (last_tick, _)) = seconds.items()
     if last_unix - unix == 1 and tick > 0:
         return None
     ends = [(tick, unix) for unix, ticks in seconds.items() for tick in ticks]
-    tried = range(last_tick - tick, 0, -1) if before is None else before
+    tried = _candidates(last_tick - tick, stated) if before is None else before
     return [hz for hz in tried if len({unix - tick // hz for tick, unix in ends}) == 1]
+
+
+def _candidates(most: int, stated: int | None) -> list[int]:
+    """The rates up to ``most`` that are possible at all: any number of ticks may lie between two SYNCs."""
+    faster = [stated] if stated is not None and _MOST_HZ < stated <= most else []
+    return [*faster, *range(min(most, _MOST_HZ), 0, -1)]
 
 
 def _tick_clock(first: LogEntry, rates: list[int] | None, tick_hz: int | None) -> LogClock | None:
