@@ -11,6 +11,7 @@ from fractions import Fraction
 from itertools import chain, islice, pairwise
 
 from fsw.wire.messages import CoilStatus, Sync
+from sim.audit.findings import seconds_text
 from sim.record.candump import LogEntry
 
 MICRO = 1_000_000
@@ -47,6 +48,18 @@ class LogClock:
     def seconds(self, instant: int) -> Fraction:
         """The instant in seconds from t = 0."""
         return Fraction(instant, MICRO * self.units)
+
+
+def clock_notes(clock: LogClock, stated_hz: int | None) -> Iterator[str]:
+    """What a reader must know of a clock, a sentence each; ``stated_hz`` is the rate of a scenario."""
+    if clock.epoch_s is None:
+        period = seconds_text(clock.seconds(clock.period))
+        yield f"no tick rate in the log: judged by timestamps, a COIL_STATUS every {period} s"
+        return
+    if not clock.simulated:
+        yield "timestamps are not simulated time: judged by ticks alone"
+    if stated_hz not in (None, clock.units):
+        yield f"the log has {clock.units} ticks a second, its scenario says {stated_hz}"
 
 
 def _instant(timestamp_us: int, units: int) -> int:
