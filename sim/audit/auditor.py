@@ -18,8 +18,8 @@ from sim.audit.driver_judge import DriverJudge
 from sim.audit.findings import AuditLimits, AuditReport, DrivenPulse, Violation, ViolationKind, seconds_text
 from sim.audit.log_clock import MICRO, LogClock, clock_notes, read_clock
 from sim.audit.pulse_judge import PulseJudge
-from sim.audit.silence import Silence
 from sim.audit.status_ticks import BoardStatus, StatusTicks
+from sim.audit.unreported_time import UnreportedTime
 from sim.audit.whole_entries import WholeEntries
 from sim.record.candump import LogEntry
 
@@ -55,7 +55,7 @@ class _Auditor:
         self._by_timestamps = PulseJudge(clock, limits) if clock.simulated or clock.epoch_s is None else None
         self._violations: list[Violation] = []
         self._ticks = StatusTicks()
-        self._silence = Silence(clock, limits)
+        self._unreported = UnreportedTime(clock, limits)
         self._driver = DriverJudge(limits.is_continuous)
         self._together: list[BoardStatus] = []
         self._booted = False
@@ -132,12 +132,12 @@ class _Auditor:
             return
         step = 1 if self._tick is None else tick - self._tick
         if self._tick is None:
-            self._silence.begin(tick * MICRO)
+            self._unreported.begin(tick * MICRO)
         if step < 1:
             sentence = f"SYNC goes back from tick {self._tick} to tick {tick}: two runs in one log?"
             self._add(ViolationKind.SYNC, tick * MICRO, tick, line, sentence)
             self._interrupt()
-            self._silence.begin(tick * MICRO)
+            self._unreported.begin(tick * MICRO)
             step = 1
         self._tick = tick
         self._check_unix_time(line, tick, unix_time_s)
@@ -149,7 +149,7 @@ class _Auditor:
             self._booted = False
             self._boot(tick * MICRO)
         if not closed or closed[-1][0] != tick:
-            self._silence.sync()
+            self._unreported.sync()
         self._judge_driver(tick * MICRO, tick)
 
     def _judge_tick(self, tick: int, boards: list[BoardStatus]) -> None:
@@ -218,17 +218,17 @@ class _Auditor:
             if status is None:
                 self._add(ViolationKind.FRAME, instant, tick, line, "COIL_STATUS with a wrong CRC or length")
         statuses = [board.status for board in boards if board.status is not None]
-        self._silence.take(instant, statuses)
+        self._unreported.take(instant, statuses)
         return statuses
 
     def _boot(self, instant: int) -> None:
-        self._silence.boot(instant)
+        self._unreported.boot(instant)
         for judge in self._judges():
             judge.boot(instant)
 
     def _interrupt(self) -> None:
         if self._tick is not None:
-            self._silence.finish(self._tick * MICRO)
+            self._unreported.finish(self._tick * MICRO)
         for judge in self._judges():
             judge.finish()
 
@@ -260,8 +260,8 @@ class _Auditor:
             truncated_at=log.truncated_at,
             complete=log.ended or (log.truncated_at is None and not expect_end),
             dipoles=self._driver.count,
-            unreported_s=seconds(self._silence.total),
-            doubt="" if self._limits.is_continuous else self._silence.doubt,
+            unreported_s=seconds(self._unreported.total),
+            doubt="" if self._limits.is_continuous else self._unreported.doubt,
         )
 
     def _all_violations(self) -> tuple[Violation, ...]:
@@ -280,7 +280,7 @@ class _Auditor:
         yield from clock_notes(self._clock, self._limits.tick_hz)
         if self._ticks.silent:
             yield f"{_count(self._ticks.silent, 'tick')} without COIL_STATUS"
-        yield from self._silence.notes()
+        yield from self._unreported.notes()
         if self._crowded_ticks:
             yield f"{_count(self._crowded_ticks, 'tick')} with more than one COIL_STATUS"
         if self._broken_boots:

@@ -11,7 +11,7 @@ from sim.audit.findings import AuditLimits, seconds_text
 from sim.audit.log_clock import LogClock
 
 
-class Silence:
+class UnreportedTime:
     """Adds up stretches without a status that are as long as the longest pulse and a tick.
 
     Ticks that SYNC skips have no status by the contract: they count as time without a report, but a stretch
@@ -45,7 +45,7 @@ class Silence:
     def boot(self, instant: int) -> None:
         """The board has started: it has accepted nothing, and before the first boot of a log it was off."""
         if not self._is_first:
-            self._close(instant, None)
+            self._close(instant - self._clock.period, None, "the board boots after it")
         self._last, self._seq, self._is_first, self._under_way = instant, 0, False, False
         self._syncs = 0
 
@@ -72,7 +72,7 @@ class Silence:
         stretches = "a stretch" if self._stretches == 1 else f"{self._stretches} stretches"
         yield f"unreported: {total} s, in {stretches} of at least {least} s, the first from t={first} s"
 
-    def _close(self, until: int, seq: int | None) -> None:
+    def _close(self, until: int, seq: int | None, why: str = "no status before or after it") -> None:
         if self._last is None or until - self._last < self._least:
             return
         self._stretches += 1
@@ -81,12 +81,13 @@ class Silence:
             self._first = max(self._last, 0)
         synced = self._clock.epoch_s is None or self._syncs * self._clock.period >= self._least
         if synced and not self.doubt and (seq is None or seq != self._seq or self._under_way):
-            self.doubt = self._doubt(self._last, until, seq)
+            self.doubt = self._doubt(self._last, until, seq, why)
 
-    def _doubt(self, begun: int, until: int, seq: int | None) -> str:
+    def _doubt(self, begun: int, until: int, seq: int | None, why: str) -> str:
         seconds = self._clock.seconds
-        why = "a coil was on when it began" if self._under_way else "no statuses before and after it"
-        if seq is not None and self._seq is not None and seq != self._seq:
+        if self._under_way:
+            why = "a coil was on when it began"
+        elif seq is not None and self._seq is not None:
             why = f"seq is {self._seq} before and {seq} after it"
         return (
             f"a pulse may have gone unreported in the {seconds_text(seconds(until - begun))} s "
