@@ -66,7 +66,8 @@ def test_the_audit_judges_what_the_dipole_status_reports(flight, torquer, copy_o
     assert (done.code, done.err) == (0, "")
     lines = done.out.splitlines()
     assert lines[-1] == "OK: continuous driver within full scale"
-    driven = sum(any(CoilDipoleStatus.decode(entry.frame.data)[:3]) for entry in _dipoles(copy_of(flight)))
+    dipoles = [frame for _, _, frame in copy_of(flight).entries if frame.can_id == CoilDipoleStatus.ID]
+    driven = sum(any(CoilDipoleStatus.decode(frame.data)[:3]) for frame in dipoles)
     assert f"driven in {driven} of 483 ticks, duty {100 * 0.8 * driven / 483:.2f} %" in lines[1]
     assert "one coil at a time" not in done.out
 
@@ -77,10 +78,6 @@ def test_the_same_log_without_its_scenario_breaks_the_limits_of_a_pulsed_driver(
     done = torquer("check", bare)
     assert done.code == 1
     assert "a pulsed driver reports" in done.out
-
-
-def _dipoles(log):
-    return [entry for entry in log.entries if entry.frame.can_id == CoilDipoleStatus.ID]
 
 
 def test_a_level_on_such_a_board_is_a_pulse_to_the_audit(flight, torquer, copy_of):
