@@ -1,5 +1,7 @@
 """A flight with the continuous driver and every disturbance: audited, and replayed through both."""
 
+import json
+
 import h5py
 import numpy as np
 import pytest
@@ -78,6 +80,16 @@ def test_the_same_log_without_its_scenario_breaks_the_limits_of_a_pulsed_driver(
     done = torquer("check", bare)
     assert done.code == 1
     assert "a pulsed driver reports" in done.out
+
+
+def test_the_summary_has_what_was_driven_and_for_how_long(flight, torquer):
+    summary = json.loads((flight / "summary.json").read_text())
+    dipoles = summary["dipoles"]
+    assert (dipoles["total"], dipoles["driven"] > 100) == (483, True)
+    assert summary["duty"]["total"] == pytest.approx(0.8 * dipoles["driven"] / 483)
+    assert summary["duty"]["per_coil"] == pytest.approx([0.8 * one / 483 for one in dipoles["per_coil"]])
+    driven = f"limits     kept: driven in {dipoles['driven']} of 483 ticks, 0 refused"
+    assert driven in torquer("report", flight).out
 
 
 def test_a_level_on_such_a_board_is_a_pulse_to_the_audit(flight, torquer, copy_of):
