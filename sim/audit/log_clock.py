@@ -115,14 +115,11 @@ def _rates(
     if last_unix - unix == 1 and tick > 0:
         return None
     ends = [(tick, unix) for unix, ticks in seconds.items() for tick in ticks]
-    tried = _candidates(last_tick - tick, stated) if before is None else before
-    return [hz for hz in tried if len({unix - tick // hz for tick, unix in ends}) == 1]
-
-
-def _candidates(most: int, stated: int | None) -> list[int]:
-    """The rates up to ``most`` that are possible at all: any number of ticks may lie between two SYNCs."""
-    faster = [stated] if stated is not None and _MOST_HZ < stated <= most else []
-    return [*faster, *range(min(most, _MOST_HZ), 0, -1)]
+    tried = range(last_tick - tick, 0, -1) if before is None else before
+    likely = list(tried[-_MOST_HZ:])  # any number of ticks may lie between two SYNCs
+    if stated is not None and stated in tried and stated not in likely:
+        likely.insert(0, stated)
+    return [hz for hz in likely if len({unix - tick // hz for tick, unix in ends}) == 1]
 
 
 def _tick_clock(first: LogEntry, rates: list[int] | None, tick_hz: int | None) -> LogClock | None:
