@@ -129,8 +129,8 @@ def through_flight_software(log: Path, run: LoggedRun) -> ReplayReport:
 
 
 def _found(result: ReplayResult, same_platform: bool) -> list[str]:
-    """How exact a replay is, in words; none of a log without a tick."""
-    if result.bit_exact and not result.ticks:
+    """How exact a replay is, in words; none of a whole log without a tick."""
+    if result.bit_exact and result.ended and not result.ticks:
         return []
     if result.bit_exact:
         return [f"bit-exact: {result.ticks} ticks, {result.frames} frames, every state CRC equal"]
