@@ -3,7 +3,8 @@
 Judged are the COIL_STATUS frames of a log: no pulse longer than allowed; no pulse sooner after another one,
 or after a boot of the board, than the back-off; no level out of range; never two coils at once; no pulse
 announced that would break a limit; no COIL_STATUS with a wrong CRC or length. The status of tick k reports
-the interval that ends at k, so a pulse begins one tick before the first status that shows it.
+the interval that ends at k, so a pulse begins one tick before the first status that shows it. A pulsed driver
+reports no driven COIL_DIPOLE_STATUS, and a continuous one, which has no limits on pulses, no level.
 
 There are two clocks: the ticks of SYNC, and the timestamps, where they are simulated time or where the
 log has no usable SYNC. Each limit must hold by both of them, and where both count they must agree.
@@ -12,16 +13,17 @@ Comparisons are exact. Nothing here is shared with the onboard scheduler or the 
 
 from collections.abc import Iterable, Iterator
 
-from fsw.wire.messages import CoilBoot, CoilStatus, PlantEnd, Sync, intact
+from fsw.wire.messages import CoilDipoleStatus, CoilStatus, Sync, intact
+from sim.audit.driver_judge import DriverJudge
 from sim.audit.findings import AuditLimits, AuditReport, DrivenPulse, Violation, ViolationKind, seconds_text
-from sim.audit.log_clock import MICRO, LogClock, read_clock
+from sim.audit.log_clock import MICRO, LogClock, clock_notes, read_clock
 from sim.audit.pulse_judge import PulseJudge
 from sim.audit.status_ticks import BoardStatus, StatusTicks
-from sim.record.candump import LogEntry, LogTruncatedError
+from sim.audit.unreported_time import UnreportedTime
+from sim.audit.whole_entries import WholeEntries
+from sim.record.candump import LogEntry
 
 __all__ = ["AuditLimits", "AuditReport", "DrivenPulse", "Violation", "ViolationKind", "audit"]
-
-_JUDGED = frozenset((CoilStatus.ID, CoilBoot.ID, Sync.ID))
 
 
 def audit(entries: Iterable[LogEntry], limits: AuditLimits, expect_end: bool = False) -> AuditReport:
@@ -35,50 +37,12 @@ def audit(entries: Iterable[LogEntry], limits: AuditLimits, expect_end: bool = F
     Raises:
         LogError: the log has been altered; passed on from ``entries``.
     """
-    log = _WholeEntries(entries)
+    log = WholeEntries(entries)
     clock, judged = read_clock(iter(log), limits.tick_hz)
     auditor = _Auditor(clock, limits)
     for entry in judged:
         auditor.take(entry)
     return auditor.report(log, expect_end)
-
-
-class _WholeEntries:
-    """The entries that are judged, up to where the log is truncated; afterwards, how the log ended."""
-
-    def __init__(self, entries: Iterable[LogEntry]) -> None:
-        self._entries = entries
-        self.truncated_at: int | None = None
-        self.ended = False
-        """Whether its last frame is an intact PLANT_END that fits its last SYNC."""
-        self.wrong_end: str | None = None
-        """What is wrong with a PLANT_END that is its last frame."""
-
-    def __iter__(self) -> Iterator[LogEntry]:
-        last = sync = None
-        try:
-            for entry in self._entries:
-                last = entry.frame
-                if last.can_id == Sync.ID and intact(last):
-                    sync = last
-                if last.can_id in _JUDGED:
-                    yield entry
-        except LogTruncatedError as error:
-            self.truncated_at = error.line
-            return
-        if last is None or last.can_id != PlantEnd.ID:
-            return
-        if not intact(last):
-            self.wrong_end = "its last frame is a PLANT_END with a wrong CRC or length"
-        elif sync is not None and not _fits(PlantEnd.decode(last.data), Sync.decode(sync.data)):
-            ticks, tick = PlantEnd.decode(last.data).ticks, Sync.decode(sync.data).tick
-            self.wrong_end = f"its PLANT_END counts {ticks} ticks, its last SYNC is of tick {tick}"
-        self.ended = self.wrong_end is None
-
-
-def _fits(end: PlantEnd, sync: Sync) -> bool:
-    """Whether the number of ticks in PLANT_END, modulo 2^24, is that up to the last SYNC."""
-    return (sync.tick + 1 - end.ticks) % (1 << 24) == 0
 
 
 class _Auditor:
@@ -91,6 +55,8 @@ class _Auditor:
         self._by_timestamps = PulseJudge(clock, limits) if clock.simulated or clock.epoch_s is None else None
         self._violations: list[Violation] = []
         self._ticks = StatusTicks()
+        self._unreported = UnreportedTime(clock, limits)
+        self._driver = DriverJudge(limits.is_continuous)
         self._together: list[BoardStatus] = []
         self._booted = False
         self._tick: int | None = None
@@ -107,13 +73,15 @@ class _Auditor:
             )
 
     def take(self, entry: LogEntry) -> None:
-        """Process the next SYNC, COIL_STATUS or COIL_BOOT of the log."""
+        """Process the next SYNC, COIL_STATUS, COIL_DIPOLE_STATUS or COIL_BOOT of the log."""
         can_id = entry.frame.can_id
         if can_id == CoilStatus.ID:
             self._take_status(entry)
         elif can_id == Sync.ID:
             if self._by_ticks is not None:
                 self._take_sync(entry)
+        elif can_id == CoilDipoleStatus.ID:
+            self._take_dipole(entry)
         elif not intact(entry.frame):
             self._broken_boots += 1
         elif self._by_ticks is not None:
@@ -127,10 +95,28 @@ class _Auditor:
         status = CoilStatus.decode(frame.data) if intact(frame) else None
         board = BoardStatus(entry.line, entry.timestamp_us, status, self._booted)
         self._booted = False
+        if status is not None:
+            self._driver.take_level(entry.line, status)
         if self._by_ticks is not None:
             self._ticks.add(board)
         else:
             self._take_untimed(board)
+            self._judge_driver(self._clock.of_timestamp(entry.timestamp_us), None)
+
+    def _take_dipole(self, entry: LogEntry) -> None:
+        instant = self._clock.of_timestamp(entry.timestamp_us) if self._by_ticks is None else None
+        if not self._driver.take_dipole(entry) and self._limits.is_continuous:
+            tick = None if self._tick is None else self._tick + 1
+            when = (tick or 0) * MICRO if instant is None else instant
+            self._add(
+                ViolationKind.FRAME, when, tick, entry.line, "COIL_DIPOLE_STATUS with a wrong CRC or length"
+            )
+        if instant is not None:
+            self._judge_driver(instant, None)
+
+    def _judge_driver(self, instant: int, tick: int | None) -> None:
+        for line, sentence in self._driver.found():
+            self._add(ViolationKind.DRIVER, instant, tick, line, sentence)
 
     # --- logs with ticks
 
@@ -145,16 +131,26 @@ class _Auditor:
             self._check_unix_time(line, tick, unix_time_s)
             return
         step = 1 if self._tick is None else tick - self._tick
+        if self._tick is None:
+            self._unreported.begin(tick * MICRO)
         if step < 1:
             sentence = f"SYNC goes back from tick {self._tick} to tick {tick}: two runs in one log?"
             self._add(ViolationKind.SYNC, tick * MICRO, tick, line, sentence)
             self._interrupt()
+            self._unreported.begin(tick * MICRO)
             step = 1
         self._tick = tick
         self._check_unix_time(line, tick, unix_time_s)
         self._check_timestamp("SYNC", line, timestamp_us, tick)
-        for of_tick, boards in self._ticks.close(tick, step):
+        closed = self._ticks.close(tick, step)
+        for of_tick, boards in closed:
             self._judge_tick(of_tick, boards)
+        if self._booted:  # the board has said nothing since: its boot is of the tick whose SYNC follows
+            self._booted = False
+            self._boot(tick * MICRO)
+        if not closed or closed[-1][0] != tick:
+            self._unreported.sync()
+        self._judge_driver(tick * MICRO, tick)
 
     def _judge_tick(self, tick: int, boards: list[BoardStatus]) -> None:
         instant = tick * MICRO
@@ -221,13 +217,18 @@ class _Auditor:
         for line, _, status, _ in boards:
             if status is None:
                 self._add(ViolationKind.FRAME, instant, tick, line, "COIL_STATUS with a wrong CRC or length")
-        return [board.status for board in boards if board.status is not None]
+        statuses = [board.status for board in boards if board.status is not None]
+        self._unreported.take(instant, statuses)
+        return statuses
 
     def _boot(self, instant: int) -> None:
+        self._unreported.boot(instant)
         for judge in self._judges():
             judge.boot(instant)
 
     def _interrupt(self) -> None:
+        if self._tick is not None:
+            self._unreported.finish(self._tick * MICRO)
         for judge in self._judges():
             judge.finish()
 
@@ -237,7 +238,7 @@ class _Auditor:
     def _add(self, kind: ViolationKind, instant: int, tick: int | None, line: int, sentence: str) -> None:
         self._violations.append(Violation(kind, self._clock.seconds(instant), tick, None, line, sentence))
 
-    def report(self, log: _WholeEntries, expect_end: bool) -> AuditReport:
+    def report(self, log: WholeEntries, expect_end: bool) -> AuditReport:
         """The result, after the last entry."""
         if self._by_ticks is None:
             self._judge_by_timestamps()
@@ -245,6 +246,7 @@ class _Auditor:
             for tick, boards in self._ticks.close(self._tick + 1, 1):
                 self._judge_tick(tick, boards)
         self._interrupt()
+        self._judge_driver(self._last, None)
         judge = self._by_ticks or self._by_timestamps
         pulses = () if judge is None else judge.pulses.by_start()
         seconds = self._clock.seconds
@@ -257,6 +259,9 @@ class _Auditor:
             span_s=seconds(self._last - (self._first or 0)),
             truncated_at=log.truncated_at,
             complete=log.ended or (log.truncated_at is None and not expect_end),
+            dipoles=self._driver.count,
+            unreported_s=seconds(self._unreported.total),
+            doubt="" if self._limits.is_continuous else self._unreported.doubt,
         )
 
     def _all_violations(self) -> tuple[Violation, ...]:
@@ -267,24 +272,15 @@ class _Auditor:
             violations += [one for one in judge.violations if (one.kind, one.tick, one.coil) not in already]
         return tuple(sorted(violations, key=lambda one: (one.time_s, one.line)))
 
-    def _notes(self, log: _WholeEntries) -> Iterator[str]:
-        clock = self._clock
-        if log.truncated_at is not None:
-            yield f"truncated: line {log.truncated_at} is incomplete; the lines before it are judged"
-        elif not log.ended:
-            yield f"the log has no end mark{f': {log.wrong_end}' if log.wrong_end else ''}"
+    def _notes(self, log: WholeEntries) -> Iterator[str]:
+        yield from log.notes()
+        yield from self._driver.notes(self._statuses)
         if self._statuses == 0:
-            yield "no COIL_STATUS in the log: nothing to judge"
             return
-        if clock.epoch_s is None:
-            period = seconds_text(clock.seconds(clock.period))
-            yield f"no tick rate in the log: judged by timestamps, a COIL_STATUS every {period} s"
-        elif not clock.simulated:
-            yield "timestamps are not simulated time: judged by ticks alone"
-        if clock.epoch_s is not None and self._limits.tick_hz not in (None, clock.units):
-            yield f"the log has {clock.units} ticks a second, its scenario says {self._limits.tick_hz}"
+        yield from clock_notes(self._clock, self._limits.tick_hz)
         if self._ticks.silent:
             yield f"{_count(self._ticks.silent, 'tick')} without COIL_STATUS"
+        yield from self._unreported.notes()
         if self._crowded_ticks:
             yield f"{_count(self._crowded_ticks, 'tick')} with more than one COIL_STATUS"
         if self._broken_boots:

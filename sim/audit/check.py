@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from fsw.input.toml_text import load_toml
-from fsw.wire.messages import CoilBoot, FswBoot, MagBoot, PlantBoot, SunBoot, intact
+from fsw.wire.messages import CoilBoot, FswBoot, MagBoot, PlantBoot, SunBoot, WheelBoot, intact
 from sim.audit.auditor import audit
 from sim.audit.findings import AuditLimits, AuditReport, seconds_text
 from sim.audit.limits import is_shared, limits_in
@@ -20,7 +20,7 @@ from sim.record.signature import PublicKey
 SCENARIO_NAME = "scenario.toml"
 CONTRACT_VERSION = 1
 """Version of the bus contract that is judged here; each node reports its own in its boot message."""
-_BOOTS = {boot.ID: boot for boot in (PlantBoot, FswBoot, CoilBoot, MagBoot, SunBoot)}
+_BOOTS = {boot.ID: boot for boot in (PlantBoot, FswBoot, CoilBoot, MagBoot, SunBoot, WheelBoot)}
 _SHOWN = 50
 """Violations that are printed one by one; the log of a board out of control may hold thousands."""
 
@@ -96,14 +96,8 @@ def limits_beside(log: Path) -> AuditLimits | None:
 
 def render(report: AuditReport) -> str:
     """The result as text: the limits, each violation with time and coil, the notes and the verdict."""
-    limits = report.limits
-    pulse_s, backoff_s = (seconds_text(us / 1_000_000) for us in (limits.pulse_us, limits.backoff_us))
-    lines = [
-        f"limits: pulse <= {pulse_s} s, "
-        f"back-off >= {backoff_s} s {'shared' if limits.shared else 'per coil'}, "
-        f"level -{limits.max_level}..{limits.max_level}, one coil at a time"
-    ]
-    if report.statuses:
+    lines = [_limits(report.limits)]
+    if not report.missing:
         lines.append(_figures(report))
     lines += [f"VIOLATION {violation}" for violation in report.violations[:_SHOWN]]
     if len(report.violations) > _SHOWN:
@@ -114,7 +108,28 @@ def render(report: AuditReport) -> str:
     return "\n".join(lines)
 
 
+def _limits(limits: AuditLimits) -> str:
+    if limits.on_fraction is not None:
+        return (
+            "limits: continuous driver, each coil within +- full scale, "
+            f"driven for {limits.on_fraction:g} of a tick; none on pulses"
+        )
+    pulse_s, backoff_s = (seconds_text(us / 1_000_000) for us in (limits.pulse_us, limits.backoff_us))
+    return (
+        f"limits: pulse <= {pulse_s} s, "
+        f"back-off >= {backoff_s} s {'shared' if limits.shared else 'per coil'}, "
+        f"level -{limits.max_level}..{limits.max_level}, one coil at a time"
+    )
+
+
 def _figures(report: AuditReport) -> str:
+    if report.dipoles is not None:
+        duties = ", ".join(f"{100 * duty:.2f}" for duty in report.duty_per_coil)
+        return (
+            f"driven in {report.dipoles.any_driven} of {report.dipoles.statuses} ticks, "
+            f"duty {100 * report.duty_total:.2f} % of {seconds_text(report.span_s)} s "
+            f"(coil 0, 1, 2: {duties} %)"
+        )
     text = f"{len(report.pulses)} pulses (coil 0, 1, 2: {', '.join(map(str, report.pulses_per_coil))})"
     if report.max_pulse_s is not None:
         text += f", longest {seconds_text(report.max_pulse_s)} s"
@@ -124,17 +139,18 @@ def _figures(report: AuditReport) -> str:
 
 
 def _verdict(report: AuditReport) -> str:
-    if not report.statuses:
+    if report.missing:
         return "FAIL: nothing to judge"
     if report.violations:
         count = len(report.violations)
         return f"FAIL: {count} violation{'' if count == 1 else 's'} of the limits"
-    if not report.genuine:
-        return "FAIL: limits kept as far as the log goes, but its index contradicts it"
-    if report.mismatches:
-        return "FAIL: limits kept as far as the log goes, but the files are not shown to be its run's own"
-    return (
-        "OK: limits kept"
-        if report.complete
-        else "FAIL: limits kept as far as the log goes, but it is incomplete"
-    )
+    faults = {
+        "as far as the log goes, but its index contradicts it": not report.genuine,
+        "as far as the log goes, but the files are not shown to be its run's own": bool(report.mismatches),
+        "as far as the log goes, but it is incomplete": not report.complete,
+        f"as far as the board reports, but {report.doubt}": bool(report.doubt),
+    }
+    for fault, applies in faults.items():
+        if applies:
+            return f"FAIL: limits kept {fault}"
+    return "OK: continuous driver within full scale" if report.limits.is_continuous else "OK: limits kept"

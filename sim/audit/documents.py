@@ -6,6 +6,16 @@ from sim.audit.findings import AuditReport, Violation, ViolationKind
 from sim.junit import JunitCase
 
 Json = dict[str, Any]
+OF_PULSES = frozenset(
+    (
+        ViolationKind.PULSE,
+        ViolationKind.ANNOUNCED,
+        ViolationKind.GAP,
+        ViolationKind.BOOT,
+        ViolationKind.TWO_COILS,
+    )
+)
+"""The rules of a pulsed driver."""
 
 
 def as_json(report: AuditReport) -> Json:
@@ -18,8 +28,11 @@ def as_json(report: AuditReport) -> Json:
             "backoff_s": limits.backoff_us / 1e6,
             "backoff": "shared" if limits.shared else "per_coil",
             "max_level": limits.max_level,
+            "driver": "continuous" if limits.is_continuous else "pulsed",
         },
         "statuses": report.statuses,
+        "dipole_statuses": report.dipoles.statuses if report.dipoles else 0,
+        "unreported_s": report.unreported_s,
         "span_s": report.span_s,
         "pulses": {"total": len(report.pulses), "per_coil": report.pulses_per_coil},
         "max_pulse_s": report.max_pulse_s,
@@ -37,7 +50,8 @@ def suites(report: AuditReport) -> dict[str, list[JunitCase]]:
     """A test for each rule that can be broken, and for each condition that a log must meet to be judged."""
     rules = [_rule(kind, report) for kind in ViolationKind]
     log = {
-        "something to judge": "" if report.statuses else "the log has no COIL_STATUS",
+        "something to judge": f"the log has no {report.missing}" if report.missing else "",
+        "reported throughout": report.doubt,
         "complete": "" if report.complete else "the log is incomplete",
         "as its index says": "" if report.genuine else "its index contradicts it",
         "files of one run": "; ".join(report.mismatches),
@@ -55,8 +69,14 @@ def _rule(kind: ViolationKind, report: AuditReport) -> JunitCase:
         "check.limits",
         kind.value,
         failure=f"{broken[0]}{others}" if broken else "",
-        skipped="" if report.statuses else "nothing to judge",
+        skipped=_skipped(kind, report),
     )
+
+
+def _skipped(kind: ViolationKind, report: AuditReport) -> str:
+    if report.missing:
+        return "nothing to judge"
+    return "no limit of a continuous driver" if report.limits.is_continuous and kind in OF_PULSES else ""
 
 
 def _violation(one: Violation) -> Json:

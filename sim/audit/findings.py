@@ -22,6 +22,7 @@ class ViolationKind(StrEnum):
     FRAME = "frame"
     TIMESTAMP = "timestamp"
     SYNC = "sync"
+    DRIVER = "driver"
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +35,8 @@ class AuditLimits:
         max_level: largest magnitude of a level.
         shared: the back-off is from a pulse of any coil; otherwise from one of the same coil.
         tick_hz: rate that the scenario states; the log's own SYNC overrules it.
+        on_fraction: part of a tick for which a continuous driver drives, which has no limits on pulses; None:
+            the driver is pulsed.
     """
 
     pulse_us: int = 3_000_000
@@ -41,9 +44,20 @@ class AuditLimits:
     max_level: int = 3
     shared: bool = True
     tick_hz: int | None = None
+    on_fraction: float | None = None
+
+    @property
+    def is_continuous(self) -> bool:
+        """Whether the driver drives fractions of its full scale, without limits on pulses."""
+        return self.on_fraction is not None
 
     def most_duty(self, time_s: float) -> float:
-        """The largest fraction of a time that pulses under one back-off can take; a short time fits more."""
+        """The largest fraction of a time that pulses under one back-off can take; a short time fits more.
+
+        Of a continuous driver it is that of a tick.
+        """
+        if self.on_fraction is not None:
+            return self.on_fraction
         pulse_s, cycle_s = self.pulse_us / 1e6, (self.pulse_us + self.backoff_us) / 1e6
         if time_s <= 0.0 or cycle_s <= 0.0:
             return 1.0
@@ -64,6 +78,25 @@ class DrivenPulse:
     def length_s(self) -> Fraction:
         """How long the coil was driven."""
         return self.end_s - self.start_s
+
+
+@dataclass(frozen=True, slots=True)
+class DipoleCount:
+    """What a continuous driver has driven.
+
+    Attributes:
+        statuses: number of COIL_DIPOLE_STATUS, one a tick.
+        driven: number of those in which each coil was driven.
+        any_driven: number of those in which any was.
+    """
+
+    statuses: int
+    driven: tuple[int, int, int]
+    any_driven: int
+
+    def fraction(self, driven: int) -> float:
+        """A number of statuses as a part of all."""
+        return driven / self.statuses if self.statuses else 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +140,9 @@ class AuditReport:
         complete: the log ends with a whole line, and with an end mark where one must be.
         genuine: the index of the log, if it has one, does not contradict it.
         mismatches: what run.json contradicts, if the log has one beside it, a sentence each.
+        dipoles: what a continuous driver has driven; None of a pulsed one.
+        unreported_s: all stretches without COIL_STATUS that are as long as the longest pulse and a tick.
+        doubt: why a pulse may have gone unreported in one of them, a clause; empty: none has.
     """
 
     limits: AuditLimits
@@ -119,16 +155,30 @@ class AuditReport:
     complete: bool
     genuine: bool = True
     mismatches: tuple[str, ...] = ()
+    dipoles: DipoleCount | None = None
+    unreported_s: Fraction = Fraction(0)
+    doubt: str = ""
+
+    @property
+    def missing(self) -> str:
+        """The message without which nothing can be judged, where the log has none; otherwise empty."""
+        if self.limits.is_continuous and not (self.dipoles and self.dipoles.statuses):
+            return "COIL_DIPOLE_STATUS"
+        return "" if self.statuses else "COIL_STATUS"
 
     @property
     def ok(self) -> bool:
         """Something was judged, and no limit was broken."""
-        return self.statuses > 0 and not self.violations
+        return not self.missing and not self.violations
 
     @property
     def exit_code(self) -> int:
-        """0 if the limits were kept over a complete, unaltered log that belongs to its run, otherwise 1."""
-        return 0 if self.ok and self.complete and self.genuine and not self.mismatches else 1
+        """0 if the limits were kept over a complete, unaltered log that belongs to its run, otherwise 1.
+
+        1 too where a whole pulse may have gone unreported.
+        """
+        kept = self.ok and self.complete and self.genuine and not self.mismatches and not self.doubt
+        return 0 if kept else 1
 
     @property
     def pulses_per_coil(self) -> list[int]:
@@ -138,11 +188,18 @@ class AuditReport:
     @property
     def duty_per_coil(self) -> list[float]:
         """Fraction of the time for which each coil was driven."""
+        if self.dipoles is not None:
+            return [self._duty_of_ticks(self.dipoles, driven) for driven in self.dipoles.driven]
         return [self._duty(self._of(coil)) for coil in COILS]
 
     @property
     def duty_total(self) -> float:
-        """Sum of the duties of all coils."""
+        """Sum of the duties of all coils, of which a pulsed driver drives one at a time.
+
+        Of a continuous driver: fraction of the time for which any coil was driven.
+        """
+        if self.dipoles is not None:
+            return self._duty_of_ticks(self.dipoles, self.dipoles.any_driven)
         return self._duty(self.pulses)
 
     @property
@@ -169,6 +226,9 @@ class AuditReport:
 
     def _of(self, coil: int) -> Iterator[DrivenPulse]:
         return (pulse for pulse in self.pulses if pulse.coil == coil)
+
+    def _duty_of_ticks(self, dipoles: DipoleCount, driven: int) -> float:
+        return (self.limits.on_fraction or 0.0) * dipoles.fraction(driven)
 
     def _duty(self, pulses: Iterable[DrivenPulse]) -> float:
         driven_s = sum((pulse.length_s for pulse in pulses), Fraction(0))

@@ -27,6 +27,7 @@ def limits_in(tables: Mapping[str, object], source: str) -> AuditLimits:
         backoff_us=_microseconds(coils.get("backoff_s", 100.0), f"{source}: coils.backoff_s"),
         shared=is_shared(coils.get("backoff", "shared"), f"{source}: coils.backoff"),
         tick_hz=_tick_hz(time.get("tick_hz"), f"{source}: time.tick_hz"),
+        on_fraction=_on_fraction(coils, source),
     )
 
 
@@ -52,6 +53,16 @@ def _microseconds(value: object, where: str) -> int:
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < 1e9:
         raise HarnessError(f"{where} is {value!r}, not a time in seconds")
     return round(value * 1_000_000)
+
+
+def _on_fraction(coils: dict[str, object], source: str) -> float | None:
+    """The part of a tick for which a continuous driver drives; None of a pulsed driver."""
+    driver, value = coils.get("driver", "pulsed"), coils.get("on_fraction", 0.8)
+    if driver not in ("pulsed", "continuous"):
+        raise HarnessError(f"{source}: coils.driver is {driver!r}, not 'pulsed' or 'continuous'")
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= 1:
+        raise HarnessError(f"{source}: coils.on_fraction is {value!r}, not a part of a tick")
+    return float(value) if driver == "continuous" else None
 
 
 def _tick_hz(value: object, where: str) -> int | None:

@@ -11,11 +11,14 @@ from fractions import Fraction
 from itertools import chain, islice, pairwise
 
 from fsw.wire.messages import CoilStatus, Sync
+from sim.audit.findings import seconds_text
 from sim.record.candump import LogEntry
 
 MICRO = 1_000_000
 _PEEK = 100_000
 """Entries that may be read before the rate must be decided."""
+_MOST_HZ = 1000
+"""Ticks a second: the fastest rate that is looked for; a scenario may state a faster one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +48,18 @@ class LogClock:
     def seconds(self, instant: int) -> Fraction:
         """The instant in seconds from t = 0."""
         return Fraction(instant, MICRO * self.units)
+
+
+def clock_notes(clock: LogClock, stated_hz: int | None) -> Iterator[str]:
+    """What a reader must know of a clock, a sentence each; ``stated_hz`` is the rate of a scenario."""
+    if clock.epoch_s is None:
+        period = seconds_text(clock.seconds(clock.period))
+        yield f"no tick rate in the log: judged by timestamps, a COIL_STATUS every {period} s"
+        return
+    if not clock.simulated:
+        yield "timestamps are not simulated time: judged by ticks alone"
+    if stated_hz not in (None, clock.units):
+        yield f"the log has {clock.units} ticks a second, its scenario says {stated_hz}"
 
 
 def _instant(timestamp_us: int, units: int) -> int:
@@ -77,7 +92,7 @@ def read_clock(entries: Iterator[LogEntry], tick_hz: int | None) -> tuple[LogClo
         is_new = unix not in seconds
         seconds[unix] = (tick if is_new else seconds[unix][0], tick)
         if len(seconds) > 1 and is_new:
-            rates = _rates(seconds, rates)
+            rates = _rates(seconds, rates, tick_hz)
             if rates is not None and len(rates) <= 1:
                 break
     clock = None if first is None else _tick_clock(first, rates, tick_hz)
@@ -86,19 +101,25 @@ def read_clock(entries: Iterator[LogEntry], tick_hz: int | None) -> tuple[LogClo
     return clock, chain(peeked, entries)
 
 
-def _rates(seconds: dict[int, tuple[int, int]], before: list[int] | None) -> list[int] | None:
+def _rates(
+    seconds: dict[int, tuple[int, int]], before: list[int] | None, stated: int | None
+) -> list[int] | None:
     """The tick rates that give unix_time_s - tick // tick_hz one value; None if it is too early to say.
 
     Args:
         seconds: first and last tick of each unix_time_s so far.
         before: the rates that have fitted until now; None if it was too early to say.
+        stated: by a scenario.
     """
     (unix, (tick, _)), *_, (last_unix, (last_tick, _)) = seconds.items()
     if last_unix - unix == 1 and tick > 0:
         return None
     ends = [(tick, unix) for unix, ticks in seconds.items() for tick in ticks]
     tried = range(last_tick - tick, 0, -1) if before is None else before
-    return [hz for hz in tried if len({unix - tick // hz for tick, unix in ends}) == 1]
+    likely = list(tried[-_MOST_HZ:])  # any number of ticks may lie between two SYNCs
+    if stated is not None and stated in tried and stated not in likely:
+        likely.insert(0, stated)
+    return [hz for hz in likely if len({unix - tick // hz for tick, unix in ends}) == 1]
 
 
 def _tick_clock(first: LogEntry, rates: list[int] | None, tick_hz: int | None) -> LogClock | None:

@@ -13,9 +13,10 @@ from fsw.input.schema import Nested
 from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
-from fsw.wire.messages import NAMES, CoilBoot, CoilRefused, CoilStatus, PlantEnd, Sync
+from fsw.wire.messages import NAMES, CoilRefused, PlantEnd
 from sim.audit.auditor import AuditReport, audit
 from sim.audit.limits import limits_in
+from sim.audit.whole_entries import JUDGED
 from sim.campaign.frame_digest import FrameDigest
 from sim.faults.section import break_frames, make_plant
 from sim.flight.flight_loop import fly
@@ -38,9 +39,11 @@ from sim.scenario.telecommands import uplink
 Figures = dict[str, float]
 Measure = Callable[[Scenario, Histories, Estimates], Figures]
 
-_JUDGED = frozenset({CoilStatus.ID, CoilBoot.ID, CoilRefused.ID, Sync.ID, PlantEnd.ID}) | {
-    can_id for can_id, name in NAMES.items() if name.endswith("_EVENT")
-}
+_JUDGED = (
+    JUDGED
+    | {CoilRefused.ID, PlantEnd.ID}
+    | {can_id for can_id, name in NAMES.items() if name.endswith("_EVENT")}
+)
 """Identifiers of the frames that audit and tally evaluate."""
 
 _COLUMNS = {

@@ -6,11 +6,13 @@ A signature is over the bytes of run.json and lies beside it as 64 bytes: openss
 from pathlib import Path
 from typing import Protocol
 
+from fsw.input.regular_file import read_regular
 from sim.errors import HarnessError, needing
 from sim.record.run_dir import replace_file
 
 SUFFIX = ".sig"
 LONGEST_KEY = 10_000
+LONGEST_SIGNATURE = 10_000
 
 
 class PrivateKey(Protocol):
@@ -82,7 +84,7 @@ def signature_fault(path: Path, key: PublicKey) -> str:
 
     signature = signature_path(path)
     try:
-        key.verify(signature.read_bytes(), path.read_bytes())
+        key.verify(read_regular(signature, LONGEST_SIGNATURE), path.read_bytes())
     except FileNotFoundError:
         return f"{path.name} is not signed: there is no {signature.name} beside it"
     except OSError as error:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from fsw.bus.open_bus import open_bus
 from fsw.input.own_code import display
 from fsw.input.schema import Nested
+from fsw.node import TICKS_MODULO
 from fsw.table.config import flight_config
 from fsw.wire.candump_line import format_time
 from fsw.wire.frame import Frame
@@ -52,6 +53,15 @@ class LoggedRun(NamedTuple):
     def ticks(self) -> int:
         """Number of ticks of the run; 0 where it is unknown."""
         return self.record["ticks"] if self.record else 0
+
+    def miscounted(self, ticks: int) -> list[str]:
+        """What is wrong with a log of so many ticks, a line: that it has none, or not those of its run."""
+        if ticks == 0:
+            return ["nothing was replayed: the log has no tick"]
+        flown = self.record["flown"]["ticks"] if self.record and self.record["complete"] else ticks
+        if (flown - ticks) % TICKS_MODULO == 0:
+            return []
+        return [f"differs: the log ends after {ticks} ticks, and {run_dir.RUN} names {flown}"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,11 +124,14 @@ def through_flight_software(log: Path, run: LoggedRun) -> ReplayReport:
         how = "inside a line" if result.cut else "without its end mark"
         end = f"after line {result.end_line}, at tick {max(result.last_tick, 0)}"
         lines.append(f"incomplete: the log ends {how} {end}")
-    return ReplayReport(exact and holds and result.ended, tuple(lines), result)
+    miscounted = run.miscounted(result.last_tick + 1 if result.ticks else 0) if result.ended else []
+    return ReplayReport(exact and holds and result.ended and not miscounted, (*lines, *miscounted), result)
 
 
 def _found(result: ReplayResult, same_platform: bool) -> list[str]:
-    """How exact a replay is, in words."""
+    """How exact a replay is, in words; none of a whole log without a tick."""
+    if result.bit_exact and result.ended and not result.ticks:
+        return []
     if result.bit_exact:
         return [f"bit-exact: {result.ticks} ticks, {result.frames} frames, every state CRC equal"]
     if result.command_exact:
@@ -148,7 +161,9 @@ def through_plant(log: Path, run: LoggedRun) -> ReplayReport:
         for logged, is_last in _by_time(log):
             if is_last and logged == [plant.end()]:
                 holds, lines = _binding(log, run)
-                return ReplayReport(holds, (f"plant reproduced: {ticks} ticks, every frame equal", *lines))
+                miscounted = run.miscounted(ticks)
+                equal = [f"plant reproduced: {ticks} ticks, every frame equal"] if ticks else []
+                return ReplayReport(holds and not miscounted, (*equal, *lines, *miscounted))
             sent = plant.begin_tick()
             begin = _beginning(logged, sent)
             end = begin + len(sent)

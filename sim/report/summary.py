@@ -5,6 +5,7 @@ from typing import Any
 
 from fsw.wire.messages import CLASSES, NAMES, SENDERS, CoilRefused, FswEvent, intact
 from sim.audit.auditor import AuditReport
+from sim.audit.findings import DipoleCount
 from sim.flight.isolations import isolated_unit, readmitted_unit
 from sim.record.candump import LogEntry
 from sim.record.run_record import FlightRecord
@@ -90,6 +91,7 @@ def summarise(
         },
         "max_pulse_s": audit.max_pulse_s,
         "limits_ok": audit.ok,
+        "dipoles": _dipoles(audit.dipoles),
     }
     summary |= performance.figures()
     summary["spin_radps"] = _spin(performance.spin(), audit)
@@ -97,6 +99,13 @@ def summarise(
     summary["isolated"] = tally.isolated
     summary["events"] = tally.events
     return {key: value for key, value in summary.items() if value is not None}
+
+
+def _dipoles(count: DipoleCount | None) -> Json | None:
+    """What a continuous driver has driven; of a pulsed one nothing."""
+    if count is None:
+        return None
+    return {"total": count.statuses, "per_coil": count.driven, "driven": count.any_driven}
 
 
 def _spin(figures: Json | None, audit: AuditReport) -> Json | None:

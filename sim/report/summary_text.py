@@ -62,6 +62,11 @@ def _limits(summary: Json) -> str:
     pulses, gaps_s = summary["pulses"], summary["min_gap_s"]
     gap_s = gaps_s.get("limited", gaps_s["any"])
     text = "kept" if summary["limits_ok"] else "BROKEN"
+    if "dipoles" in summary:
+        dipoles = summary["dipoles"]
+        return (
+            f"{text}: driven in {dipoles['driven']} of {dipoles['total']} ticks, {pulses['refused']} refused"
+        )
     text += f": {pulses['total']} pulses, {pulses['refused']} refused"
     if "max_pulse_s" in summary:
         text += f", longest {summary['max_pulse_s']:.3f} s"

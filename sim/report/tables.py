@@ -82,7 +82,7 @@ def coil_table(summary: Json, audit: AuditReport) -> Table:
     any_gap = _seconds(gap["any"]) if limits.shared else ""
     total = ("all", str(summary["pulses"]["total"]), f"{duty['total']:.2%}", any_gap)
     most_duty = f"≤ {limits.most_duty(float(audit.span_s)):.2%}"
-    least_gap = f"≥ {limits.backoff_us / 1e6:g}"
+    least_gap = "" if limits.is_continuous else f"≥ {limits.backoff_us / 1e6:g}"
     rows += (
         [total, ("limit of all", "", most_duty, least_gap)]
         if limits.shared

@@ -43,7 +43,7 @@ def failures(
     """
     senders = run.get("second_senders")
     clauses = {
-        Verdict.LIMITS: _limits(audit_report.statuses, audit_report.violations),
+        Verdict.LIMITS: _limits(audit_report.missing, audit_report.violations),
         Verdict.REPLAY: _replay(replay_result, run.get("platform") == run_dir.fingerprint()),
         Verdict.SECOND_SENDERS: describe_senders(senders) if senders else "",
         Verdict.COMPLETE: _incomplete(run, ticks, audit_report.complete, voucher),
@@ -57,11 +57,11 @@ def flight_failed(clauses: Mapping[str, str]) -> str:
     return f"the flight failed: {'; '.join(clauses.values())}"
 
 
-def _limits(judged: int, violations: Sequence[Violation]) -> str:
+def _limits(missing: str, violations: Sequence[Violation]) -> str:
     if violations:
         times = "once" if len(violations) == 1 else f"{len(violations)} times"
         return f"the limits are broken {times}, first at {violations[0]}"
-    return "" if judged else "the limits cannot be judged: the log has no COIL_STATUS"
+    return f"the limits cannot be judged: the log has no {missing}" if missing else ""
 
 
 def _replay(replay_result: ReplayResult, same_platform: bool) -> str:

@@ -43,7 +43,8 @@ def audit_scheduler(make: MakeScheduler, flight: Flight) -> AuditReport:
     with _tracing_off():
         report = audit(_log(_without_quiet_ticks(ticks), flight.limits.tick_hz), _audit_limits(flight.limits))
     violations = sorted([*report.violations, *improper], key=lambda one: (one.time_s, one.line))
-    return replace(report, violations=tuple(violations), notes=())
+    # ticks were left out: the time without a report is none of the board's
+    return replace(report, violations=tuple(violations), notes=(), unreported_s=Fraction(0), doubt="")
 
 
 def audit_law(law: Law, flight: Flight, control: ControlConfig | None = None) -> AuditReport:

@@ -1,5 +1,7 @@
 """A flight with the continuous driver and every disturbance: audited, and replayed through both."""
 
+import json
+
 import h5py
 import numpy as np
 import pytest
@@ -61,11 +63,33 @@ def test_what_is_asked_in_a_tick_is_told_at_the_next_and_has_flowed(flight, copy
     assert flowed == pytest.approx(9.6 * np.array(reported) @ axes, rel=1e-7, abs=1e-7)
 
 
-def test_the_audit_finds_no_pulse_and_no_violation(flight, torquer):
+def test_the_audit_judges_what_the_dipole_status_reports(flight, torquer, copy_of):
     done = torquer("check", flight)
     assert (done.code, done.err) == (0, "")
-    assert "0 pulses" in done.out
-    assert done.out.splitlines()[-1].startswith("OK")
+    lines = done.out.splitlines()
+    assert lines[-1] == "OK: continuous driver within full scale"
+    dipoles = [frame for _, _, frame in copy_of(flight).entries if frame.can_id == CoilDipoleStatus.ID]
+    driven = sum(any(CoilDipoleStatus.decode(frame.data)[:3]) for frame in dipoles)
+    assert f"driven in {driven} of 483 ticks, duty {100 * 0.8 * driven / 483:.2f} %" in lines[1]
+    assert "one coil at a time" not in done.out
+
+
+def test_the_same_log_without_its_scenario_breaks_the_limits_of_a_pulsed_driver(flight, torquer, tmp_path):
+    bare = tmp_path / "bare.log"
+    bare.write_bytes((flight / "bus.log").read_bytes())
+    done = torquer("check", bare)
+    assert done.code == 1
+    assert "a pulsed driver reports" in done.out
+
+
+def test_the_summary_has_what_was_driven_and_for_how_long(flight, torquer):
+    summary = json.loads((flight / "summary.json").read_text())
+    dipoles = summary["dipoles"]
+    assert (dipoles["total"], dipoles["driven"] > 100) == (483, True)
+    assert summary["duty"]["total"] == pytest.approx(0.8 * dipoles["driven"] / 483)
+    assert summary["duty"]["per_coil"] == pytest.approx([0.8 * one / 483 for one in dipoles["per_coil"]])
+    driven = f"limits     kept: driven in {dipoles['driven']} of 483 ticks, 0 refused"
+    assert driven in torquer("report", flight).out
 
 
 def test_a_level_on_such_a_board_is_a_pulse_to_the_audit(flight, torquer, copy_of):
@@ -74,6 +98,7 @@ def test_a_level_on_such_a_board_is_a_pulse_to_the_audit(flight, torquer, copy_o
     done = torquer("check", copy.write())
     assert done.code == 1
     assert "the boot of the board" in done.out
+    assert "a continuous driver reports level 2" in done.out
 
 
 def test_it_replays_through_controller_and_plant(flight, torquer):

@@ -104,7 +104,8 @@ class BusLog:
             if start < tick and now - end < Fraction(1, self.tick_hz):
                 remaining_ms = ceil(max(end - now, 0) * 1000)
                 return CoilStatus(level, coil, remaining_ms, 0, 0, seq & 0xFF, tick & 0xF)
-        return CoilStatus(0, tick % 3, 0, 0, 0, 0, tick & 0xF)
+        last_seq = sum(pulse.start < tick for pulse in self.pulses) & 0xFF
+        return CoilStatus(0, tick % 3, 0, 0, 0, last_seq, tick & 0xF)
 
     def change(self, tick: int, **values: int) -> None:
         """The tick's status with other values, sealed anew."""

@@ -215,6 +215,22 @@ def test_a_boot_counts_in_a_tick_with_two_statuses(judge, bus_log, fired):
     assert found(judge(log)) == [(ViolationKind.BOOT, 110, 110, 0)]
 
 
+@pytest.mark.parametrize("silent", [range(100, 131), range(101, 131), range(100, 102)])
+def test_a_boot_counts_from_its_own_tick_whenever_the_board_reports_next(judge, bus_log, fired, silent):
+    log = bus_log(1, 300, [fired(0, 130)], boots=[100])
+    log.statuses |= {tick: [] for tick in silent}
+    assert (ViolationKind.BOOT, 130, 130, 0) in found(judge(log))
+    log = bus_log(1, 300, [fired(0, 200)], boots=[100])
+    log.statuses |= {tick: [] for tick in silent}
+    assert judge(log).ok
+
+
+def test_a_boot_right_after_the_status_of_its_tick_locks_the_next_interval(bus_log, fired):
+    log = bus_log(1, 300, [fired(0, 150)])
+    log.statuses[150].append(CoilBoot(0, 1, 0).encode())
+    assert found(audit(log.entries(), AuditLimits())) == [(ViolationKind.BOOT, 150, 150, 0)]
+
+
 # --- levels and coils
 
 

@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 
 from fsw.core import telemetry
-from fsw.wire.messages import CoilBoot
+from fsw.wire.messages import CLASSES
 from hil_stub import node
 from sim.audit.auditor import AuditLimits, ViolationKind, audit
 from sim.audit.check import CONTRACT_VERSION, check, limits_beside, render
@@ -175,9 +175,14 @@ def test_a_log_that_was_altered_in_the_middle(run, bus_log):
         check(folder, None)
 
 
-def test_a_log_of_another_bus_contract(run, bus_log):
+BOOTS = [message for message in CLASSES.values() if message.__name__.endswith("Boot")]
+
+
+@pytest.mark.parametrize("boot", BOOTS, ids=lambda boot: boot.__name__)
+def test_a_log_of_another_bus_contract(run, bus_log, boot):
     log = bus_log(ticks=20)
-    log.statuses[7].insert(0, CoilBoot(0, CONTRACT_VERSION + 1, 0).encode())
+    values = dict.fromkeys(boot._fields, 0) | {"version": CONTRACT_VERSION + 1}
+    log.statuses[7].insert(0, boot(**values).encode())
     with pytest.raises(HarnessError, match="line 22 is of version 2 of the bus contract, and only version 1"):
         check(run(log), None)
 

@@ -334,6 +334,19 @@ def test_syncs_that_fit_no_tick_rate(bus_log):
     assert report.violations[0].line == 0, "it is of no line, but of all"
 
 
+@pytest.mark.parametrize("tick_hz", [None, 1])
+@pytest.mark.parametrize("at_tick", [0, 1, 30])
+def test_one_sync_of_an_absurd_tick_is_a_violation_of_sync(bus_log, tick_hz, at_tick):
+    log = bus_log(1, 50)
+    entries = log.entries()
+    place = next(i for i, e in enumerate(entries) if e.frame == Sync(at_tick, log.epoch_s + at_tick).encode())
+    forged = Sync(2**32 - 7, log.epoch_s + at_tick + 1).encode()
+    entries.insert(place + 1, entries[place]._replace(frame=forged))
+    report = audit(entries, AuditLimits(tick_hz=tick_hz))
+    assert ViolationKind.SYNC in {one.kind for one in report.violations}
+    assert report.exit_code == 1
+
+
 def test_nothing_is_judged_of_nothing():
     report = audit([], AuditLimits())
     assert not report.ok

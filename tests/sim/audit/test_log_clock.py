@@ -93,6 +93,21 @@ def test_syncs_that_contradict_each_other(bus_log):
     assert clock_of(entries).epoch_s is None
 
 
+@pytest.mark.parametrize("tick_hz", [None, 1, 10])
+@pytest.mark.parametrize("tick", [40_000_000, 2**32 - 1])
+def test_an_absurd_tick_is_no_rate_and_takes_no_time(tick, tick_hz):
+    syncs = [Sync(0, 1000).encode(), Sync(tick, 1001).encode()]
+    entries = [entry._replace(frame=frame) for entry, frame in zip(at(0, 1_000_000), syncs, strict=True)]
+    assert clock_of(entries, tick_hz).epoch_s == (None if tick_hz is None else 1000)
+    assert clock_of(entries).contradictory
+
+
+def test_a_rate_faster_than_any_is_one_only_if_it_is_stated(bus_log):
+    entries = bus_log(2000, 2050).entries(1999)
+    assert clock_of(entries, 2000).units == 2000
+    assert clock_of(bus_log(1000, 1050).entries()).units == 1000
+
+
 @pytest.mark.parametrize("units", [1, 3, 7, 64, 1000])
 def test_the_instant_of_a_timestamp_is_that_of_its_tick_to_the_microsecond(units):
     clock = LogClock(units, MICRO, 0, 0, True, False)

@@ -1,5 +1,6 @@
 """Signatures of a file: who may read a key, what verifies, and what openssl makes of it."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -61,6 +62,12 @@ def test_every_byte_of_the_file_and_of_the_signature_counts(files):
 def test_another_key_does_not_verify_it(files):
     sign(files / "run.json", ed25519.Ed25519PrivateKey.generate())
     assert "is not the signature" in signature_fault(files / "run.json", public_key(files / "public.pem"))
+
+
+def test_a_pipe_in_place_of_the_signature_is_reported_and_not_waited_for(files):
+    os.mkfifo(files / "run.json.sig")
+    fault = signature_fault(files / "run.json", public_key(files / "public.pem"))
+    assert fault == "run.json.sig cannot be read: it is no regular file"
 
 
 def test_a_missing_signature_is_reported(files):

@@ -20,6 +20,8 @@ SHAPES = {
         "ok": bool,
         "limits": dict,
         "statuses": int,
+        "dipole_statuses": int,
+        "unreported_s": float,
         "span_s": float,
         "pulses": dict,
         "max_pulse_s": float | None,

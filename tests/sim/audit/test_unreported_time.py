@@ -1,0 +1,100 @@
+"""Stretches without COIL_STATUS: which of them may hide a whole pulse."""
+
+import pytest
+
+from fsw.wire.messages import CoilStatus, Sync
+from sim.audit.auditor import AuditLimits, audit
+from sim.audit.check import render
+from sim.audit.documents import as_json, suites
+
+
+def silent(log, ticks):
+    """The log without the statuses of these ticks."""
+    log.statuses |= {tick: [] for tick in ticks}
+    return log
+
+
+def test_a_log_of_one_status_is_not_taken_for_a_judged_one(judge, bus_log):
+    report = judge(silent(bus_log(ticks=500), [*range(7), *range(8, 500)]))
+    assert (report.ok, report.exit_code) == (True, 1)
+    assert report.unreported_s == 499
+    told = "unreported: 499.000 s, in 2 stretches of at least 4.000 s, the first from t=0.000 s"
+    assert told in report.notes
+    verdict = render(report).splitlines()[-1]
+    assert verdict.startswith("FAIL: limits kept as far as the board reports, but a pulse may have gone")
+    assert "unreported in the 7.000 s from t=0.000 s: no status before or after it" in verdict
+    assert as_json(report)["unreported_s"] == 499
+    assert as_json(report)["ok"] is False
+    assert next(case for case in suites(report)["log"] if case.name == "reported throughout").failure
+
+
+@pytest.mark.parametrize("sync", [True, False])
+def test_a_silence_that_hides_a_pulse_is_told(bus_log, fired, sync):
+    log = silent(bus_log(1, 300, [fired(0, 100), fired(1, 110)], sync=sync), range(104, 131))
+    report = audit(log.entries(), AuditLimits())
+    assert report.violations == ()
+    assert report.unreported_s == 27
+    assert "seq is 1 before and 2 after it" in report.doubt
+    assert report.exit_code == 1
+
+
+def test_a_silence_without_a_new_request_hides_none(judge, bus_log, fired):
+    report = judge(silent(bus_log(1, 300, [fired(0, 100)]), range(104, 131)))
+    assert (report.exit_code, report.doubt) == (0, "")
+    assert (
+        "unreported: 27.000 s, in a stretch of at least 4.000 s, the first from t=103.000 s" in report.notes
+    )
+
+
+@pytest.mark.parametrize(("ticks", "exit_code"), [(3, 0), (4, 1)])
+@pytest.mark.parametrize("tick_hz", [1, 10])
+def test_a_silence_shorter_than_the_longest_pulse_and_a_tick_is_only_counted(
+    judge, bus_log, fired, ticks, exit_code, tick_hz
+):
+    count = ticks if tick_hz == 1 else 27 + ticks
+    log = silent(bus_log(tick_hz, 300, [fired(0, 100, 1000)]), range(101, 101 + count))
+    report = judge(log)
+    assert report.exit_code == exit_code
+    assert (report.unreported_s > 0) is bool(exit_code)
+    assert f"{count} ticks without COIL_STATUS" in report.notes
+
+
+def test_a_silence_that_begins_within_a_pulse_hides_its_end(judge, bus_log, fired):
+    report = judge(silent(bus_log(1, 300, [fired(0, 100)]), range(102, 131)))
+    assert "a coil was on when it began" in report.doubt
+
+
+def test_a_silence_to_the_end_of_the_log_may_hide_a_pulse(judge, bus_log):
+    assert judge(silent(bus_log(ticks=100), range(97, 100))).exit_code == 0
+    assert judge(silent(bus_log(ticks=100), range(96, 100))).exit_code == 1
+
+
+def test_only_before_its_first_boot_is_a_board_known_to_be_off(judge, bus_log):
+    assert judge(silent(bus_log(ticks=100, boots=[50]), range(50))).exit_code == 0
+    report = judge(silent(bus_log(ticks=100, boots=[50]), range(10, 50)))
+    assert (report.exit_code, report.unreported_s) == (1, 40)
+    assert "the board boots after it" in report.doubt
+
+
+def test_ticks_that_sync_skips_have_no_status_to_miss(bus_log, fired):
+    entries = [
+        entry
+        for entry in silent(bus_log(1, 300, [fired(0, 100)]), range(100, 131)).entries()
+        if entry.frame.can_id != Sync.ID or not 100 <= Sync.decode(entry.frame.data).tick < 131
+    ]
+    report = audit(entries, AuditLimits())
+    assert report.exit_code == 0
+    assert report.unreported_s == 31
+
+
+def test_each_of_two_runs_in_one_log_begins_anew(bus_log):
+    entries = bus_log(ticks=50).entries() + silent(bus_log(ticks=50), range(10)).entries()
+    assert "in the 10.000 s from t=0.000 s" in audit(entries, AuditLimits()).doubt
+
+
+def test_a_status_with_a_wrong_crc_reports_nothing(judge, bus_log):
+    log = bus_log(ticks=100)
+    for tick in range(40, 50):
+        frame = log.statuses[tick][0]
+        log.statuses[tick] = [frame._replace(data=bytes(CoilStatus.LENGTH))]
+    assert judge(log).unreported_s == 10

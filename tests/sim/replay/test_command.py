@@ -1,0 +1,57 @@
+"""What a replay of a run reports: only a log that has ticks, and those of its run, is exact."""
+
+import json
+import shutil
+
+import pytest
+
+from fsw.wire.candump_line import format_line, format_time
+from fsw.wire.messages import PlantEnd
+from sim.record import run_dir
+from sim.record.binding import Binding
+from sim.record.candump import read_log
+from sim.replay.command import LoggedRun, through_flight_software, through_plant
+from sim.replay.documents import as_json
+
+
+@pytest.fixture
+def run(recorded_run, tmp_path):
+    """Log and run of a recorded flight, with other values in its run.json."""
+
+    def make(log=None, **values):
+        folder = shutil.copytree(recorded_run, tmp_path / "run")
+        record = json.loads((folder / run_dir.RUN).read_text()) | values
+        path = folder / run_dir.BUS_LOG
+        if log is not None:
+            path.write_text(log)
+        return path, LoggedRun(run_dir.read_scenario(folder), record, Binding({}))
+
+    return make
+
+
+@pytest.fixture
+def log_of_no_tick(recorded_run):
+    """The boot of the flight software, then the end."""
+    boot = next(iter(read_log(recorded_run / run_dir.BUS_LOG)))
+    stamp = format_time(boot.timestamp_us)
+    return "".join(format_line(stamp, "vcan0", frame) for frame in (boot.frame, PlantEnd(0).encode()))
+
+
+@pytest.mark.parametrize("through", [through_flight_software, through_plant])
+def test_a_log_without_a_tick_is_not_exact(run, log_of_no_tick, through):
+    report = through(*run(log_of_no_tick))
+    assert not report.ok
+    assert "nothing was replayed: the log has no tick" in report.lines
+    assert not any("exact:" in line or "reproduced" in line for line in report.lines)
+    assert as_json(report)["ok"] is False
+
+
+@pytest.mark.parametrize("through", [through_flight_software, through_plant])
+@pytest.mark.parametrize(
+    ("complete", "flown", "ok"), [(True, 300, True), (True, 301, False), (False, 301, True)]
+)
+def test_a_log_has_as_many_ticks_as_its_complete_run(run, through, complete, flown, ok):
+    report = through(*run(complete=complete, flown={"ticks": flown}))
+    assert report.ok is ok
+    told = "differs: the log ends after 300 ticks, and run.json names 301" in report.lines
+    assert told is not ok
