@@ -8,8 +8,6 @@ from typing import Any, NamedTuple
 
 from mutants import Mutant, mutants
 
-from sim.record.run_dir import replace_file
-
 ROOT = Path(__file__).resolve().parents[1]
 HERE = ROOT / "tests" / "mutation"
 PAGE = ROOT / "docs" / "mutation.md"
@@ -92,7 +90,10 @@ def stored(path: Path) -> dict[str, Any]:
 
 
 def store(path: Path, results: dict[str, Any]) -> None:
-    replace_file(path, (json.dumps(results, indent=2, sort_keys=True) + "\n").encode())
+    """Replace the file at once, so that a kill leaves what was measured before."""
+    written = path.with_name(f".{path.name}")
+    written.write_text(json.dumps(results, indent=2, sort_keys=True) + "\n", encoding="utf-8")
+    written.replace(path)
 
 
 def digest(module: str, target: Target) -> str:

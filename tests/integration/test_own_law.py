@@ -106,7 +106,7 @@ def test_a_comparison_fails_where_it_fails(torquer, folder):
     words = ("--laws", "law", "--driver", "pulsed", *SHORT, "--workers", "1", "--law", "bad.py:law")
     ended = torquer("compare", "microsat", *words, "--out", "failed")
     assert ended.code == 1
-    assert "torquer: the law law of bad.py, tick 200: it fails" in ended.err
+    assert "torquer: law (pulsed) was not flown: the law law of bad.py, tick 200: it fails" in ended.err
 
 
 def test_an_installed_law_flies_by_its_name(torquer, folder, monkeypatch):
