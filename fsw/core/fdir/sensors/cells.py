@@ -17,6 +17,7 @@ another as the satellite turns. What speaks against a second cell that is lit sp
 """
 
 from collections.abc import Sequence
+from itertools import zip_longest
 from typing import NamedTuple
 
 from fsw.core.algebra.quaternion import rotate
@@ -104,11 +105,11 @@ def unusable(health: CellsHealth) -> tuple[int, ...]:
 
 
 def cell_changes(before: CellsHealth, after: CellsHealth) -> list[tuple[int, int, int]]:
-    """(number, fault before, fault after) of each cell whose fault has changed."""
-    was = before or (CellWatch(),) * len(after)
+    """(number, fault before, fault after) of each cell whose fault has changed; one without a watch has none."""
+    pairs = zip_longest(before, after, fillvalue=CellWatch())
     return [
         (cell, one.watch.fault, other.watch.fault)
-        for cell, (one, other) in enumerate(zip(was, after, strict=True))
+        for cell, (one, other) in enumerate(pairs)
         if one.watch.fault != other.watch.fault
     ]
 
