@@ -105,7 +105,7 @@ def unusable(health: CellsHealth) -> tuple[int, ...]:
 
 
 def cell_changes(before: CellsHealth, after: CellsHealth) -> list[tuple[int, int, int]]:
-    """(number, fault before, fault after) of each cell whose fault has changed; one without a watch has none."""
+    """(number, fault before, fault after) of each cell whose fault has changed; without a watch, none."""
     pairs = zip_longest(before, after, fillvalue=CellWatch())
     return [
         (cell, one.watch.fault, other.watch.fault)
