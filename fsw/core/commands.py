@@ -18,7 +18,7 @@ from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.readings import Readings, Telecommand
 from fsw.core.laws.entry import LawEntry, is_met
-from fsw.core.laws.interface import MAX_SPIN_RADPS, ControlConfig
+from fsw.core.laws.interface import MAX_GAIN, MAX_SPIN_RADPS, ControlConfig
 from fsw.core.laws.table import LAWS, OWN_NUMBER
 from fsw.core.orbit.elements import RANGES, Upload
 from fsw.core.orbit.ephemeris import advance, with_orbit
@@ -141,9 +141,9 @@ def _spin(state: FlightState, message: TcSpin, situation: Situation) -> Outcome:
 def _gain(state: FlightState, message: TcGain, situation: Situation) -> Outcome:
     if message.gain not in list(Gain):
         return TcAckResult.UNKNOWN
-    if message.mantissa < 0:
-        return TcAckResult.OUT_OF_RANGE
     value = decimal(message.mantissa, message.exponent)
+    if message.mantissa < 0 or value > MAX_GAIN:
+        return TcAckResult.OUT_OF_RANGE
     changed: dict[str, Any] = {Gain(message.gain).name.lower(): value}
     return state._replace(setpoint=state.setpoint._replace(**changed))
 

@@ -181,6 +181,15 @@ class TestGain:
     def test_that_is_negative(self, refused, mantissa):
         refused(TcAckResult.OUT_OF_RANGE, TcGain(Gain.K_A, -5, mantissa))
 
+    @pytest.mark.parametrize("gain", Gain)
+    @pytest.mark.parametrize(("mantissa", "exponent"), [(1, 15), (1_000_001, 6), (2**31 - 1, 127)])
+    def test_that_no_satellite_needs(self, refused, gain, mantissa, exponent):
+        refused(TcAckResult.OUT_OF_RANGE, TcGain(gain, exponent, mantissa))
+
+    def test_at_the_bound(self, obey, state):
+        _, results = obey(state, TcGain(Gain.K_W, 12, 1))
+        assert results == [TcAckResult.ACCEPTED]
+
 
 class TestOrbit:
     def test_elements_are_kept_aside_and_fly_nothing(self, obey, state, elements, itamsat):
