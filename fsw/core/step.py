@@ -52,7 +52,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     was not received, with TICK_DONE alone. Only the first and one that advances take the frames of the inbox.
     """
     before, tick = state, inbox.tick
-    belief, syncs = judge(state.syncs, state.tick, tick)
+    belief, syncs = judge(state.syncs, state.tick, tick, config.leap_ticks)
     if belief is Belief.IGNORED or belief is Belief.UNANSWERED:
         state = state._replace(ignored_syncs=state.ignored_syncs + 1, syncs=syncs)
         return state, (_done(state, tick),) if belief is Belief.UNANSWERED else ()
@@ -72,9 +72,9 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     return state, (*frames, _done(state, tick))
 
 
-def takes_inbox(before: FlightState, after: FlightState) -> bool:
+def takes_inbox(before: FlightState, after: FlightState, leap_ticks: int) -> bool:
     """Whether a step has taken the frames of its inbox: the SYNC was the first, or advanced the count."""
-    return after.tick != before.tick and (before.tick < 0 or near(before.tick, after.tick))
+    return after.tick != before.tick and (before.tick < 0 or near(before.tick, after.tick, leap_ticks))
 
 
 def _done(state: FlightState, tick: int) -> Frame:

@@ -12,7 +12,7 @@ from fsw.core.fdir.evidence import PAIR_NUMBERS, SIGMAS
 from fsw.core.fdir.faults import CoilFault, SensorFault
 from fsw.core.fdir.sensors.plausibility import SHADOW_M
 from fsw.core.gate.second_sender import SIGNS
-from fsw.core.gate.sync_watch import LEAP_TICKS
+from fsw.core.gate.sync_watch import LEAP_S
 from fsw.core.monitors import RATE_LIMIT_RADPS, UNIT_TOLERANCE, Monitor
 from fsw.core.orbit.earth import RADIUS_M
 from sim.fault_table.checks import ALONE_DEG, WRONG_DEG, WRONG_S
@@ -203,7 +203,7 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     Requirement(
         "REQ-BUS-03",
         "A SYNC of neither the tick that was answered nor one near ahead has no effect but an event.",
-        f"up to {LEAP_TICKS} ticks ahead",
+        f"up to {LEAP_S} s ahead",
         None,
         Event.STRANGE_SYNC,
     ),
@@ -218,7 +218,7 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     Requirement(
         "REQ-BUS-05",
         "A PLANT_END that does not fit the ticks that were answered has no effect but an event.",
-        f"the ticks answered; up to {LEAP_TICKS} more where silence follows",
+        f"the ticks answered; up to {LEAP_S} s more where silence follows",
         None,
         Event.FALSE_END,
     ),

@@ -208,7 +208,7 @@ class TestNumbering:
 
 class TestEvents:
     def found(self, before, after, readings=NOTHING, violated=None):
-        return telemetry.happenings(before, after, readings, violated)
+        return telemetry.happenings(before, after, readings, violated, 60)
 
     def test_nothing_happened(self, state):
         assert self.found(state, state._replace(tick=7)) == []
