@@ -238,6 +238,11 @@ def untraced(state: EstimatorState) -> EstimatorState:
     return state if estimate is None else state._replace(estimate=estimate._replace(trace=None))
 
 
+def anew(state: EstimatorState) -> EstimatorState:
+    """The state with nothing of the past; it counts as a restart if there was an estimate."""
+    return state._replace(rejected_in_a_row=0, batch=EMPTY) if state.estimate is None else restart(state)
+
+
 def restart(state: EstimatorState) -> EstimatorState:
     """The state without an estimate: the next pair of good samples starts the filter."""
     return state._replace(
