@@ -64,7 +64,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     observation = _update(state, readings, reference, config)
     state = _judge(state, observation, config)
     state, violated = supervise(state, config)
-    state, acks = command(state, observation.readings, violated is not None, config)
+    state, acks = command(state, observation.readings, violated, config)
     law_input, demand = _control(state, observation, model, config)
     state, requests = _schedule(state, observation.readings, law_input, demand, config)
     replies = (*requests, *acks)

@@ -186,7 +186,8 @@ def happenings(
 ) -> list[Happening]:
     """The events of this tick: changes only, so that nothing is reported again while it lasts."""
     found = _plant(before, after, readings, leap_ticks) if before.tick >= 0 else []
-    if after.modes.trips > before.modes.trips and violated is not None:
+    tripped = after.modes.trips > before.modes.trips
+    if violated is not None and (tripped or violated != before.violated):
         found.append(Happening(Event.MONITOR_TRIPPED, violated))
     if after.modes.mode is not before.modes.mode:
         found.append(Happening(Event.MODE_CHANGED, after.modes.mode))

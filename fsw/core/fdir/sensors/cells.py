@@ -17,7 +17,6 @@ another as the satellite turns. What speaks against a second cell that is lit sp
 """
 
 from collections.abc import Sequence
-from itertools import zip_longest
 from typing import NamedTuple
 
 from fsw.core.algebra.quaternion import rotate
@@ -106,10 +105,11 @@ def unusable(health: CellsHealth) -> tuple[int, ...]:
 
 def cell_changes(before: CellsHealth, after: CellsHealth) -> list[tuple[int, int, int]]:
     """(number, fault before, fault after) of each cell whose fault has changed; without a watch, none."""
-    pairs = zip_longest(before, after, fillvalue=CellWatch())
+    cells = max(len(before), len(after))
+    was, now = (health or (CellWatch(),) * cells for health in (before, after))
     return [
         (cell, one.watch.fault, other.watch.fault)
-        for cell, (one, other) in enumerate(pairs)
+        for cell, (one, other) in enumerate(zip(was, now, strict=True))
         if one.watch.fault != other.watch.fault
     ]
 
