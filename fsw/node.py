@@ -5,7 +5,6 @@ from enum import Enum, auto
 from typing import Self
 
 from fsw.core.config import FlightConfig
-from fsw.core.gate.sync_watch import LEAP_TICKS
 from fsw.core.state import FlightState, Inbox
 from fsw.core.step import boot, step, takes_inbox
 from fsw.core.telemetry import boot_frame
@@ -82,7 +81,7 @@ class FlightNode:
         before = self.state
         inbox = Inbox(sync.tick, sync.unix_time_s, tuple(self._inbox))
         self.state, outbox = step(before, inbox, self.config)
-        if takes_inbox(before, self.state):
+        if takes_inbox(before, self.state, self.config.leap_ticks):
             self._inbox = []
         if outbox:
             self.end = End.NO
@@ -91,6 +90,6 @@ class FlightNode:
     def _judge_end(self, ticks: int) -> End:
         """Whether a PLANT_END ends the run; none is accepted before the first tick."""
         ahead = (ticks - self.state.tick - 1) % TICKS_MODULO
-        if self.state.tick < 0 or ahead > LEAP_TICKS:
+        if self.state.tick < 0 or ahead > self.config.leap_ticks:
             return self.end
         return End.DOUBTED if ahead else End.YES

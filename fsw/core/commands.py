@@ -18,8 +18,9 @@ from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.readings import Readings, Telecommand
 from fsw.core.laws.entry import LawEntry, is_met
-from fsw.core.laws.interface import MAX_SPIN_RADPS, ControlConfig
+from fsw.core.laws.interface import MAX_GAIN, MAX_SPIN_RADPS, ControlConfig
 from fsw.core.laws.table import LAWS, OWN_NUMBER
+from fsw.core.monitors import Monitor, trips
 from fsw.core.orbit.elements import RANGES, Upload
 from fsw.core.orbit.ephemeris import advance, with_orbit
 from fsw.core.orbit.propagation import element_orbit
@@ -46,7 +47,7 @@ from fsw.wire.messages import (
 class Situation(NamedTuple):
     """What a telecommand is judged by besides the state."""
 
-    violated: bool
+    violated: Monitor | None
     config: FlightConfig
 
 
@@ -57,14 +58,14 @@ LAW_NAMES = {law.number: name for name, law in LAWS.items()}
 
 
 def command(
-    state: FlightState, readings: Readings, violated: bool, config: FlightConfig
+    state: FlightState, readings: Readings, violated: Monitor | None, config: FlightConfig
 ) -> tuple[FlightState, list[TcAck]]:
     """Carry out the telecommands of this tick.
 
     Args:
         state: of this tick, its mode as the mode table left it.
         readings: what came through the gate.
-        violated: whether a monitor is violated in this tick.
+        violated: the monitor that is violated in this tick, if any.
         config: the onboard tables.
 
     Returns:
@@ -91,18 +92,16 @@ def _ack(message: Telecommand, result: TcAckResult, tick: int) -> TcAck:
 
 
 def _mode(state: FlightState, message: TcMode, situation: Situation) -> Outcome:
-    """SAFE at any time; out of SAFE when all is well; to a law that needs the attitude while it is valid."""
+    """SAFE at any time; out of it when all is well, but for a rate that DETUMBLE is to end.
+
+    To a law that needs the attitude while it is valid.
+    """
     if message.mode not in list(Mode):
         return TcAckResult.UNKNOWN
     mode, now = Mode(message.mode), state.modes
-    well = not situation.violated and now.trips < situation.config.modes.trips_to_stay_safe
-    allowed = {
-        Mode.SAFE: True,
-        Mode.DETUMBLE: well,
-        Mode.ACQUIRE: well and state.attitude.valid,
-        Mode.POINT: well and state.attitude.valid,
-    }
-    if not allowed[mode]:
+    free = now.trips < situation.config.modes.trips_to_stay_safe and not trips(situation.violated, mode)
+    needs_attitude = mode in (Mode.ACQUIRE, Mode.POINT)
+    if mode is not Mode.SAFE and not (free and (state.attitude.valid or not needs_attitude)):
         return TcAckResult.NOT_ALLOWED
     return state._replace(modes=modes.request_mode(now, mode, state.tick))
 
@@ -141,9 +140,9 @@ def _spin(state: FlightState, message: TcSpin, situation: Situation) -> Outcome:
 def _gain(state: FlightState, message: TcGain, situation: Situation) -> Outcome:
     if message.gain not in list(Gain):
         return TcAckResult.UNKNOWN
-    if message.mantissa < 0:
-        return TcAckResult.OUT_OF_RANGE
     value = decimal(message.mantissa, message.exponent)
+    if message.mantissa < 0 or value > MAX_GAIN:
+        return TcAckResult.OUT_OF_RANGE
     changed: dict[str, Any] = {Gain(message.gain).name.lower(): value}
     return state._replace(setpoint=state.setpoint._replace(**changed))
 

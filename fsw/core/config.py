@@ -8,6 +8,7 @@ from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.fdir.fdir import FdirConfig
 from fsw.core.gate.calibration import NO_CALIBRATION, Calibration
 from fsw.core.gate.second_sender import SecondSenderConfig
+from fsw.core.gate.sync_watch import LEAP_S
 from fsw.core.laws.interface import ControlConfig, Wheel
 from fsw.core.modes import ModeConfig
 from fsw.core.orbit.ephemeris import EphemerisModel
@@ -33,6 +34,11 @@ class FlightConfig:
     event_spacing_ticks: int
     calibration: Calibration = NO_CALIBRATION
     own_field: OwnField | None = None
+
+    @property
+    def leap_ticks(self) -> int:
+        """How far ahead a SYNC is believed at once."""
+        return LEAP_S * self.tick_hz
 
     @property
     def wheel(self) -> Wheel | None:

@@ -1,5 +1,9 @@
 """Monitors: each a name, a limit and a predicate over one tick. A violation trips to SAFE.
 
+A rate beyond its bound is the last of the list: named, it is the only violation. It trips ACQUIRE and POINT
+alone. DETUMBLE is how it ends, by B-dot, which needs no estimate: SAFE, in which nothing is driven, would
+keep it.
+
 The purpose of each is in ``docs/requirements.md``.
 """
 
@@ -9,7 +13,8 @@ from math import isfinite
 from typing import NamedTuple
 
 from fsw.core.algebra.vector import Vec3
-from fsw.core.estimation.attitude import Attitude
+from fsw.core.estimation.attitude import Attitude, rate_bounded
+from fsw.wire.messages import Mode
 
 
 class Monitor(IntEnum):
@@ -39,7 +44,6 @@ class MonitorInput(NamedTuple):
     stale_after_ticks: int
 
 
-RATE_LIMIT_RADPS = 0.5
 UNIT_TOLERANCE = 1e-6
 """How far the square of the quaternion's norm may be off."""
 
@@ -57,17 +61,21 @@ MONITORS: tuple[tuple[Monitor, Callable[[MonitorInput], bool]], ...] = (
         Monitor.QUATERNION_UNIT,
         lambda w: abs(_square(*w.attitude.q_body_from_orbit) - 1.0) < UNIT_TOLERANCE,
     ),
-    (
-        Monitor.RATE_BOUNDED,
-        lambda w: max(map(abs, w.attitude.omega_body_orbit_radps)) < RATE_LIMIT_RADPS,
-    ),
     (Monitor.OWED_FINITE, lambda w: isfinite(sum(w.owed_impulse_body_nms))),
     (Monitor.FIELD_FRESH, lambda w: w.field_age_ticks < w.stale_after_ticks),
     (Monitor.COIL_STATUS_FRESH, lambda w: w.status_age_ticks < w.stale_after_ticks),
     (Monitor.COIL_AS_COMMANDED, lambda w: not w.unexpected_drive),
     (Monitor.ORBIT_KNOWN, lambda w: w.orbit_known),
     (Monitor.NO_SECOND_SENDER, lambda w: not w.second_sender),
+    (Monitor.RATE_BOUNDED, lambda w: rate_bounded(w.attitude)),
 )
+
+
+def trips(violated: Monitor | None, mode: Mode) -> bool:
+    """Whether a violation, the first of the list, leads to SAFE and keeps it."""
+    if violated is Monitor.RATE_BOUNDED:
+        return mode in (Mode.ACQUIRE, Mode.POINT)
+    return violated is not None
 
 
 def first_violation(watched: MonitorInput) -> Monitor | None:

@@ -11,8 +11,7 @@ from fsw.core.actuation.pulses import boot
 from fsw.core.actuation.wheel import WheelView
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
-from fsw.core.estimation.estimator import restart
-from fsw.core.estimation.start.batch import EMPTY
+from fsw.core.estimation.estimator import anew
 from fsw.core.fdir import fdir
 from fsw.core.gate.second_sender import SecondSenderWatch
 from fsw.core.laws.interface import FieldSample
@@ -26,16 +25,13 @@ def restarted(state: FlightState, tick: int, config: FlightConfig) -> FlightStat
 
     A throttled event stays throttled for the rest of its time, a second sender detected for all of its time.
     """
-    other, events, begun = state.second_sender, state.events, state.estimator
+    other, events = state.second_sender, state.events
     reported = tuple(kind._replace(tick=tick - (state.tick - kind.tick)) for kind in events.reported)
-    estimated = begun.estimate is not None
     return state._replace(
         tick=-1,
         second_sender=SecondSenderWatch(other.signs, tick, other.can_id) if other.signs else other,
         ephemeris=None,
-        estimator=restart(state.estimator)
-        if estimated
-        else state.estimator._replace(rejected_in_a_row=0, batch=EMPTY),
+        estimator=anew(state.estimator),
         health=fdir.plant_restarted(state.health),
         attitude=UNKNOWN,
         modes=ModeState(since_tick=tick, trips=state.modes.trips, held=state.modes.held),

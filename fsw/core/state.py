@@ -38,7 +38,7 @@ class FlightState(NamedTuple):
     MAG_FIELD and COIL_STATUS, ``time_error_s`` the last SYNC's time less the expected; ``setpoint`` and
     ``memory`` are the control law's; ``orbit`` and ``upload`` are elements from the ground, those in use
     (None: the table's orbit) and those not loaded yet; ``sent`` are the counters of fsw's own messages;
-    ``wheel`` is None without a wheel that can be driven.
+    ``wheel`` is None without a wheel that can be driven; ``violated`` is the monitor that is, 0: none.
     """
 
     tick: int
@@ -64,6 +64,7 @@ class FlightState(NamedTuple):
     events: Throttle
     sent: tuple[int, ...]
     wheel: WheelView | None = None
+    violated: int = 0
 
     def integers(self) -> tuple[int, ...]:
         """Every integer and flag, in the order that recorded logs fix."""
@@ -89,6 +90,7 @@ class FlightState(NamedTuple):
             *self.events.integers(),
             *self.sent,
             *(self.wheel.integers() if self.wheel is not None else ()),
+            *((self.violated,) if self.violated else ()),
         )
 
     def floats(self) -> tuple[float, ...]:

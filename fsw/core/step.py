@@ -11,7 +11,7 @@ from fsw.core.algebra.quaternion import rotate
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
-from fsw.core.estimation.estimator import predict, restart, update
+from fsw.core.estimation.estimator import anew, predict, update
 from fsw.core.estimation.orbital_attitude import orbital_attitude, perfect_attitude
 from fsw.core.estimation.parameters import NOTHING
 from fsw.core.estimation.samples import usable_field, usable_sun
@@ -52,7 +52,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     was not received, with TICK_DONE alone. Only the first and one that advances take the frames of the inbox.
     """
     before, tick = state, inbox.tick
-    belief, syncs = judge(state.syncs, state.tick, tick)
+    belief, syncs = judge(state.syncs, state.tick, tick, config.leap_ticks)
     if belief is Belief.IGNORED or belief is Belief.UNANSWERED:
         state = state._replace(ignored_syncs=state.ignored_syncs + 1, syncs=syncs)
         return state, (_done(state, tick),) if belief is Belief.UNANSWERED else ()
@@ -64,7 +64,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     observation = _update(state, readings, reference, config)
     state = _judge(state, observation, config)
     state, violated = supervise(state, config)
-    state, acks = command(state, observation.readings, violated is not None, config)
+    state, acks = command(state, observation.readings, violated, config)
     law_input, demand = _control(state, observation, model, config)
     state, requests = _schedule(state, observation.readings, law_input, demand, config)
     replies = (*requests, *acks)
@@ -72,9 +72,9 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     return state, (*frames, _done(state, tick))
 
 
-def takes_inbox(before: FlightState, after: FlightState) -> bool:
+def takes_inbox(before: FlightState, after: FlightState, leap_ticks: int) -> bool:
     """Whether a step has taken the frames of its inbox: the SYNC was the first, or advanced the count."""
-    return after.tick != before.tick and (before.tick < 0 or near(before.tick, after.tick))
+    return after.tick != before.tick and (before.tick < 0 or near(before.tick, after.tick, leap_ticks))
 
 
 def _done(state: FlightState, tick: int) -> Frame:
@@ -138,10 +138,10 @@ def _predict(
     """Carry ephemeris and estimate to this tick; the reference is None where the orbit has no position."""
     ephemeris = advance(state.ephemeris, state.tick, model)
     if ephemeris is None:
-        return state._replace(ephemeris=None), None
+        return _without_orbit(state), None
     reference = reference_at(ephemeris, state.tick, config.ephemeris)
     if not plausible(reference):
-        return state._replace(ephemeris=None, estimator=restart(state.estimator)), None
+        return _without_orbit(state), None
     state = state._replace(ephemeris=ephemeris)
     if state.estimator.estimate is None and not state.estimator.batch.samples:
         return state, reference
@@ -149,6 +149,12 @@ def _predict(
     driven_am2 = fdir.driven_am2(state.health, view, config.fdir)
     drives = driven(view, driven_am2, state.status_tick == tick, range(before + 1, tick + 1), coils)
     return state._replace(estimator=predict(state.estimator, reference, drives, config.estimator)), reference
+
+
+def _without_orbit(state: FlightState) -> FlightState:
+    """The state where the orbit has no position: nothing carries the estimate on, so it ends."""
+    health = fdir.plant_restarted(state.health)
+    return state._replace(ephemeris=None, estimator=anew(state.estimator), health=health)
 
 
 def _update(

@@ -3,7 +3,7 @@
 from fsw.core import modes
 from fsw.core.config import FlightConfig
 from fsw.core.laws.table import open_loop
-from fsw.core.monitors import Monitor, MonitorInput, first_violation
+from fsw.core.monitors import Monitor, MonitorInput, first_violation, trips
 from fsw.core.state import FlightState
 
 
@@ -29,8 +29,12 @@ def supervise(state: FlightState, config: FlightConfig) -> tuple[FlightState, Mo
     )
     violated = first_violation(watched)
     can_act = not state.health.sensors.field.fault or open_loop(state.setpoint)
+    tripped = trips(violated, state.modes.mode)
     situation = modes.judge(
-        state.attitude, state.setpoint.spin_radps, violated is not None, can_act, state.modes, config.modes
+        state.attitude, state.setpoint.spin_radps, tripped, can_act, state.modes, config.modes
     )
     after = modes.advance(state.modes, situation, state.tick, config.modes)
-    return state if after is state.modes else state._replace(modes=after), violated
+    number = 0 if violated is None else violated
+    if after is state.modes and number == state.violated:
+        return state, violated
+    return state._replace(modes=after, violated=number), violated

@@ -72,7 +72,7 @@ def report(
 ) -> tuple[FlightState, list[Frame]]:
     """The frames of this tick: requests and acknowledgements, then telemetry as it is due."""
     events, of_events = event_messages(
-        before, state, observation.readings, violated, config.event_spacing_ticks
+        before, state, observation.readings, violated, config.event_spacing_ticks, config.leap_ticks
     )
     messages = [
         *replies,
@@ -121,10 +121,15 @@ def heartbeat_messages(state: FlightState, rates: RateTable) -> list[CountedMess
 
 
 def event_messages(
-    before: FlightState, after: FlightState, readings: Readings, violated: Monitor | None, spacing_ticks: int
+    before: FlightState,
+    after: FlightState,
+    readings: Readings,
+    violated: Monitor | None,
+    spacing_ticks: int,
+    leap_ticks: int,
 ) -> tuple[Throttle, list[CountedMessage]]:
     """The events of this tick that may be sent, and the throttle after it."""
-    found = happenings(before, after, readings, violated)
+    found = happenings(before, after, readings, violated, leap_ticks)
     throttle, passed = throttle_events(after.events, found, after.tick, spacing_ticks)
     return throttle, [event_message(happening, after.tick) for happening in passed]
 
@@ -177,11 +182,12 @@ def heartbeat_message(tick: int, modes: ModeState, rejects: int) -> CountedMessa
 
 
 def happenings(
-    before: FlightState, after: FlightState, readings: Readings, violated: Monitor | None
+    before: FlightState, after: FlightState, readings: Readings, violated: Monitor | None, leap_ticks: int
 ) -> list[Happening]:
     """The events of this tick: changes only, so that nothing is reported again while it lasts."""
-    found = _plant(before, after, readings) if before.tick >= 0 else []
-    if after.modes.trips > before.modes.trips and violated is not None:
+    found = _plant(before, after, readings, leap_ticks) if before.tick >= 0 else []
+    tripped = after.modes.trips > before.modes.trips
+    if violated is not None and (tripped or violated != before.violated):
         found.append(Happening(Event.MONITOR_TRIPPED, violated))
     if after.modes.mode is not before.modes.mode:
         found.append(Happening(Event.MODE_CHANGED, after.modes.mode))
@@ -199,10 +205,10 @@ def happenings(
     return found
 
 
-def _plant(before: FlightState, after: FlightState, readings: Readings) -> list[Happening]:
+def _plant(before: FlightState, after: FlightState, readings: Readings, leap_ticks: int) -> list[Happening]:
     """A restart of the plant, and frames under its identifiers that it cannot have sent."""
     found = []
-    if not near(before.tick, after.tick):
+    if not near(before.tick, after.tick, leap_ticks):
         found.append(Happening(Event.PLANT_RESTARTED, before.tick))
     elif before.syncs.strange_tick >= 0:
         found.append(Happening(Event.STRANGE_SYNC, before.syncs.strange_tick))

@@ -29,8 +29,8 @@ CELLS_START = 2.0
 """The same from cells, in their ``model_sigma``: one of the three may see the Earth and not the Sun."""
 MIN_SEPARATION_RAD = radians(15.0)
 """Of field and Sun at the start: TRIAD's error about the axis between them is then below 4 times theirs."""
-MAX_REFUSALS = 60
-"""Samples refused in a row after which the filter restarts."""
+MAX_REFUSALS_S = 60
+"""The filter restarts after as many samples refused in a row as one sensor gives in this time."""
 DRIVE_SIGMA = 0.002
 """Relative error of a driven dipole from pulse to pulse."""
 TORQUE_NOISE_RTS = 0.05
@@ -70,7 +70,7 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
             max_angle_error_rad=limits.angle_rad + limits.field_t / LEAST_FIELD_T,
             min_separation_rad=MIN_SEPARATION_RAD,
         ),
-        restart_after_rejections=MAX_REFUSALS,
+        restart_after_rejections=MAX_REFUSALS_S * table.time.tick_hz,
         valid_sigma_rad=radians(tuning.valid_sigma_deg),
         blank_ticks=ceil(known.latency_s * table.time.tick_hz - 1e-9),
     )

@@ -168,12 +168,13 @@ def _whole(answer: object) -> Demand:
     """
     if not isinstance(answer, Demand):
         raise ValueError(f"it returns {_kind(answer)}, not a Demand")
-    impulse = answer.impulse_body_nms
+    impulse, wheel = answer.impulse_body_nms, answer.wheel_torque_nm
     return Demand(
         _vector("m_body_am2", answer.m_body_am2),
         None if impulse is None else _vector("impulse_body_nms", impulse),
         _numbers("memory", answer.memory),
         None if answer.pulse is None else _pulse(answer.pulse),
+        None if wheel is None else _number("wheel_torque_nm", wheel),
     )
 
 
@@ -185,6 +186,16 @@ def _pulse(value: object) -> Pulse:
     if coil not in range(3) or level not in range(-3, 4):
         raise ValueError("pulse is not a coil 0 to 2 and a level -3 to 3")
     return Pulse(coil, level)
+
+
+def _number(name: str, value: object) -> float:
+    try:
+        number = float(value)  # type: ignore[arg-type]  # whatever they gave
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} is {_kind(value)}, not a number") from None
+    if not isfinite(number):
+        raise ValueError(f"{name} is not finite: {number:g}")
+    return number
 
 
 def _vector(name: str, values: object) -> tuple[float, float, float]:
@@ -199,7 +210,7 @@ def _numbers(name: str, values: object) -> tuple[float, ...]:
     try:
         given = islice(iter(values), MOST_MEMORY + 1)  # type: ignore[call-overload]  # whatever they gave
         numbers = tuple(map(float, given))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name} is {_kind(values)}, not a sequence of numbers") from None
     if len(numbers) > MOST_MEMORY:
         raise ValueError(f"{name} has more than {MOST_MEMORY} numbers")

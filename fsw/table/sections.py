@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, Strict, ValidationInfo, field_validator, model_validator
 
 from fsw.core.algebra.vector import Mat3, Vec3
-from fsw.core.laws.interface import MAX_SPIN_RADPS
+from fsw.core.laws.interface import MAX_GAIN, MAX_SPIN_RADPS
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.propagation import sgp4_orbit
 from fsw.input.near import did_you_mean
@@ -23,6 +23,9 @@ from fsw.table.inertia import check_inertia, three_numbers
 
 CIRCULAR_KEYS = ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")
 """Keys of a circular orbit; the other kind has ``tle``."""
+
+SetpointGain = Annotated[float, Field(ge=0.0, le=MAX_GAIN)]
+"""As the ground may set it in flight."""
 
 
 class TimeTable(Section):
@@ -169,9 +172,9 @@ class ControlTable(Section):
     law_sha256: str | None = Field(default=None, pattern="^[0-9a-f]{64}$")
     law_withheld: bool | None = None
     law: str = Field(max_length=1000)
-    k_w: NotNegative
-    k_a: NotNegative
-    k_i: NotNegative = 0.0
+    k_w: SetpointGain
+    k_a: SetpointGain
+    k_i: SetpointGain = 0.0
     spin_radps: float = Field(default=0.0, ge=-MAX_SPIN_RADPS, le=MAX_SPIN_RADPS)
     leak_s: Positive
     minimiser: Literal["closed_form", "genetic"] = "closed_form"

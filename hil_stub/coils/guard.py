@@ -47,6 +47,7 @@ class Guard:
         self._clock_ms: int  # its last reading; there is one as soon as there is an interlock by it
         self._driven = False  # whether a coil was on at some instant since the last tick
         self._tick_under_way = False  # the last tick was entered, and its SYNC is still to come
+        self._silent = False  # no SYNC has come since the dead-man woke
         self.level = 0
         """Driven in the tick that has ended, or just accepted."""
 
@@ -69,14 +70,14 @@ class Guard:
 
     def sync(self) -> None:
         """The SYNC of this tick: the one before is over."""
-        self._tick_under_way = False
+        self._tick_under_way = self._silent = False
 
     def silence(self) -> None:
-        """No SYNC for too long: off, and locked out in full."""
+        """No SYNC for too long: off and locked out in full, and until the next SYNC in any case."""
         self._by_ticks = silence(self._by_ticks, self._limits)
         if self._by_clock is not None:
             self._by_clock = silence(self._by_clock, self._clock_limits)
-        self.level, self._driven, self._tick_under_way = 0, False, False
+        self.level, self._driven, self._tick_under_way, self._silent = 0, False, False, True
 
     def ask(self, request: Request, tick: int) -> CoilRefusedReason | None:
         """Judge a request at ``tick``: why it is refused (None: accepted). A refused one changes nothing."""
@@ -84,6 +85,8 @@ class Guard:
         by_clock = self._by_clock
         if reason is None and by_clock is not None:
             by_clock, reason = ask(by_clock, request, tick, self._clock_limits)
+        if reason is None and self._silent:
+            reason = CoilRefusedReason.LOCKOUT
         if reason is None:
             self._by_ticks, self._by_clock = by_ticks, by_clock
             self.level, self._driven = by_ticks.level, True
@@ -145,5 +148,5 @@ class Guard:
 
     @property
     def locked_out(self) -> bool:
-        """Whether the back-off of any coil runs."""
-        return any(self.lockout_ms(coil) for coil in range(COILS))
+        """Whether the back-off of any coil runs, or the dead-man holds all."""
+        return self._silent or any(self.lockout_ms(coil) for coil in range(COILS))

@@ -57,7 +57,8 @@ class WheelDriver:
         self._limits = limits
         self._node = Node(WheelBoot, WheelHeartbeat, limits.tick_hz, table_crc)
         self._answered: int | None = None  # the tick that requests may answer now
-        self._torque_nm: float | None = None  # taken in this tick
+        self._taken_nm: float | None = None  # what the motor was set to in this tick
+        self._torque_nm = 0.0  # driven now
         self._ends_ms: int | None = None
         self._result = WheelStatusResult.NONE
         self._speed_radps: float | None = None
@@ -81,7 +82,7 @@ class WheelDriver:
         elapsed = self._node.advance(tick)
         if elapsed is None:
             return []
-        driven_nm = self._torque_nm if elapsed == 1 else None
+        driven_nm = self._taken_nm if elapsed == 1 else None
         self._speed_radps = measured(speed_radps)
         status = WheelStatus(
             int(self._speed_radps is not None),
@@ -91,8 +92,8 @@ class WheelDriver:
             counter=self._statuses,
         )
         self._statuses += 1
-        self._answered, self._torque_nm, self._ends_ms = tick, None, None
-        self._result = WheelStatusResult.NONE
+        self._answered, self._taken_nm, self._result = tick, None, WheelStatusResult.NONE
+        self._coast()
         frames = [*self._node.boot(), status.encode(), *self._found(tick)]
         return frames + self._node.heartbeat(self._state(driven_nm), self.rejects)
 
@@ -109,17 +110,17 @@ class WheelDriver:
         if frame.can_id != WheelTorque.ID:
             return
         request = WheelTorque.decode(frame.data)
-        taken = self._torque_nm is not None
+        taken = self._taken_nm is not None
         asked = Asked(request.torque, request.tick, self._answered, taken, self._speed_radps)
         self._result = judge(asked, self._limits)
         if self._result is WheelStatusResult.DRIVEN:
-            self._torque_nm = request.torque
+            self._taken_nm = self._torque_nm = request.torque
             self._ends_ms = None if clock_ms is None else clock_ms + self._limits.hold_ms
 
     def drive(self) -> float:
         """The motor torque over the tick that has begun [N m]; ends the time for requests that answer it."""
         self._answered = None
-        return self._torque_nm or 0.0
+        return self._torque_nm
 
     def pass_time(self, clock_ms: int | None) -> None:
         """The board's own clock reads ``clock_ms``; None: it has none. A torque that is over ends."""
@@ -132,7 +133,7 @@ class WheelDriver:
         self._answered, self._silenced = None, True
 
     def _coast(self) -> None:
-        self._torque_nm, self._ends_ms = None, None
+        self._torque_nm, self._ends_ms = 0.0, None
 
     def _found(self, tick: int) -> list[Frame]:
         """The events of this tick: each fault once, when it is found."""

@@ -101,6 +101,7 @@ class Rig:
         if self._condition is Condition.STOPPED:
             return []
         waiting, self._backlog = self._backlog, []
+        leap = self._config.leap_ticks
         for fault in self.plant.active:
             node.state = fault.upset(node.state)
         answers: list[Frame] = []
@@ -109,9 +110,11 @@ class Rig:
             for frame in waiting:
                 before = node.state.tick
                 answer = node.receive(frame)
-                if _needs_answer(frame, before) and not _answers_tick(answer, Sync.decode(frame.data).tick):
+                if _needs_answer(frame, before, leap) and not _answers_tick(
+                    answer, Sync.decode(frame.data).tick
+                ):
                     record.unanswered.append(tick)
-                if node.state.tick != before >= 0 and not near(before, node.state.tick):
+                if node.state.tick != before >= 0 and not near(before, node.state.tick, leap):
                     record.restarts.append(tick)
                     record.requests_before.append(len(record.request_ticks) + _requests(answers))
                 answers += answer
@@ -128,12 +131,12 @@ def _requests(frames: list[Frame]) -> int:
     return sum(frame.can_id == CoilFire.ID for frame in frames)
 
 
-def _needs_answer(frame: Frame, before: int) -> bool:
+def _needs_answer(frame: Frame, before: int, leap_ticks: int) -> bool:
     """Whether a frame is a SYNC that moves time forward by a plausible number of ticks."""
     if frame.can_id != Sync.ID or not intact(frame):
         return False
     tick = Sync.decode(frame.data).tick
-    return before < 0 or near(before, tick)
+    return before < 0 or near(before, tick, leap_ticks)
 
 
 def _answers_tick(answer: tuple[Frame, ...], tick: int) -> bool:

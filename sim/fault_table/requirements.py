@@ -7,13 +7,14 @@ event can have as its argument is in it.
 from enum import IntEnum
 from typing import NamedTuple
 
+from fsw.core.estimation.attitude import RATE_LIMIT_RADPS
 from fsw.core.events import Event
 from fsw.core.fdir.evidence import PAIR_NUMBERS, SIGMAS
 from fsw.core.fdir.faults import CoilFault, SensorFault
 from fsw.core.fdir.sensors.plausibility import SHADOW_M
 from fsw.core.gate.second_sender import SIGNS
-from fsw.core.gate.sync_watch import LEAP_TICKS
-from fsw.core.monitors import RATE_LIMIT_RADPS, UNIT_TOLERANCE, Monitor
+from fsw.core.gate.sync_watch import LEAP_S
+from fsw.core.monitors import UNIT_TOLERANCE, Monitor
 from fsw.core.orbit.earth import RADIUS_M
 from sim.fault_table.honesty import ALONE_DEG, WRONG_DEG, WRONG_S
 
@@ -203,7 +204,7 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     Requirement(
         "REQ-BUS-03",
         "A SYNC of neither the tick that was answered nor one near ahead has no effect but an event.",
-        f"up to {LEAP_TICKS} ticks ahead",
+        f"up to {LEAP_S} s ahead",
         None,
         Event.STRANGE_SYNC,
     ),
@@ -218,7 +219,7 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     Requirement(
         "REQ-BUS-05",
         "A PLANT_END that does not fit the ticks that were answered has no effect but an event.",
-        f"the ticks answered; up to {LEAP_TICKS} more where silence follows",
+        f"the ticks answered; up to {LEAP_S} s more where silence follows",
         None,
         Event.FALSE_END,
     ),
@@ -252,9 +253,10 @@ _HEAD = """# Requirements on fault detection
 
 Written from `sim/fault_table/requirements.py` by `python tools/write_requirements.py`; a test fails when it
 is stale or when no test cites one of its requirements. The number in parentheses is the argument of the
-event. A violated `REQ-TRIP` requirement leads to SAFE in the same tick. For a sensor the argument is 100
-times its number (1: magnetometer, 2: Sun sensor) plus the number of the fault; for a coil likewise, by its
-axis. An isolated unit is left out of estimation and control.
+event. A violated `REQ-TRIP` requirement leads to SAFE in the same tick; `REQ-TRIP-03` alone does from ACQUIRE
+and POINT, and is otherwise left to DETUMBLE. For a sensor the argument is 100 times its number
+(1: magnetometer, 2: Sun sensor) plus the number of the fault; for a coil likewise, by its axis. An isolated
+unit is left out of estimation and control.
 
 | id | requirement | limit | monitored by | event |
 |---|---|---|---|---|"""

@@ -251,7 +251,7 @@ def _telecommands(scenario: Scenario) -> Iterator[str]:
     if not scenario.telecommand:
         return
     config = flight_config(flight_table(scenario))
-    state, situation = boot(config), Situation(False, config)
+    state, situation = boot(config), Situation(None, config)
     for place, telecommand in enumerate(scenario.telecommand):
         for message in telecommand.messages():
             if isinstance(message, SAME_AT_ANY_TIME):

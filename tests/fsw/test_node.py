@@ -3,7 +3,7 @@
 import pytest
 
 from fsw.core.gate.second_sender import SIGNS
-from fsw.core.gate.sync_watch import LEAP_TICKS
+from fsw.core.gate.sync_watch import LEAP_S
 from fsw.core.state import Inbox
 from fsw.core.step import boot, step
 from fsw.node import MOST_INBOX_FRAMES, NO_PLANT_S, End, FlightNode
@@ -113,12 +113,12 @@ class TestEnd:
         run.receive(end)
         assert run.ended
 
-    @pytest.mark.parametrize("ticks", [0, 6, 8 + LEAP_TICKS, 1000, 2**24 - 1])
+    @pytest.mark.parametrize("ticks", [0, 6, 8 + LEAP_S, 1000, 2**24 - 1])
     def test_of_another_count_is_none(self, run, ticks):
         run.receive(PlantEnd(ticks).encode())
         assert run.end is End.NO
 
-    @pytest.mark.parametrize("ticks", [8, 7 + LEAP_TICKS])
+    @pytest.mark.parametrize("ticks", [8, 7 + LEAP_S])
     def test_of_a_tick_near_ahead_is_in_doubt_until_a_sync_is_answered(self, run, config, ticks):
         run.receive(PlantEnd(ticks).encode())
         run.receive(PlantEnd(1000).encode())
@@ -211,10 +211,10 @@ def test_a_wrong_sync_does_not_deafen(node, config, first):
 
 def test_one_sync_from_far_ahead_moves_nothing(node, config):
     node.receive(sync(config, 0))
-    assert node.receive(sync(config, LEAP_TICKS + 1)) == ()
+    assert node.receive(sync(config, LEAP_S + 1)) == ()
     assert node.state.ignored_syncs == 1
     assert TickDone.decode(node.receive(sync(config, 1))[-1].data).tick == 1
-    assert TickDone.decode(node.receive(sync(config, 1 + LEAP_TICKS))[-1].data).tick == 1 + LEAP_TICKS
+    assert TickDone.decode(node.receive(sync(config, 1 + LEAP_S))[-1].data).tick == 1 + LEAP_S
 
 
 def test_a_leap_is_believed_when_the_next_sync_goes_on_from_it(node, config):

@@ -46,6 +46,22 @@ class TestTheDeadMan:
         (status,) = read(self.fly(watched, [100], self.fire(100)))
         assert (status.level, status.remaining_ms) == (-2, 2000)
 
+    @pytest.mark.parametrize("has_clock", [False, True])
+    @pytest.mark.parametrize("backoff_ms", [0, 10])
+    def test_without_a_back_off_it_accepts_nothing_until_sync_is_back(self, has_clock, backoff_ms):
+        bench = Bench(lambda: CoilBoard(CoilLimits(1, 3000, backoff_ms)), 5000, has_clock)
+        bench.switch_on()
+        bench.receive(Sync(0, 0).encode(), 0)
+        for now_ms in (5001, 6000):
+            bench.receive(self.fire(0), now_ms)
+            assert bench.pin is None
+        bench.receive(Sync(0, 0).encode(), 6001)
+        bench.receive(self.fire(0), 6050)
+        assert bench.pin is None, "the same SYNC once more is none"
+        bench.receive(Sync(1, 0).encode(), 7000)
+        bench.receive(self.fire(1), 7000 + backoff_ms)
+        assert bench.pin is not None
+
     def test_it_switches_off_and_locks_out_in_full_from_the_sync_on(self, watched, read):
         self.fly(watched, range(150))
         self.fly(watched, [150], self.fire(150))

@@ -25,3 +25,11 @@ class Attitude(NamedTuple):
 
 
 UNKNOWN = Attitude((1.0, 0.0, 0.0, 0.0), ZERO, 4.0, 1.0, False)
+
+RATE_LIMIT_RADPS = 0.5
+"""About each axis: no satellite is to turn as fast."""
+
+
+def rate_bounded(attitude: Attitude) -> bool:
+    """Whether the rate is one that the satellite may have."""
+    return max(map(abs, attitude.omega_body_orbit_radps)) < RATE_LIMIT_RADPS

@@ -21,7 +21,7 @@ from fsw.core.gate.readings import Readings
 from fsw.core.orbit.earth import MU_M3PS2
 from fsw.core.orbit.ephemeris import Reference
 
-MAX_ELAPSED_TICKS = 60
+MAX_ELAPSED_S = 60.0
 """After a longer silence the filter restarts instead of predicting."""
 
 
@@ -120,7 +120,7 @@ def predict(
         for m_body_am2, _ in driven:
             batch = waited(batch, m_body_am2, config.mekf.tick_s)
         return state._replace(batch=batch)
-    if len(driven) > MAX_ELAPSED_TICKS:
+    if len(driven) * config.mekf.tick_s > MAX_ELAPSED_S + 1e-6:
         return restart(state)
     estimate = _predicted(state.estimate, reference, driven, config.mekf)
     return state._replace(estimate=estimate) if mekf.healthy(estimate) else restart(state)
@@ -236,6 +236,11 @@ def untraced(state: EstimatorState) -> EstimatorState:
     """The state without the trace of deviations."""
     estimate = state.estimate
     return state if estimate is None else state._replace(estimate=estimate._replace(trace=None))
+
+
+def anew(state: EstimatorState) -> EstimatorState:
+    """The state with nothing of the past; it counts as a restart if there was an estimate."""
+    return state._replace(rejected_in_a_row=0, batch=EMPTY) if state.estimate is None else restart(state)
 
 
 def restart(state: EstimatorState) -> EstimatorState:

@@ -7,15 +7,15 @@ in lockstep it repeats its SYNC until it is answered, in real time it goes on.
 
 Others may come between the two. What is in doubt is forgotten when a settled count advances by a tick, so
 that strange SYNCs between true ones never add up. A count that has skipped or restarted settles in
-``LEAP_TICKS``; until then the one that was abandoned for it may be believed again. Of two plants that both
+``LEAP_S``; until then the one that was abandoned for it may be believed again. Of two plants that both
 advance tick by tick, nothing here can decide which is the false one.
 """
 
 from enum import Enum, auto
 from typing import NamedTuple
 
-LEAP_TICKS = 60
-"""A SYNC no further ahead is believed at once: those between were lost. A new count settles in as many."""
+LEAP_S = 60
+"""A SYNC no further ahead is believed at once: those between were lost. A new count settles in as long."""
 
 MOST_DOUBTED = 64
 """How many ticks are remembered as in doubt, the latest."""
@@ -53,37 +53,38 @@ class SyncWatch(NamedTuple):
         return (*self.doubted, self.settled_tick, self.strange_tick)
 
 
-def judge(watch: SyncWatch, current: int, tick: int) -> tuple[Belief, SyncWatch]:
+def judge(watch: SyncWatch, current: int, tick: int, leap_ticks: int) -> tuple[Belief, SyncWatch]:
     """How a SYNC is judged, and the watch after it.
 
     Args:
         watch: SYNCs in doubt before it.
         current: the tick that was answered last; -1: none yet, and any is believed.
         tick: the one that SYNC names.
+        leap_ticks: ``LEAP_S``.
     """
     if current < 0:
         return Belief.NEXT, watch
-    if near(current, tick):
-        return Belief.NEXT, _gone_on(watch, current, tick)
+    if near(current, tick, leap_ticks):
+        return Belief.NEXT, _gone_on(watch, current, tick, leap_ticks)
     if tick == current:
         if tick in watch.doubted:
             return Belief.UNANSWERED, watch._replace(doubted=_without(watch.doubted, tick))
         return Belief.IGNORED, watch._replace(doubted=_with(watch.doubted, tick))
     if tick in watch.doubted or tick - 1 in watch.doubted:
         doubted = _with(_without(watch.doubted, tick, tick - 1), current)
-        return Belief.RESTARTED, SyncWatch(doubted, settled_tick=tick + LEAP_TICKS)
+        return Belief.RESTARTED, SyncWatch(doubted, settled_tick=tick + leap_ticks)
     return Belief.IGNORED, watch._replace(doubted=_with(watch.doubted, tick), strange_tick=tick)
 
 
-def near(current: int, tick: int) -> bool:
-    """Whether a tick is ahead of the current one, and not far."""
-    return current < tick <= current + LEAP_TICKS
+def near(current: int, tick: int, leap_ticks: int) -> bool:
+    """Whether a tick is ahead of the current one, and not by more than ``leap_ticks``."""
+    return current < tick <= current + leap_ticks
 
 
-def _gone_on(watch: SyncWatch, current: int, tick: int) -> SyncWatch:
+def _gone_on(watch: SyncWatch, current: int, tick: int, leap_ticks: int) -> SyncWatch:
     """The watch after a tick not far ahead: a skip may come from a forged SYNC."""
     if tick > current + 1:
-        return watch._replace(settled_tick=tick + LEAP_TICKS)
+        return watch._replace(settled_tick=tick + leap_ticks)
     return watch._replace(doubted=()) if watch.doubted and current >= watch.settled_tick else watch
 
 

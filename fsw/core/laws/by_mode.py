@@ -1,6 +1,7 @@
 """The law of each mode."""
 
 from fsw.core.algebra.vector import sub
+from fsw.core.estimation.attitude import rate_bounded
 from fsw.core.laws.damping.damping import bdot, rate_damping
 from fsw.core.laws.entry import LawEntry
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, OwnLaw, Setpoint
@@ -10,8 +11,11 @@ from fsw.wire.messages import Mode
 
 
 def detumble(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """By the estimated rate if it is valid: predictive with pulses, proportional without. Otherwise B-dot."""
-    if not inputs.attitude.valid:
+    """By the estimated rate if it is valid: predictive with pulses, proportional without. Otherwise B-dot.
+
+    B-dot too where the estimate is beyond what the monitor allows: it may be wrong.
+    """
+    if not inputs.attitude.valid or not rate_bounded(inputs.attitude):
         return bdot(inputs, memory, setpoint, config)
     law = predictive if config.pulsed else rate_damping
     return law(inputs, memory, setpoint, config)

@@ -78,6 +78,8 @@ class Wheel:
 
 MAX_SPIN_RADPS = 0.1
 """Largest spin that a setpoint may hold."""
+MAX_GAIN = 1e12
+"""Largest gain that a setpoint may hold: a hundred times that of a satellite of many tons."""
 
 
 class Setpoint(NamedTuple):

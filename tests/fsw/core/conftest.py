@@ -169,7 +169,7 @@ def state(config):
 def obey(config):
     """Carries out telecommands: the state, and the results."""
 
-    def through(state, *telecommands, violated=False, config=config):
+    def through(state, *telecommands, violated=None, config=config):
         after, acks = command(state, NOTHING._replace(telecommands=telecommands), violated, config)
         assert [(ack.command, ack.command_counter, ack.tick) for ack in acks] == [
             (message.ID, message.counter, TICK) for message in telecommands

@@ -13,6 +13,7 @@ from fsw.core.gate.readings import NOTHING, TELECOMMANDS
 from fsw.core.laws.interface import OwnLaw, Wheel
 from fsw.core.laws.table import LAWS, OWN_NUMBER
 from fsw.core.modes import ModeState
+from fsw.core.monitors import Monitor
 from fsw.core.orbit.elements import RANGES, Elements, Upload
 from fsw.core.orbit.ephemeris import advance, with_orbit
 from fsw.core.orbit.propagation import element_orbit, sgp4_orbit, state_eci
@@ -56,7 +57,7 @@ class TestMode:
         assert results == [TcAckResult.ACCEPTED]
         assert after.modes == ModeState(mode, TICK, trips=2)
 
-    @pytest.mark.parametrize("violated", [False, True])
+    @pytest.mark.parametrize("violated", [None, Monitor.FIELD_FRESH, Monitor.RATE_BOUNDED])
     @pytest.mark.parametrize("trips", [0, 3, 200])
     @pytest.mark.parametrize("before", Mode)
     def test_safe_is_given_always_and_held(self, obey, state, before, trips, violated):
@@ -70,7 +71,19 @@ class TestMode:
     @pytest.mark.parametrize("mode", [Mode.DETUMBLE, Mode.ACQUIRE, Mode.POINT])
     def test_safe_is_not_left_while_a_monitor_is_violated(self, refused, state, mode):
         safe = state._replace(modes=ModeState(Mode.SAFE))
-        refused(TcAckResult.NOT_ALLOWED, TcMode(mode), start=safe, violated=True)
+        refused(TcAckResult.NOT_ALLOWED, TcMode(mode), start=safe, violated=Monitor.FIELD_FRESH)
+
+    @pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
+    def test_too_fast_a_turn_is_left_to_no_other_mode(self, refused, state, mode):
+        safe = state._replace(modes=ModeState(Mode.SAFE))
+        refused(TcAckResult.NOT_ALLOWED, TcMode(mode), start=safe, violated=Monitor.RATE_BOUNDED)
+
+    def test_than_detumbling_which_ends_it(self, obey, refused, state, config):
+        safe = state._replace(modes=ModeState(Mode.SAFE))
+        after, results = obey(safe, TcMode(Mode.DETUMBLE), violated=Monitor.RATE_BOUNDED)
+        assert (results, after.modes.mode) == ([TcAckResult.ACCEPTED], Mode.DETUMBLE)
+        often = state._replace(modes=ModeState(Mode.SAFE, trips=config.modes.trips_to_stay_safe))
+        refused(TcAckResult.NOT_ALLOWED, TcMode(Mode.DETUMBLE), start=often, violated=Monitor.RATE_BOUNDED)
 
     @pytest.mark.parametrize("mode", [Mode.DETUMBLE, Mode.ACQUIRE, Mode.POINT])
     def test_safe_is_not_left_before_the_trips_are_cleared(self, refused, obey, state, config, mode):
@@ -180,6 +193,15 @@ class TestGain:
     @pytest.mark.parametrize("mantissa", [-1, -(2**31)])
     def test_that_is_negative(self, refused, mantissa):
         refused(TcAckResult.OUT_OF_RANGE, TcGain(Gain.K_A, -5, mantissa))
+
+    @pytest.mark.parametrize("gain", Gain)
+    @pytest.mark.parametrize(("mantissa", "exponent"), [(1, 15), (1_000_001, 6), (2**31 - 1, 127)])
+    def test_that_no_satellite_needs(self, refused, gain, mantissa, exponent):
+        refused(TcAckResult.OUT_OF_RANGE, TcGain(gain, exponent, mantissa))
+
+    def test_at_the_bound(self, obey, state):
+        _, results = obey(state, TcGain(Gain.K_W, 12, 1))
+        assert results == [TcAckResult.ACCEPTED]
 
 
 class TestOrbit:

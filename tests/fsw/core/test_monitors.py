@@ -4,8 +4,8 @@ from math import inf, nan
 
 import pytest
 
-from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.monitors import MONITORS, RATE_LIMIT_RADPS, Monitor, MonitorInput, first_violation
+from fsw.core.estimation.attitude import RATE_LIMIT_RADPS, UNKNOWN, Attitude
+from fsw.core.monitors import MONITORS, Monitor, MonitorInput, first_violation
 
 Q = (0.5, -0.5, 0.5, 0.5)
 OMEGA = (0.01, -0.02, 0.03)

@@ -10,7 +10,7 @@ from fsw.core.fdir.faults import CoilFault, SensorFault
 from fsw.core.fdir.fdir import Health
 from fsw.core.fdir.sensors.health import Watch
 from fsw.core.gate.second_sender import SIGNS, SecondSenderWatch
-from fsw.core.gate.sync_watch import LEAP_TICKS
+from fsw.core.gate.sync_watch import LEAP_S
 from fsw.core.modes import request_mode
 from fsw.core.restart import restarted
 from fsw.core.state import Inbox
@@ -155,8 +155,8 @@ class TestTwoStrange:
         with_frames, answer = step(before, inbox._replace(tick=1), world.config)
         assert with_frames.gate == before.gate
         assert step(before, Inbox(1, inbox.unix_time_s, ()), world.config)[1] == answer
-        assert not takes_inbox(before, with_frames)
-        assert takes_inbox(with_frames, step(with_frames, inbox._replace(tick=2), world.config)[0])
+        assert not takes_inbox(before, with_frames, LEAP_S)
+        assert takes_inbox(with_frames, step(with_frames, inbox._replace(tick=2), world.config)[0], LEAP_S)
 
 
 class TestRepeated:
@@ -215,6 +215,21 @@ class TestWhatStays:
         assert world.state.events.held_back > 60
 
 
+@pytest.mark.parametrize("tick_hz", [1, 10])
+def test_some_seconds_without_a_sync_are_no_restart(make_world, tick_hz):
+    """At any tick rate."""
+    world = make_world(time={"tick_hz": tick_hz})
+    world.fly(5)
+    for _ in range(7 * tick_hz):
+        world.inbox()
+        world.plant.end_tick()
+    replies = world.step()
+    assert [done.tick for done in of(TickDone, replies)] == [5 + 7 * tick_hz]
+    assert Event.PLANT_RESTARTED not in [event for event, _ in reports(replies)]
+    assert world.state.ignored_syncs == 0
+    assert world.state.estimator.restarts == 0
+
+
 class TestAttack:
     @pytest.mark.parametrize("seed", range(4))
     def test_by_pairs_again_and_again_no_pulse_comes_early_and_every_tick_is_answered(self, make_world, seed):
@@ -226,7 +241,7 @@ class TestAttack:
                 forge(world, first + random.randrange(2))
             before = world.state.tick
             replies = world.step()
-            if not before < tick <= before + LEAP_TICKS:
+            if not before < tick <= before + LEAP_S:
                 began = tick
             assert [done.tick for done in of(TickDone, replies)] == [tick]
             assert not of(CoilFire, replies) or tick >= began + BACKOFF

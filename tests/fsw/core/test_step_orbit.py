@@ -1,11 +1,13 @@
 """The flight loop when the orbit has ended, or its ephemeris is spoiled."""
 
 from dataclasses import replace
-from math import inf, nan
+from math import acos, degrees, inf, nan
 
 import pytest
 from replies import of
 
+from fsw.core.fdir.sensors.pair import Standing
+from fsw.core.orbit.ephemeris import advance
 from fsw.core.state import Inbox, checksum
 from fsw.core.step import step
 from fsw.core.telemetry import Event
@@ -53,3 +55,38 @@ def test_an_ephemeris_of_what_is_no_number_is_made_anew(make_world, vector, brok
     assert world.state.ephemeris.nodes[1] == whole.nodes[1]
     assert world.state.estimator.estimate is not None
     world.fly_until_valid()
+
+
+@pytest.mark.long
+def test_after_a_time_without_a_position_the_old_estimate_is_not_the_present_one(make_world, monkeypatch):
+    """Nothing has carried it on: it ends, and until a new one is proven no attitude is valid."""
+    world, there = make_world(), advance
+    world.fly(1200)
+    assert world.state.attitude.valid
+    monkeypatch.setattr("fsw.core.step.advance", lambda *given: None)
+    world.step()
+    assert world.state.estimator.estimate is None
+    assert world.state.health.sensors.pair.standing is Standing.NEW
+    world.fly(999)
+    assert world.state.estimator.restarts == 1
+    monkeypatch.setattr("fsw.core.step.advance", there)
+    for _ in range(300):
+        q = world.plant.truth().q_body_from_orbit
+        world.step()
+        known = world.state.attitude
+        cosine = abs(sum(a * b for a, b in zip(q, known.q_body_from_orbit, strict=True)))
+        assert not known.valid or 2.0 * degrees(acos(min(1.0, cosine))) < 5.0
+    world.fly_until_valid(3000)  # the Earth's shadow is in between
+
+
+def test_a_tick_without_a_position_ends_the_estimate(make_world, monkeypatch):
+    world, there = make_world(), advance
+    world.fly(40)
+    assert world.state.estimator.estimate is not None
+    monkeypatch.setattr("fsw.core.step.advance", lambda *given: None)
+    told = of(FswEvent, world.step()) + of(FswEvent, world.step())
+    assert [message.argument for message in told if message.event == Event.FILTER_RESTARTED] == [1]
+    assert world.state.estimator.estimate is None
+    monkeypatch.setattr("fsw.core.step.advance", there)
+    world.step()
+    assert world.state.estimator.estimate is not None

@@ -1,17 +1,20 @@
 """Monitors and modes joined: what is watched comes from where it should, and its trip is carried out."""
 
+from math import degrees
 from typing import NamedTuple
 
 import pytest
 
+from fsw.core.algebra.vector import norm
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
+from fsw.core.events import Event
 from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.second_sender import SIGNS, SecondSenderWatch
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
 from fsw.core.supervisor import supervise
-from fsw.wire.messages import Mode
+from fsw.wire.messages import FswEvent, Mode
 
 WELL = Attitude((0.5, -0.5, 0.5, 0.5), (0.01, -0.02, 0.03), 0.01, 1e-4, True)
 TICK = 159
@@ -33,9 +36,10 @@ class Supervision(NamedTuple):
 def supervised(world):
     """The modes after the supervision of a state with changes, in POINT, and the monitor that is violated."""
 
-    def judge(attitude=WELL, **changes):
-        state = world.state._replace(modes=ModeState(Mode.POINT), attitude=attitude, **changes)
+    def judge(attitude=WELL, mode=Mode.POINT, **changes):
+        state = world.state._replace(modes=ModeState(mode), attitude=attitude, **changes)
         after, violated = supervise(state, world.config)
+        assert after.violated == (violated or 0)
         return Supervision(after.modes, violated)
 
     return judge
@@ -85,3 +89,44 @@ def test_a_second_sender_trips_once_it_is_named(supervised):
 def test_a_trip_leads_to_safe_in_the_same_tick_and_is_counted(supervised):
     modes = supervised(ephemeris=None).modes
     assert (modes.mode, modes.trips, modes.since_tick) == (Mode.SAFE, 1, TICK)
+
+
+FAST = WELL._replace(omega_body_orbit_radps=(0.0, 0.6, 0.0))
+
+
+@pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
+def test_too_fast_a_turn_trips_a_law_that_points(supervised, mode):
+    modes = supervised(FAST, mode).modes
+    assert (modes.mode, modes.trips) == (Mode.SAFE, 1)
+
+
+def test_too_fast_a_turn_is_left_to_detumbling(supervised):
+    """Nothing but coils ends it, and they are off in SAFE."""
+    modes = supervised(FAST, Mode.DETUMBLE).modes
+    assert (modes.mode, modes.trips) == (Mode.DETUMBLE, 0)
+    assert max(supervised(FAST, Mode.SAFE).modes.held_since) == TICK, "on its way out"
+    assert max(supervised(FAST, Mode.SAFE, ephemeris=None).modes.held_since) == -1
+    assert supervised(FAST, Mode.DETUMBLE, ephemeris=None).modes.mode is Mode.SAFE
+
+
+def test_a_rate_that_is_no_number_is_not_braked(supervised):
+    endless = WELL._replace(omega_body_orbit_radps=(0.0, float("inf"), 0.0))
+    assert supervised(endless, Mode.DETUMBLE).modes.mode is Mode.SAFE
+    assert max(supervised(endless, Mode.SAFE).modes.held_since) == -1
+
+
+@pytest.mark.long
+def test_a_satellite_that_turns_too_fast_is_braked(make_world):
+    """From SAFE, where the violation is reported, by B-dot; no trip keeps it there."""
+    world = make_world(
+        time={"tick_hz": 4},
+        initial={"rate_degps": [24.0, 25.6, 19.2]},
+        coils={"driver": "continuous", "max_dipole_am2": 40.0},
+        flight={"estimator": {"rate_sigma_degps": 20.0}},
+    )
+    said = [message for replies in world.fly(800) for message in replies]
+    told = [(m.event, m.argument) for m in said if isinstance(m, FswEvent)]
+    assert told.index((Event.MONITOR_TRIPPED, Monitor.RATE_BOUNDED)) < told.index((Event.MODE_CHANGED, 1))
+    modes = world.state.modes
+    assert (modes.mode, modes.trips) == (Mode.DETUMBLE, 0)
+    assert degrees(norm(world.plant.truth().omega_body_orbit_radps)) < 38.0, "of 40"

@@ -208,7 +208,7 @@ class TestNumbering:
 
 class TestEvents:
     def found(self, before, after, readings=NOTHING, violated=None):
-        return telemetry.happenings(before, after, readings, violated)
+        return telemetry.happenings(before, after, readings, violated, 60)
 
     def test_nothing_happened(self, state):
         assert self.found(state, state._replace(tick=7)) == []
@@ -224,8 +224,16 @@ class TestEvents:
             Happening(Event.MODE_CHANGED, Mode.SAFE),
         ]
 
-    def test_a_violation_that_lasts_is_told_once(self, state):
+    def test_a_violation_that_begins_in_safe_is_told_too(self, state):
         safe = state._replace(modes=ModeState(Mode.SAFE, trips=2))
+        after = safe._replace(tick=8, violated=Monitor.ORBIT_KNOWN)
+        told = [Happening(Event.MONITOR_TRIPPED, Monitor.ORBIT_KNOWN)]
+        assert self.found(safe, after, violated=Monitor.ORBIT_KNOWN) == told
+        other = safe._replace(violated=Monitor.FIELD_FRESH)
+        assert self.found(other, after, violated=Monitor.ORBIT_KNOWN) == told
+
+    def test_a_violation_that_lasts_is_told_once(self, state):
+        safe = state._replace(modes=ModeState(Mode.SAFE, trips=2), violated=Monitor.FIELD_FRESH)
         assert self.found(safe, safe._replace(tick=8), violated=Monitor.FIELD_FRESH) == []
 
     def test_the_filter_starts_and_restarts(self, state):

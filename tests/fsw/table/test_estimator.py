@@ -155,6 +155,7 @@ def test_what_no_bound_tells():
     assert config.valid_sigma_rad == pytest.approx(radians(4.0))
     assert config.start.min_separation_rad == pytest.approx(radians(15.0))
     assert config.restart_after_rejections == 60
+    assert configured(time={"tick_hz": 10}).restart_after_rejections == 600
     assert (config.mekf.gate_nis, config.mekf.dipole_sigma) == (16.27, 0.002)
 
 

@@ -157,6 +157,12 @@ class TestInFlight:
         assert type(demand.m_body_am2[0]) is float
         assert type(demand.memory) is tuple
 
+    def test_the_torque_of_a_wheel_is_passed_on(self):
+        demand = answer_of(returning(Demand((1.0, 0.0, 0.0), wheel_torque_nm=np.float32(0.25))))
+        assert demand == Demand((1.0, 0.0, 0.0), wheel_torque_nm=0.25)
+        assert type(demand.wheel_torque_nm) is float
+        assert answer_of(returning(Demand(wheel_torque_nm=0.0))).wheel_torque_nm == 0.0
+
     def test_a_pulse_stays_one(self):
         demand = answer_of(returning(Demand(pulse=(np.int64(2), True))))
         assert demand == Demand(pulse=Pulse(2, 1))
@@ -173,6 +179,9 @@ class TestInFlight:
             (Demand(None), "m_body_am2 is nothing"),
             (Demand(np.zeros((3, 3))), "m_body_am2 is a ndarray"),
             (Demand(impulse_body_nms=(1.0, float("inf"), 0.0)), "impulse_body_nms is not finite"),
+            (Demand(wheel_torque_nm=float("nan")), "wheel_torque_nm is not finite: nan"),
+            (Demand(wheel_torque_nm=10**400), "wheel_torque_nm is a int, not a number"),
+            (Demand(wheel_torque_nm=(1.0,)), "wheel_torque_nm is a tuple, not a number"),
             (Demand(pulse=(3, 1)), "pulse is not a coil 0 to 2 and a level -3 to 3"),
             (Demand(pulse=(0, 4)), "pulse is not a coil 0 to 2 and a level -3 to 3"),
             (Demand(pulse=(0.0, 1)), "pulse is not a coil 0 to 2 and a level -3 to 3"),

@@ -213,6 +213,7 @@ class TestDeadMan:
         self.fall_silent(rig)
         report = rig.step().status
         assert (report.level, report.remaining_ms, report.lockout_ms) == (0, 0, 99_000)
+        rig.board.sync()
         rig.skip_to(399)
         assert rig.step(rig.fire(seq=2)).drive == OFF
         assert rig.step(rig.fire(seq=3)).drive == Drive(1, 3, 1.0)
@@ -318,6 +319,7 @@ class TestAClockOfItsOwn:
         board.silence(150_000)
         assert board.pin is None
         board.begin_tick(250, 0.0, 249_999)
+        board.sync()
         board.receive(self.fire(8, 250), 249_999)
         assert board.pin is None
         board.receive(self.fire(9, 250), 250_000)

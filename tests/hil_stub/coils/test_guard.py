@@ -116,6 +116,7 @@ def test_silence_is_off_and_a_full_lockout_on_both(timers):
     assert (timers.guard.on, timers.guard.level, timers.guard.remaining_ms()) == (False, 0, 0)
     assert [timers.guard.lockout_ms(coil) for coil in range(3)] == [BACKOFF_MS] * 3
     timers.go(100 * timers.hz)
+    timers.guard.sync()
     assert timers.ask() is Reason.REPEATED_SEQ, "what was carried out before is still known"
     assert timers.ask(seq=2) is None
 
@@ -192,6 +193,22 @@ def test_without_a_clock_the_ticks_decide():
     assert guard.remaining_ms() == 1000
     guard.silence()
     assert guard.lockout_ms(0) == BACKOFF_MS
+
+
+@pytest.mark.parametrize("clock_ms", [None, 5000])
+@pytest.mark.parametrize("backoff_ms", [0, 10])
+def test_after_silence_nothing_is_accepted_before_a_sync(clock_ms, backoff_ms):
+    """Whatever the back-off, and however many ticks are entered in the meantime."""
+    guard = Guard(CoilLimits(1, backoff_ms=backoff_ms))
+    guard.pass_time(clock_ms)
+    guard.silence()
+    guard.elapse(7)
+    guard.pass_time(None if clock_ms is None else clock_ms + 7000)
+    assert guard.locked_out
+    assert guard.ask(asking(7), 7) is Reason.LOCKOUT
+    assert not guard.drives
+    guard.sync()
+    assert (guard.locked_out, guard.ask(asking(7), 7)) == (False, None)
 
 
 def test_a_guard_that_has_just_booted_shows_no_level():

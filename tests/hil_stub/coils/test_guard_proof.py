@@ -24,12 +24,19 @@ from hil_stub.coils.interlock import CoilLimits, Request
 TICK = 300
 JUMPS_MS = (500, 2500)
 TICKS = (1, 3)
-REQUESTS = {
+REQUESTS = {  # by kind of back-off
     True: [Request(coil, 2, ms, seq, TICK & 0xFF) for coil, ms, seq in product((0, 1), (1000, 1500), (0, 1))],
     False: [Request(coil, 2, 1000, seq, TICK & 0xFF) for coil, seq in product((0, 1), (0, 1))],
 }
-LIMITS = {True: CoilLimits(1, 1500, 2000, shared=True), False: CoilLimits(1, 1000, 1000, shared=False)}
-"""By kind of back-off. At 1 Hz pulses and back-offs are some ticks, and some steps of half a second."""
+LIMITS = {
+    "shared": CoilLimits(1, 1500, 2000, shared=True),
+    "per coil": CoilLimits(1, 1000, 1000, shared=False),
+}
+NONE = {
+    "none, shared": CoilLimits(1, 1500, 0, shared=True),
+    "none, per coil": CoilLimits(1, 1000, 0, shared=False),
+}
+"""By back-off. At 1 Hz pulses and back-offs are some ticks, and some steps of half a second."""
 
 
 class Judge(NamedTuple):
@@ -39,6 +46,7 @@ class Judge(NamedTuple):
     on: int | None = None
     length: int = 0
     since_end: tuple[int, int, int] = (10_000,) * 3
+    silent: bool = False  # the dead-man has woken, and no SYNC has come since
 
     def watch(self, coil: int | None, driven_ms: int, span_ms: int) -> "Judge":
         """``coil`` was on for the first ``driven_ms`` of ``span_ms``, then nothing."""
@@ -55,7 +63,7 @@ class Judge(NamedTuple):
         if on is not None and driven_ms < span_ms:
             since_end[on] = span_ms - driven_ms
             on, length = None, 0
-        return Judge(limits, on, length, tuple(since_end))
+        return self._replace(on=on, length=length, since_end=tuple(since_end))
 
     def cut(self, still_on: bool) -> "Judge":
         """Something other than time has happened: the coil is still on, or off from now on."""
@@ -63,7 +71,16 @@ class Judge(NamedTuple):
             return self
         since_end = list(self.since_end)
         since_end[self.on] = 0
-        return Judge(self.limits, None, 0, tuple(since_end))
+        return self._replace(on=None, length=0, since_end=tuple(since_end))
+
+    def accept(self) -> "Judge":
+        """A request is accepted: without a back-off a pulse may follow the one before at once."""
+        assert not self.silent, "accepted while there is no SYNC"
+        return self if self.limits.backoff_ms else self.cut(still_on=False)
+
+    def hear(self, silent: bool) -> "Judge":
+        """SYNC has come, or has not come for too long."""
+        return self._replace(silent=silent)
 
 
 @dataclass
@@ -107,6 +124,12 @@ def changed(board, change):
     return other, lambda judge: judge.cut(drives)
 
 
+def heard(board, change, silent):
+    """A SYNC has come, or has not come for too long."""
+    other, watched = changed(board, change)
+    return other, lambda judge: watched(judge).hear(silent)
+
+
 def both_accept(board, asked):
     return all(
         interlock.ask(one, asked, TICK, limits)[1] is None
@@ -114,44 +137,45 @@ def both_accept(board, asked):
     )
 
 
-def asked_of(board, shared, proof):
+def asked_of(board, limits, proof):
     """The guards that have accepted a request, each request having been made."""
-    for asked in REQUESTS[shared]:
+    for asked in REQUESTS[limits.shared]:
         answered = copy.copy(board)
         reason = answered.ask(asked, TICK)
-        assert (reason is None) == both_accept(board, asked), f"{asked}: {reason}"
+        assert reason is None or board._silent or not both_accept(board, asked), f"{asked}: {reason}"
+        assert reason is not None or both_accept(board, asked), f"{asked} is accepted"
         if reason is None:
             proof.accepted[asked.coil] += 1
             assert answered.drives
-            yield answered, lambda judge: judge
+            yield answered, lambda judge: judge.accept()
         else:
             proof.refused[reason] += 1
             assert vars(answered) == vars(board), "a refusal changed the state"
 
 
-def reached_from(board, kind, shared, proof) -> list[tuple[Guard, Watching]]:
+def reached_from(board, kind, limits, proof) -> list[tuple[Guard, Watching]]:
     """Whatever may happen to a guard, and what a judge sees of it."""
     return [
         *(passed(board, span_ms) for span_ms in JUMPS_MS),
         *(changed(board, lambda one, n=n: one.elapse(n)) for n in TICKS),
-        changed(board, lambda one: one.sync()),
-        changed(board, lambda one: one.silence()),
-        (fresh(kind, LIMITS[shared]), lambda judge: judge.cut(still_on=False)),
-        *asked_of(board, shared, proof),
+        heard(board, lambda one: one.sync(), silent=False),
+        heard(board, lambda one: one.silence(), silent=True),
+        (fresh(kind, limits), lambda judge: judge.cut(still_on=False).hear(silent=False)),
+        *asked_of(board, limits, proof),
     ]
 
 
-def prove(kind: type[Guard], shared: bool) -> Proof:
+def prove(kind: type[Guard], limits: CoilLimits) -> Proof:
     """Search all that can be reached; AssertionError at the first state that breaks a demand.
 
     What may happen to a guard does not depend on the judge, and is done once for many judges.
     """
     proof = Proof()
-    queue = deque([(fresh(kind, LIMITS[shared]), Judge(LIMITS[shared]))])
+    queue = deque([(fresh(kind, limits), Judge(limits))])
     reached, seen = {}, set()
     while queue:
         board, judge = queue.popleft()
-        guard = (board._by_ticks, board._by_clock, board._tick_under_way, board._clock_ms)
+        guard = (board._by_ticks, board._by_clock, board._tick_under_way, board._clock_ms, board._silent)
         if (guard, judge) in seen:
             continue
         seen.add((guard, judge))
@@ -159,23 +183,23 @@ def prove(kind: type[Guard], shared: bool) -> Proof:
             raise RuntimeError("the states do not end")
         proof.apart += (board._by_ticks.remaining == 0) != (board._by_clock.remaining == 0)
         if guard not in reached:
-            reached[guard] = reached_from(board, kind, shared, proof)
+            reached[guard] = reached_from(board, kind, limits, proof)
         queue += [(other, watched(judge)) for other, watched in reached[guard]]
     proof.states = len(seen)
     return proof
 
 
-BOTH = pytest.mark.parametrize("shared", [True, False], ids=["shared", "per coil"])
+BOTH = pytest.mark.parametrize("limits", LIMITS.values(), ids=LIMITS)
 
 
 @pytest.mark.long
-@BOTH
-def test_no_reachable_state_breaks_a_limit_over_true_time(shared):
-    proof = prove(Guard, shared)
-    assert proof.states > 1000
+@pytest.mark.parametrize("limits", (LIMITS | NONE).values(), ids=LIMITS | NONE)
+def test_no_reachable_state_breaks_a_limit_over_true_time(limits):
+    proof = prove(Guard, limits)
+    assert proof.states > (1000 if limits.backoff_ms else 100)
     assert set(proof.accepted) == {0, 1}
-    assert len(proof.refused) == 3, "lockout, coil on, repeated"
-    assert proof.apart > 100, "time and ticks were apart"
+    assert len(proof.refused) == 3, "lockout or silence, coil on, repeated"
+    assert proof.apart > (100 if limits.backoff_ms else 10), "time and ticks were apart"
 
 
 class ToldOfTimeByTicksAlone(Guard):
@@ -254,6 +278,18 @@ PLANTED = {
 
 @BOTH
 @pytest.mark.parametrize("faulty", PLANTED.values(), ids=PLANTED)
-def test_a_planted_bug_is_found(faulty, shared):
+def test_a_planted_bug_is_found(faulty, limits):
     with pytest.raises(AssertionError):
-        prove(faulty, shared)
+        prove(faulty, limits)
+
+
+class LockedOutByTimersAlone(Guard):
+    def silence(self):
+        super().silence()
+        self._silent = False
+
+
+@pytest.mark.parametrize("limits", NONE.values(), ids=NONE)
+def test_without_a_back_off_a_silence_that_ends_by_itself_is_found(limits):
+    with pytest.raises(AssertionError, match="no SYNC"):
+        prove(LockedOutByTimersAlone, limits)

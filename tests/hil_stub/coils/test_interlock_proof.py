@@ -62,17 +62,20 @@ class Judge(NamedTuple):
     since_boot: int = 0
     last_seq: int | None = None
     due: tuple[int, int, int] | None = None  # coil, level and rest of the accepted request that is not over
+    backoff: int = BACKOFF_MS
 
     def allowed(self, shared: bool) -> frozenset[interlock.Request]:
         """The requests that are proper and would keep the limits if they were carried out now."""
-        if self.due or self.since_boot < BACKOFF_MS:
+        if self.due or self.since_boot < self.backoff:
             return frozenset()
         waited = [0 if self.on and self.on[0] == coil else time for coil, time in enumerate(self.since_end)]
         ready = (min(waited),) * 3 if shared else waited
-        return proper(tuple(time >= BACKOFF_MS for time in ready), self.last_seq)
+        return proper(tuple(time >= self.backoff for time in ready), self.last_seq)
 
     def accept(self, asked: interlock.Request) -> "Judge":
-        return self._replace(last_seq=asked.seq, due=(asked.coil, asked.level, asked.duration_ms))
+        """Without a back-off a pulse may follow the one before at once, and is another one."""
+        begun = self if self.backoff else self._replace(on=None, length=0)
+        return begun._replace(last_seq=asked.seq, due=(asked.coil, asked.level, asked.duration_ms))
 
     def reboot(self) -> "Judge":
         return self._replace(since_boot=0, last_seq=None, due=None)
@@ -97,20 +100,19 @@ class Judge(NamedTuple):
                 if on is not None:
                     since_end[on[0]] = 0
                 waited = min(since_end) if shared else since_end[coil]
-                assert waited >= BACKOFF_MS, f"only {waited} between the end of a pulse and the next"
+                assert waited >= self.backoff, f"only {waited} between the end of a pulse and the next"
                 length = 0
             on, length = (coil, level), length + driven
             assert length <= PULSE_MS, f"a pulse of {length}"
-        since_end = [min(time + span, BACKOFF_MS) for time in since_end]
+        since_end = [min(time + span, self.backoff) for time in since_end]
         if on is not None:
-            since_end[on[0]] = min(span - driven, BACKOFF_MS)
+            since_end[on[0]] = min(span - driven, self.backoff)
         if driven < span:
             on, length = None, 0
         if due is not None:
             due = (*due[:2], due[2] - span) if due[2] > span else None
-        return Judge(
-            on, length, tuple(since_end), min(self.since_boot + span, BACKOFF_MS), self.last_seq, due
-        )
+        since_boot = min(self.since_boot + span, self.backoff)
+        return Judge(on, length, tuple(since_end), since_boot, self.last_seq, due, self.backoff)
 
 
 @dataclass
@@ -139,13 +141,13 @@ def accepted_by(state: interlock.Interlock, limits: interlock.CoilLimits, proof:
     return accepted
 
 
-def prove(shared: bool, exact: bool = True) -> Proof:
+def prove(shared: bool, exact: bool = True, backoff_ms: int = BACKOFF_MS) -> Proof:
     """Search all that can be reached; AssertionError at the first state that breaks a demand.
 
     With ``exact`` exactness is demanded too, not safety alone.
     """
-    limits = interlock.CoilLimits(tick_hz=1, pulse_ms=PULSE_MS, backoff_ms=BACKOFF_MS, shared=shared)
-    first = (interlock.boot(limits), Judge())
+    limits = interlock.CoilLimits(tick_hz=1, pulse_ms=PULSE_MS, backoff_ms=backoff_ms, shared=shared)
+    first = (interlock.boot(limits), Judge(since_end=(backoff_ms,) * 3, backoff=backoff_ms))
     seen = {first}
     queue = deque(seen)
     proof, answers = Proof(), {}
@@ -189,6 +191,15 @@ def test_no_reachable_state_breaks_a_limit_or_refuses_what_it_may_not(shared):
     assert set(proof.accepted) == {0, 1, 2}, "every coil was fired"
     assert set(proof.refused) == set(Reason) - NOT_OF_THE_INTERLOCK, "for every reason"
     assert proof.pulses >= {0, 1000, 2000}, "pulses went on over ticks"
+    assert proof.restarts_in_pulse > 0
+    assert proof.silences_in_pulse > 0
+
+
+@pytest.mark.parametrize("shared", BOTH, ids=["shared", "per_coil"])
+def test_nor_without_a_back_off(shared):
+    proof = prove(shared, backoff_ms=0)
+    assert set(proof.accepted) == {0, 1, 2}
+    assert set(proof.refused) == set(Reason) - NOT_OF_THE_INTERLOCK - {Reason.LOCKOUT}
     assert proof.restarts_in_pulse > 0
     assert proof.silences_in_pulse > 0
 

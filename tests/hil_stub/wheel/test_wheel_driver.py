@@ -185,6 +185,26 @@ class TestClock:
         board.pass_time(1510)
         assert board.drive() == 0.0
 
+    def test_it_is_reported_though_it_has_ended(self):
+        board = WheelDriver(LIMITS)
+        board.begin_tick(0, 10.0, clock_ms=1000)
+        board.receive(WheelTorque(TORQUE_NM, 0).encode(), clock_ms=1010)
+        board.pass_time(1510)
+        status = status_of(board.begin_tick(1, 10.0, clock_ms=1520))
+        assert (status.torque, status.result) == (TORQUE_NM, WheelStatusResult.DRIVEN)
+        assert board.drive() == 0.0
+        assert status_of(board.begin_tick(2, 10.0, clock_ms=2020)).torque == 0.0
+
+    def test_after_it_no_second_torque_is_taken_in_the_same_tick(self):
+        board = WheelDriver(LIMITS)
+        board.begin_tick(0, 10.0, clock_ms=1000)
+        board.receive(WheelTorque(TORQUE_NM, 0).encode(), clock_ms=1010)
+        board.pass_time(1510)
+        board.receive(WheelTorque(-TORQUE_NM, 0).encode(), clock_ms=1511)
+        assert board.drive() == 0.0
+        status = status_of(board.begin_tick(1, 10.0, clock_ms=1520))
+        assert (status.torque, status.result) == (TORQUE_NM, WheelStatusResult.SECOND_TORQUE)
+
     def test_silence_ends_it_at_once_and_is_told_in_the_next_tick(self):
         board = WheelDriver(LIMITS)
         board.begin_tick(0, 10.0, clock_ms=0)

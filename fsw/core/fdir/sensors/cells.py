@@ -104,11 +104,12 @@ def unusable(health: CellsHealth) -> tuple[int, ...]:
 
 
 def cell_changes(before: CellsHealth, after: CellsHealth) -> list[tuple[int, int, int]]:
-    """(number, fault before, fault after) of each cell whose fault has changed."""
-    was = before or (CellWatch(),) * len(after)
+    """(number, fault before, fault after) of each cell whose fault has changed; without a watch, none."""
+    cells = max(len(before), len(after))
+    was, now = (health or (CellWatch(),) * cells for health in (before, after))
     return [
         (cell, one.watch.fault, other.watch.fault)
-        for cell, (one, other) in enumerate(zip(was, after, strict=True))
+        for cell, (one, other) in enumerate(zip(was, now, strict=True))
         if one.watch.fault != other.watch.fault
     ]
 

@@ -19,12 +19,19 @@ from fsw.core.algebra.vector import Vec3, cross
 from fsw.core.laws.feedback.pd import far_error, pd_dipole
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 
+MAX_BANDWIDTH_RADPS = 100.0
+
 
 @dataclass(frozen=True, slots=True)
 class FilterGains:
     """The filter's bandwidth a, rad/s: well above the orbit's rate, well under the sensors' noise."""
 
     bandwidth_radps: float = 0.02
+
+    def __post_init__(self) -> None:
+        """Raises ValueError: a filter that does not follow."""
+        if not 0.0 < self.bandwidth_radps <= MAX_BANDWIDTH_RADPS:
+            raise ValueError(f"bandwidth_radps must be above 0 and at most {MAX_BANDWIDTH_RADPS:g}")
 
 
 def lagged_rate(q_body_from_orbit: Quaternion, followed: Quaternion, bandwidth_radps: float) -> Vec3:

@@ -7,7 +7,7 @@
 lowers V = 1/2 J |Omega|^2 + 2 k_a |b|^2 (1 - a . r); the coils give its part normal to the field.
 
 ``sphere_output`` needs no rate: an observer with quaternion z and rate w follows the sphere's own equations.
-With d = 2 vec(z^-1 q) and M the torque of the last tick's dipole:
+With d = 2 vec(z^-1 q) and M the torque of the last tick's dipole, limited to what the coils can give:
 
     z' = 1/2 z (0, w + 2 a d),   w' = M / J + w0 w x e3 + a^2 d,   m = -k_w b x w - k_a b x E,   E = 4 qv.
 
@@ -24,6 +24,7 @@ from dataclasses import dataclass
 
 from fsw.core.algebra.quaternion import Quaternion, canonical, conjugate, multiply, normalise, rotate
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, dot, scale, unit
+from fsw.core.laws.feedback.output_feedback import MAX_BANDWIDTH_RADPS
 from fsw.core.laws.feedback.pd import far_error, pd_dipole
 from fsw.core.laws.feedback.projection import torque_dipole
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
@@ -56,8 +57,8 @@ class ObserverGains:
 
     def __post_init__(self) -> None:
         """Raises ValueError: an observer that does not follow."""
-        if self.bandwidth_radps <= 0.0:
-            raise ValueError("bandwidth_radps must be greater than 0")
+        if not 0.0 < self.bandwidth_radps <= MAX_BANDWIDTH_RADPS:
+            raise ValueError(f"bandwidth_radps must be above 0 and at most {MAX_BANDWIDTH_RADPS:g}")
 
 
 def vertical_torque(
@@ -115,7 +116,7 @@ def observed(
 
 
 def sphere_output(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The PD law on the observer's rate; memory: z, w and the dipole of the last tick."""
+    """The PD law on the observer's rate; memory: z, w and what the coils gave of the dipole."""
     if not inputs.attitude.valid or inputs.reference is None:
         return Demand()
     gains: ObserverGains = config.gains["sphere_output"]
@@ -129,4 +130,10 @@ def sphere_output(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: 
         change = add(pushed, turning)
         z, w = observed((z0, z1, z2, z3), (w1, w2, w3), q, change, gains.bandwidth_radps, config.tick_s)
     dipole = pd_dipole(inputs.b_body_t, w, far_error(q), setpoint.k_w, setpoint.k_a)
-    return Demand(dipole, memory=(*z, *w, *dipole))
+    return Demand(dipole, memory=(*z, *w, *_given(dipole, config.mean_dipole_am2)))
+
+
+def _given(dipole_am2: Vec3, most_am2: float) -> Vec3:
+    """What the coils give of a dipole: its direction, no component beyond their largest mean."""
+    largest = max(map(abs, dipole_am2))
+    return scale(most_am2 / largest, dipole_am2) if largest > most_am2 else dipole_am2

@@ -21,6 +21,13 @@ from fsw.core.algebra.vector import ZERO, Vec3, add, dot, norm, scale, transform
 from fsw.core.laws.feedback.projection import torque_dipole
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 
+LEAST_REACH = 1e-6
+
+
+def _check_reach(reach: float) -> None:
+    if reach < LEAST_REACH:
+        raise ValueError(f"reach must be at least {LEAST_REACH:g}")
+
 
 @dataclass(frozen=True, slots=True)
 class SlidingGains:
@@ -28,6 +35,10 @@ class SlidingGains:
 
     reach: float = 3.0
     slope: float = 0.5
+
+    def __post_init__(self) -> None:
+        """Raises ValueError: no way to the surface."""
+        _check_reach(self.reach)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +49,10 @@ class SlidingIntegralGains:
     slope: float = 0.5
     integral: float = 0.1
     lost: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Raises ValueError: no way to the surface, on which the bound of the integrals depends."""
+        _check_reach(self.reach)
 
 
 def surface(momentum_nms: Vec3, attitude: Vec3, stiffness_nms: float) -> Vec3:

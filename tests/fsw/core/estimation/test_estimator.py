@@ -28,7 +28,7 @@ from fsw.core.algebra.vector import ZERO, add, cross, norm, scale, unit
 from fsw.core.estimation import mekf
 from fsw.core.estimation.dynamics.error_dynamics import NOT_DRIVEN, Driven
 from fsw.core.estimation.estimator import (
-    MAX_ELAPSED_TICKS,
+    MAX_ELAPSED_S,
     NONE_USED,
     EstimatorState,
     Used,
@@ -41,6 +41,8 @@ from fsw.core.estimation.parameters import NAMES
 from fsw.core.estimation.parameters import NOTHING as NO_DIFFERENCE
 from fsw.core.gate.readings import NOTHING
 from fsw.wire.messages import MagField, SunVector
+
+MAX_ELAPSED = round(MAX_ELAPSED_S / MEKF.tick_s)
 
 
 class TestStart:
@@ -248,7 +250,7 @@ class TestElapsedTicks:
 
     @pytest.mark.parametrize(
         ("elapsed", "survives"),
-        [(1, True), (MAX_ELAPSED_TICKS, True), (MAX_ELAPSED_TICKS + 1, False), (10**4, False)],
+        [(1, True), (MAX_ELAPSED, True), (MAX_ELAPSED + 1, False), (10**4, False)],
     )
     def test_after_a_longer_silence_it_begins_anew(self, settled, elapsed, survives):
         state, used = step(settled, self.QUIET, driven=[NOT_DRIVEN] * elapsed)
@@ -256,8 +258,15 @@ class TestElapsedTicks:
         assert state.restarts == (not survives)
         assert used == NONE_USED
 
+    @pytest.mark.parametrize("tick_hz", [3, 10])
+    def test_the_silence_counts_in_seconds(self, settled, tick_hz):
+        faster = replace(CONFIG, mekf=replace(MEKF, tick_s=1.0 / tick_hz))
+        for ticks, survives in ((60 * tick_hz, True), (60 * tick_hz + 1, False)):
+            state, _ = step(settled, self.QUIET, driven=[NOT_DRIVEN] * ticks, config=faster)
+            assert (state.estimate is not None) is survives
+
     def test_it_begins_anew_in_the_same_tick_if_it_can(self, settled):
-        state, used = step(settled, seen_from(), driven=[NOT_DRIVEN] * (MAX_ELAPSED_TICKS + 1))
+        state, used = step(settled, seen_from(), driven=[NOT_DRIVEN] * (MAX_ELAPSED + 1))
         assert (state.restarts, used) == (1, Used(True, True, False))
         np.testing.assert_array_equal(state.estimate.covariance, MEKF.initial_covariance)
 

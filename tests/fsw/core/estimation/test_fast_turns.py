@@ -23,7 +23,7 @@ from fsw.core.algebra.vector import add, scale, unit
 from fsw.core.estimation import mekf
 from fsw.core.estimation.dynamics.error_dynamics import NOT_DRIVEN
 from fsw.core.estimation.estimator import (
-    MAX_ELAPSED_TICKS,
+    MAX_ELAPSED_S,
     EstimatorState,
     Turning,
     predict,
@@ -140,7 +140,7 @@ class TestAfterAFastTurn:
         assert starts == 1
 
     def test_a_filter_that_begins_anew_has_not_turned_fast(self, settled):
-        silence = [NOT_DRIVEN] * (MAX_ELAPSED_TICKS + 1)
+        silence = [NOT_DRIVEN] * (round(MAX_ELAPSED_S / CONFIG.mekf.tick_s) + 1)
         lost = predict(self.turning(settled, 5.0, Turning.FAST), REFERENCE, silence, CONFIG)
         assert lost == EstimatorState(None, 0, settled.rejected_total, settled.restarts + 1, Turning.NO)
 

@@ -5,22 +5,24 @@ from random import Random
 
 import pytest
 
-from fsw.core.gate.sync_watch import LEAP_TICKS, MOST_DOUBTED, Belief, SyncWatch, judge, near
+from fsw.core.gate.sync_watch import LEAP_S, MOST_DOUBTED, Belief, SyncWatch, judge, near
 
 FAR = 10**9
 AT = 5000
+LEAP_TICKS = LEAP_S
+"""At 1 Hz."""
 LAST = 2**32 - 1
 
 
 class Count:
     """A count of ticks that follows what is believed."""
 
-    def __init__(self, tick=AT):
-        self.tick, self.watch = tick, SyncWatch()
+    def __init__(self, tick=AT, leap_ticks=LEAP_TICKS):
+        self.tick, self.watch, self.leap_ticks = tick, SyncWatch(), leap_ticks
 
     def hear(self, tick):
         """A SYNC: what it is taken for."""
-        belief, self.watch = judge(self.watch, self.tick, tick)
+        belief, self.watch = judge(self.watch, self.tick, tick, self.leap_ticks)
         if belief in (Belief.NEXT, Belief.RESTARTED):
             self.tick = tick
         return belief
@@ -46,9 +48,18 @@ class TestNear:
         [(AT + 1, True), (AT + LEAP_TICKS, True), (AT + LEAP_TICKS + 1, False), (AT - 1, False), (0, False)],
     )
     def test_ahead_and_not_far(self, count, tick, believed):
-        assert near(AT, tick) is believed
+        assert near(AT, tick, LEAP_TICKS) is believed
         assert count.hear(tick) is (Belief.NEXT if believed else Belief.IGNORED)
         assert count.watch.strange_tick == (-1 if believed else tick)
+
+    @pytest.mark.parametrize("leap_ticks", [60, 600, 6000])
+    def test_how_far_is_up_to_the_tick_rate(self, leap_ticks):
+        assert Count(leap_ticks=leap_ticks).hear(AT + leap_ticks) is Belief.NEXT
+        skipped = Count(leap_ticks=leap_ticks)
+        assert skipped.hear(AT + leap_ticks + 1) is Belief.IGNORED
+        skipped.hear(AT + 2)
+        assert not skipped.watch.settled(AT + 1 + leap_ticks)
+        assert skipped.watch.settled(AT + 2 + leap_ticks)
 
 
 class TestOneStrange:

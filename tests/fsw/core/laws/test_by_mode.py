@@ -39,6 +39,7 @@ BEFORE = FieldSample((1.5e-5, -2.6e-5, 3.3e-5), tick=40)
 SAMPLE = FieldSample((1.6e-5, -2.4e-5, 3.2e-5), tick=44)
 KNOWN = Attitude(normalise((0.9, 0.1, -0.2, 0.3)), (0.001, -0.002, 0.003), 0.01, 1e-4, True)
 NOT_VALID = KNOWN._replace(valid=False)
+TOO_FAST = KNOWN._replace(omega_body_orbit_radps=(0.001, -0.5, 0.003))
 REFERENCE = Reference(
     r_eci_m=(4.302e6, -3.4416e6, 4.5888e6),
     radius_m=7.17e6,
@@ -88,6 +89,7 @@ def test_the_demands_of_this_test_all_differ():
         (Mode.DETUMBLE, PD, NOT_VALID, BY_BDOT),
         (Mode.DETUMBLE, PD, UNKNOWN, BY_BDOT),
         (Mode.DETUMBLE, PREDICTIVE, UNKNOWN, BY_BDOT),
+        (Mode.DETUMBLE, PD, TOO_FAST, BY_BDOT),
         (Mode.ACQUIRE, PD, KNOWN, BY_FAR_PD),
         (Mode.ACQUIRE, DAMPING, KNOWN, BY_RATE),
         (Mode.ACQUIRE, PREDICTIVE, KNOWN, BY_PREDICTION),
@@ -105,7 +107,8 @@ def test_law_by_mode(mode, setpoint, attitude, expected):
 
 
 @pytest.mark.parametrize(
-    ("attitude", "expected"), [(KNOWN, BY_RATE), (NOT_VALID, BY_BDOT), (UNKNOWN, BY_BDOT)]
+    ("attitude", "expected"),
+    [(KNOWN, BY_RATE), (NOT_VALID, BY_BDOT), (UNKNOWN, BY_BDOT), (TOO_FAST, BY_BDOT)],
 )
 def test_detumble_with_a_continuous_driver_is_proportional(attitude, expected):
     assert run(Mode.DETUMBLE, PD, attitude, config=replace(CONFIG, pulsed=False)) == expected

@@ -241,5 +241,10 @@ def test_changes_are_told_by_cell():
     assert cell_changes((), ()) == []
 
 
+def test_cells_that_are_forgotten_are_readmitted():
+    before = (CellWatch(), CellWatch(Watch(2, 1.0)), CellWatch(Watch(4)))
+    assert cell_changes(before, ()) == [(1, 2, 0), (2, 4, 0)]
+
+
 def test_without_cells_there_is_no_health_of_them():
     assert judge((), CellEvidence((), None, None, None, False, False, True), WEIGHTS, CONFIG) == ()

@@ -118,6 +118,20 @@ def test_a_fault_is_named_borne_and_forgotten(make_world, name):
 
 
 @pytest.mark.long
+@pytest.mark.requirement("REQ-SENSOR-05")
+@pytest.mark.parametrize("name", ["field axes swapped", "sun axes swapped"])
+def test_what_only_the_filter_refuses_is_named_at_a_higher_tick_rate_too(make_world, name):
+    """Evidence takes time, not ticks: the filter must not restart before."""
+    make_change, named, within_s = FAULTS[name]
+    watcher = Watcher(make_world(time={"tick_hz": 4}))
+    watcher.fly(4 * BEFORE_S)
+    watcher.fly(4 * within_s, make_change())
+    assert [argument for _, argument in watcher.of(Event.SENSOR_ISOLATED)] == [named]
+    assert watcher.of(Event.FILTER_RESTARTED) == []
+    assert watcher.valid[-1]
+
+
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["field of wrong sign", "field stepped", "field frozen"])
 def test_in_eclipse_the_attitude_is_kept(make_world, name):
     """Nothing is left to see by; the estimate goes on by itself, and after two minutes is no longer valid."""

@@ -1,5 +1,6 @@
 """Laws for a sphere: an axis to the vertical, and an observer that knows the torque."""
 
+from dataclasses import replace
 from math import nan
 
 import numpy as np
@@ -20,6 +21,7 @@ from fsw.core.laws.feedback.sphere import (
 SPHERE = np.diag([1.6, 1.6, 1.6])
 K_W, K_A = 6.2694e6, 1614.9
 B = (2e-5, -1e-5, 3e-5)
+LIMITED = {"mean_dipole_am2": 0.25}
 component = st.floats(-1.0, 1.0, allow_subnormal=False)
 vectors = st.tuples(component, component, component).filter(lambda v: np.linalg.norm(v) > 0.1)
 
@@ -115,8 +117,26 @@ def test_the_observer_is_told_the_torque_of_its_own_dipole(bench, turned):
     assert pushed == pytest.approx(np.cross((0.1, -0.2, 0.3), inputs.b_body_t) / 1.6, rel=1e-9)
 
 
+def test_what_the_coils_cannot_give_is_not_remembered(bench, turned):
+    """The observer follows what turns the body: with any gain its state stays finite."""
+    orbit = bench.Orbit()
+    settings = replace(bench.config(bench.Body(SPHERE), 1.0, {"sphere_output": ObserverGains()}), **LIMITED)
+    memory = ()
+    for tick in range(700, 720):
+        c = turned((1, -2, 3), 25.0) @ orbit.c_orbit_from_eci(tick)
+        inputs = bench.inputs_at(orbit, tick, 1.0, c, np.zeros(3), None)
+        demand = sphere_output(inputs, memory, bench.setpoint(k_w=1e200, k_a=1e200), settings)
+        memory, given_am2 = demand.memory, demand.memory[7:]
+        assert max(map(abs, given_am2)) == pytest.approx(0.25)
+        assert np.cross(given_am2, demand.m_body_am2) / max(map(abs, demand.m_body_am2)) == pytest.approx(
+            np.zeros(3), abs=1e-12
+        )
+    assert np.linalg.norm(memory[4:7]) < 0.01
+
+
 def test_gains_out_of_range_are_refused():
     with pytest.raises(ValueError, match="axis_1"):
         VerticalGains(0.0, 0.0, 0.0)
-    with pytest.raises(ValueError, match="greater than 0"):
-        ObserverGains(0.0)
+    for bandwidth_radps in (0.0, -1.0, 101.0):
+        with pytest.raises(ValueError, match="must be above 0 and at most 100"):
+            ObserverGains(bandwidth_radps)
