@@ -155,6 +155,25 @@ class TestStuck:
         assert error_deg(world) < 4.0
         assert events(said, Event.FILTER_RESTARTED) == []
 
+    @pytest.mark.parametrize(
+        ("coils", "matrix", "coil", "ampere"),
+        [
+            ({"wiring": [1, -2, 3]}, [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]], 0, 0.3),
+            ({"wiring": [1, -2, 3]}, [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]], 1, -0.3),
+            ({"dipole_scale": [1.0, 1.0, 2.5]}, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 2.5]], 2, 0.3),
+        ],
+        ids=["beside an output of the other sense", "of an output of the other sense", "with another gain"],
+    )
+    def test_it_is_named_by_what_the_calibration_has_of_it(self, make_world, coils, matrix, coil, ampere):
+        world = make_world(coils=coils, flight={"calibration": {"coils": {"matrix": matrix}}})
+        world.fly(SETTLED)
+        conduct(world.plant, coil, ampere)
+        assert [argument for _, argument in events(fly(world, 120), Event.COIL_FAULT)] == [
+            100 * (coil + 1) + 4
+        ]
+        assert world.state.attitude.valid
+        assert error_deg(world) < 4.0
+
     def test_until_then_no_attitude_is_called_valid_and_after_it_the_current_is_reckoned_with(
         self, make_world
     ):
