@@ -10,9 +10,13 @@ from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale
 from fsw.core.gate.readings import Readings
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.plan.pulse_model import NEVER, NO_PULSE, Pulse
-from fsw.wire.messages import CoilDipole, CoilFire
+from fsw.wire.messages import CoilDipole, CoilFire, CoilRefusedReason
 
 LOCKOUT_UNKNOWN = (-1, -1, -1)
+LATE_TICKS = 2
+"""So late a report of a pulse may come after its end."""
+OF_ANY_FRAME = (CoilRefusedReason.MALFORMED, CoilRefusedReason.REPEATED_SEQ)
+"""Refusals of a broken or repeated frame, which may stand beside the very request that is driven."""
 MOST_IDLE_TICKS = 10_000
 """The count of idle ticks stops here: longer than any sample is late."""
 
@@ -139,10 +143,11 @@ def _lockout_ticks(lockout_ms: int, config: PulseConfig) -> int:
 
 
 def unexpected(view: CoilView, tick: int, config: PulseConfig) -> bool:
-    """Whether the board drove something that was not requested."""
+    """Whether the board drove something that was not requested; a report of a pulse may come late."""
     if view.driven_level == 0:
         return False
-    return (view.driven_coil, view.driven_level) != (view.fired.coil, requested_level(view, tick, config))
+    under_way = view.fired_tick < tick <= view.fired_tick + config.pulse_ticks + LATE_TICKS
+    return not under_way or (view.driven_coil, view.driven_level) != view.fired
 
 
 def actuate(
@@ -184,11 +189,18 @@ def actuate(
 
 
 def _refused(view: CoilView, readings: Readings, tick: int) -> bool:
-    """Whether the request of the tick before, or of the one before that, was refused."""
-    refused = readings.refused
-    if refused is None or tick > view.fired_tick + 2:
+    """Whether the request of the tick before, or of the one before that, was refused.
+
+    Not if the board reports that it is driven: then another frame of that tick was refused.
+    """
+    refused, status = readings.refused, readings.coil
+    if refused is None or tick > view.fired_tick + 2 or refused.tick != view.fired_tick & 0xFF:
         return False
-    return refused.tick == view.fired_tick & 0xFF
+    if status is not None and status.level and (status.coil, status.level) == view.fired:
+        return False
+    if refused.reason in OF_ANY_FRAME:
+        return status is not None
+    return refused.coil == view.fired.coil and refused.seq != view.seq
 
 
 def _pulse(

@@ -52,9 +52,13 @@ def judge_current(
 
 
 def _strange(health: CoilHealth, status: CoilStatus, unasked: bool, config: CoilHealthConfig) -> CoilHealth:
-    """Something flows without a request; a level that lasts for ``stuck_ticks`` isolates its coil."""
+    """Something flows without a request; a level that lasts for ``stuck_ticks`` isolates its coil.
+
+    Of a pulse longer than a tick one report proves nothing: it may be one that was delayed.
+    """
     ticks = health.strange_ticks + 1
     lasts = ticks >= config.stuck_ticks
     stray_ma = 0 if status.level else status.current_ma
-    health = health._replace(strange_ticks=ticks, stray_ma=stray_ma, stuck=unasked or lasts)
+    stuck = lasts or (unasked and ticks >= min(2, config.pulses.pulse_ticks))
+    health = health._replace(strange_ticks=ticks, stray_ma=stray_ma, stuck=stuck)
     return with_fault(health, status.coil, CoilFault.STUCK, config) if unasked and lasts else health

@@ -217,11 +217,13 @@ class TestStuck:
         assert not world.state.attitude.valid
 
     @pytest.mark.requirement("REQ-COIL-04")
-    def test_a_level_that_nobody_asked_for_trips_at_once_and_is_named_when_it_lasts(self, make_world):
+    def test_a_level_that_nobody_asked_for_trips_in_its_second_tick_and_is_named_when_it_lasts(
+        self, make_world
+    ):
         world = make_world()
         world.fly(90)
         said = fly(world, 60, told_by_driver(level=2, coil=1, current_ma=100))
-        assert events(said, Event.MONITOR_TRIPPED) == [(0, 7)]
+        assert events(said, Event.MONITOR_TRIPPED) == [(1, 7)]
         assert events(said, Event.COIL_FAULT) == [(world.config.fdir.coils.stuck_ticks - 1, 204)]
         assert world.state.modes.mode is Mode.SAFE
 
