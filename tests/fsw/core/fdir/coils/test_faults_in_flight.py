@@ -90,7 +90,7 @@ def test_a_wrong_current_names_the_coil_at_its_second_pulse(make_world, factor, 
     assert argument == 100 * (first + 1) + kind
     own = [tick for tick, coil in fires(said) if coil == first]
     assert len(own) == 1  # the first pulse went out before
-    assert named == own[0] + 3
+    assert named == own[0] + 2
     assert world.state.health.coils.faults[first] == kind
     assert fires(said)[-1][0] > named
     assert world.state.modes.trips == 0
@@ -103,8 +103,9 @@ def test_a_coil_that_was_not_fired_is_not_judged(make_world):
     pulses, health = config.coils.pulses, CoilHealth()
     off = NOTHING._replace(coil=CoilStatus(0, 0, 0, 0, 0, 0))
     for view in (CoilView(), CoilView(fired_tick=700)):
-        tick = view.fired_tick + pulses.pulse_ticks
-        assert judge_current(health, view, off, False, tick, config.fdir.coils) == health
+        for age in range(pulses.pulse_ticks + 1):
+            tick = view.fired_tick + age
+            assert judge_current(health, view, off, False, tick, config.fdir.coils) == health
 
 
 def test_a_single_wrong_current_names_nobody(make_world):
