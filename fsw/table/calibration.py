@@ -159,6 +159,15 @@ def coil_axes(table: CoilsTable | None) -> Mat3:
     return AXES if table is None or table.matrix is None else _by_axis(table.matrix, outputs_of(table.matrix))
 
 
+def stray_axes(table: CoilsTable | None) -> Mat3:
+    """As ``coil_axes``, but in the sense of the output, which a current without a level has."""
+    if table is None or table.matrix is None:
+        return AXES
+    columns, outputs = transpose(table.matrix), outputs_of(table.matrix)
+    first, second, third = (columns[output] for output in map(outputs.of_axis, range(3)))
+    return first, second, third
+
+
 def own_field(table: CoilsTable | None, coils: CoilTable, tick_hz: int) -> OwnField | None:
     """The own field of pulsed coils, None where the table has none."""
     if table is None or table.field_nt_per_am2 is None:

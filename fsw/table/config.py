@@ -26,7 +26,7 @@ from fsw.core.orbit.field import FieldKind
 from fsw.core.orbit.propagation import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.rates import RateGroup, RateTable
 from fsw.input.schema import TableError
-from fsw.table.calibration import calibration, coil_axes, own_field
+from fsw.table.calibration import calibration, coil_axes, own_field, stray_axes
 from fsw.table.estimator import estimator_config, plausibility_config
 from fsw.table.own_law import with_own_law
 from fsw.table.schedules import planned_pulses, schedules
@@ -169,6 +169,7 @@ def _fdir(table: FlightTable, timing: PulseConfig, mekf: MekfConfig) -> FdirConf
             pulses=timing,
             mekf=mekf,
             retest_ticks=_ticks(given.coil_retest_s, tick_hz),
+            stray_axes=stray_axes(table.calibration.coils),
         ),
     )
 

@@ -165,7 +165,8 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         "REQ-COIL-04",
         "A level or current that was not requested leads to SAFE; if it persists its coil is isolated, by "
         "the report of the driver or, in sunlight, by the torque.",
-        "level: at once; more than half of the least level's current, and isolation: 1 s beyond a pulse",
+        "level: at once, of pulses longer than a tick in the second tick; "
+        "more than half of the least level's current, and isolation: 1 s beyond a pulse",
         CoilFault.STUCK,
         Event.COIL_FAULT,
     ),

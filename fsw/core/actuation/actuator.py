@@ -4,15 +4,19 @@ from math import ceil
 from typing import NamedTuple
 
 from fsw.core.actuation import dipoles, pulses
-from fsw.core.actuation.dipoles import DipoleConfig
+from fsw.core.actuation.dipoles import NOTHING_ASKED, Asked, DipoleConfig
 from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale
 from fsw.core.gate.readings import Readings
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.plan.pulse_model import NEVER, NO_PULSE, Pulse
-from fsw.wire.messages import CoilDipole, CoilFire
+from fsw.wire.messages import CoilDipole, CoilFire, CoilRefusedReason
 
 LOCKOUT_UNKNOWN = (-1, -1, -1)
+LATE_TICKS = 2
+"""So late a report of a pulse may come after its end."""
+OF_ANY_FRAME = (CoilRefusedReason.MALFORMED, CoilRefusedReason.REPEATED_SEQ)
+"""Refusals of a broken or repeated frame, which may stand beside the very request that is driven."""
 MOST_IDLE_TICKS = 10_000
 """The count of idle ticks stops here: longer than any sample is late."""
 
@@ -24,7 +28,7 @@ class CoilView(NamedTuple):
     over the tick that just ended, ``driven_am2`` the mean dipole over it, body axes; ``fired_tick`` is -1
     before the first request; ``paid_body_nms`` is the impulse of the last request; ``idle_ticks``: reports
     in a row of no level and no current. ``past_am2``: the nominal dipoles driven over the last ticks, the
-    newest first, where the coils' own field is known.
+    newest first, where the coils' own field is known. ``asked``: the last request to a continuous driver.
     """
 
     lockout_ms: tuple[int, int, int] = LOCKOUT_UNKNOWN
@@ -38,10 +42,12 @@ class CoilView(NamedTuple):
     paid_body_nms: Vec3 = ZERO
     idle_ticks: int = 0
     past_am2: tuple[Vec3, ...] = ()
+    asked: Asked = NOTHING_ASKED
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state."""
         driven = (self.driven_coil, self.driven_level)
+        asked = () if self.asked == NOTHING_ASKED else (self.asked.tick, self.asked.reported)
         return (
             *self.lockout_ms,
             *driven,
@@ -50,12 +56,14 @@ class CoilView(NamedTuple):
             self.fired_tick,
             *self.fired,
             self.idle_ticks,
+            *asked,
         )
 
     def floats(self) -> tuple[float, ...]:
-        """For the checksum of the state."""
+        """For the checksum of the state; a request to a continuous driver counts where there has been one."""
         past = [part for m_am2 in self.past_am2 for part in m_am2]
-        return (*self.driven_am2, *self.paid_body_nms, *past)
+        asked_am2 = () if self.asked == NOTHING_ASKED else self.asked.m_body_am2
+        return (*self.driven_am2, *self.paid_body_nms, *past, *asked_am2)
 
 
 class ActuatorConfig(NamedTuple):
@@ -80,8 +88,10 @@ def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorC
         coil, level, seq = view.fired.coil, requested_level(view, tick, config.pulses), view.seq
     if config.dipoles is None:
         driven_am2 = scale(pulses.dipole_am2(level, config.pulses.levels_am2), config.pulses.coil_axes[coil])
+    elif readings.dipole is not None:
+        driven_am2 = dipoles.dipole_am2(readings.dipole, config.dipoles)
     else:
-        driven_am2 = dipoles.driven_dipole_am2(readings.dipole, config.dipoles)
+        driven_am2 = view.asked.over(tick)
     idle = status is not None and status.level == 0 and status.current_ma == 0
     return CoilView(
         lockout_ms=(lockout[0], lockout[1], lockout[2]),
@@ -95,6 +105,7 @@ def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorC
         paid_body_nms=view.paid_body_nms,
         idle_ticks=min(view.idle_ticks + 1, MOST_IDLE_TICKS) if idle else 0,
         past_am2=view.past_am2,
+        asked=view.asked._replace(reported=readings.dipole is not None) if config.dipoles else view.asked,
     )
 
 
@@ -132,10 +143,11 @@ def _lockout_ticks(lockout_ms: int, config: PulseConfig) -> int:
 
 
 def unexpected(view: CoilView, tick: int, config: PulseConfig) -> bool:
-    """Whether the board drove something that was not requested."""
+    """Whether the board drove something that was not requested; a report of a pulse may come late."""
     if view.driven_level == 0:
         return False
-    return (view.driven_coil, view.driven_level) != (view.fired.coil, requested_level(view, tick, config))
+    under_way = view.fired_tick < tick <= view.fired_tick + config.pulse_ticks + LATE_TICKS
+    return not under_way or (view.driven_coil, view.driven_level) != view.fired
 
 
 def actuate(
@@ -167,7 +179,9 @@ def actuate(
         return state._replace(owed_impulse_body_nms=ZERO, held_am2=ZERO), view, None
     if config.dipoles is not None:
         state, request = dipoles.request(state, demand, b_body_t, tick, config.dipoles, config.pulses)
-        return state, view, request if readings.dipole is not None else None
+        if readings.dipole is None:
+            return state, view, None
+        return state, view._replace(asked=dipoles.asked(request, tick, config.dipoles)), request
     if _refused(view, readings, tick):
         state = state._replace(owed_impulse_body_nms=add(state.owed_impulse_body_nms, view.paid_body_nms))
         view = view._replace(fired=NO_PULSE, paid_body_nms=ZERO)
@@ -175,11 +189,18 @@ def actuate(
 
 
 def _refused(view: CoilView, readings: Readings, tick: int) -> bool:
-    """Whether the request of the tick before, or of the one before that, was refused."""
-    refused = readings.refused
-    if refused is None or tick > view.fired_tick + 2:
+    """Whether the request of the tick before, or of the one before that, was refused.
+
+    Not if the board reports that it is driven: then another frame of that tick was refused.
+    """
+    refused, status = readings.refused, readings.coil
+    if refused is None or tick > view.fired_tick + 2 or refused.tick != view.fired_tick & 0xFF:
         return False
-    return refused.tick == view.fired_tick & 0xFF
+    if status is not None and status.level and (status.coil, status.level) == view.fired:
+        return False
+    if refused.reason in OF_ANY_FRAME:
+        return status is not None
+    return refused.coil == view.fired.coil and refused.seq != view.seq
 
 
 def _pulse(

@@ -6,6 +6,7 @@ samples while it is off. An impulse law keeps the timing of the pulses; only its
 
 from dataclasses import dataclass
 from math import isfinite
+from typing import NamedTuple
 
 from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, dot, scale, transform
@@ -32,11 +33,32 @@ class DipoleConfig:
     coils_from_body: Mat3 | None = None
 
 
-def driven_dipole_am2(status: CoilDipoleStatus | None, config: DipoleConfig) -> Vec3:
-    """The mean dipole over the tick that just ended, body axes, A m^2; zero without a report of the board."""
-    if status is None:
-        return ZERO
-    driven_am2 = scale(config.full_scale_am2, (status.m_x, status.m_y, status.m_z))
+class Asked(NamedTuple):
+    """The last request: the tick that it answered, and its dipole as it is on the wire, body axes, A m^2.
+
+    ``reported``: whether the board has said what it drove over the tick that just ended.
+    """
+
+    tick: int
+    m_body_am2: Vec3
+    reported: bool = False
+
+    def over(self, tick: int) -> Vec3:
+        """The dipole asked for over the tick that ends at this one."""
+        return self.m_body_am2 if tick == self.tick + 1 else ZERO
+
+
+NOTHING_ASKED = Asked(-1, ZERO)
+
+
+def asked(request: CoilDipole, tick: int, config: DipoleConfig) -> Asked:
+    """What is remembered of a request."""
+    return Asked(tick, dipole_am2(CoilDipole.decode(request.encode().data), config))
+
+
+def dipole_am2(fractions: CoilDipoleStatus | CoilDipole, config: DipoleConfig) -> Vec3:
+    """The mean dipole over a tick by these fractions of full scale, body axes, A m^2."""
+    driven_am2 = scale(config.full_scale_am2, (fractions.m_x, fractions.m_y, fractions.m_z))
     return driven_am2 if config.body_from_coils is None else transform(config.body_from_coils, driven_am2)
 
 

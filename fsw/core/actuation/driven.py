@@ -10,7 +10,7 @@ from math import sqrt
 from fsw.core.actuation.actuator import ActuatorConfig, CoilView, requested_level
 from fsw.core.actuation.pulses import PulseConfig, dipole_am2
 from fsw.core.algebra.vector import Vec3, scale, sub
-from fsw.core.estimation.dynamics.error_dynamics import NOT_DRIVEN, Driven
+from fsw.core.estimation.dynamics.error_dynamics import Driven
 
 
 def driven(
@@ -21,20 +21,23 @@ def driven(
     In a skipped tick, a request that is under way counts as driven. The uncertainty of a dipole is what was
     requested less what was reported, since either may have been lost or belong to another tick. The errors
     in the n ticks of a pulse are correlated: each is scaled by sqrt(n), so that taking them as independent
-    never understates their sum, (sum of a_i)^2 <= n sum of a_i^2.
+    never understates their sum, (sum of a_i)^2 <= n sum of a_i^2. A request to a continuous driver is for one
+    tick, and no other follows before the next report.
 
     Args:
         view: after ``update_view``.
         m_body_am2: the dipole over the last tick, body axes.
-        reported: whether the driver reported in the last tick.
+        reported: whether a driver of pulses reported in the last tick.
         ticks: those since the tick before, the last of which ends now.
         config: the coils.
     """
-    if config.dipoles is not None:
-        return [*[NOT_DRIVEN] * (len(ticks) - 1), Driven(m_body_am2)]
-    *skipped, asked_am2 = [_requested_am2(view, tick, config.pulses) for tick in ticks]
+    if config.dipoles is None:
+        *skipped, asked_am2 = [_requested_am2(view, tick, config.pulses) for tick in ticks]
+        together = sqrt(config.pulses.pulse_ticks)
+    else:
+        *skipped, asked_am2 = [view.asked.over(tick) for tick in ticks]
+        reported, together = view.asked.reported, 1.0
     doubted_am2 = sub(asked_am2, view.driven_am2) if reported else asked_am2
-    together = sqrt(config.pulses.pulse_ticks)
     return [
         *[Driven(one_am2, scale(together, one_am2)) for one_am2 in skipped],
         Driven(m_body_am2, scale(together, doubted_am2)),

@@ -54,8 +54,8 @@ class Evidence(NamedTuple):
     """What health is judged by in one tick.
 
     ``findings`` are of all that the sensors sent; ``view`` is that of the coil driver; ``used`` is what the
-    filter took. ``settled``: the count of ticks is no longer in doubt; until then field and Sun may be those
-    of another time, and no sensor is judged by them.
+    filter took. ``settled``: the time is not in doubt; otherwise field and Sun may be those of another,
+    and no sensor is judged by them.
     """
 
     tick: int
@@ -118,8 +118,10 @@ def judge(
     reference, findings = evidence.reference, evidence.findings
     before, found, weights = health.sensors, health.coils, config.sensors.weights
     if not evidence.settled:
-        valid = attitude.valid and pair.valid(before.pair)
-        return health, untraced(estimator), attitude._replace(valid=valid)
+        both = pair.unjudged(before.pair, evidence.used, estimator.estimate, weights)
+        judged = before._replace(pair=both, memory=findings.memory)
+        valid = attitude.valid and not _untold(judged, found, evidence.used, config)
+        return Health(judged, found), untraced(estimator), attitude._replace(valid=valid)
     judged = sensor_health.judge(
         before, findings, evidence.used, estimator.estimate, reference, config.sensors
     )
@@ -138,14 +140,19 @@ def judge(
         found = found._replace(older=coil_health.NONE_OLDER)  # a faulty sensor may have shown it
     if judged.pair.ended:
         estimator, attitude = restart(estimator), UNKNOWN
-    torque_untold = (
-        coil_health.unattributed_torque(found)
-        or _turned_unseen(found, evidence.used, config)
-        or _pulses_untold(found, judged.pair, config)
-    )
-    if torque_untold or doubtful(judged.cells, weights) or not pair.valid(judged.pair):
+    if _untold(judged, found, evidence.used, config):
         attitude = attitude._replace(valid=False)
     return Health(judged, found), estimator, attitude
+
+
+def _untold(judged: SensorHealth, found: CoilHealth, used: Used, config: FdirConfig) -> bool:
+    """Whether a fault may have falsified the attitude."""
+    torque_untold = (
+        coil_health.unattributed_torque(found)
+        or _turned_unseen(found, used, config)
+        or _pulses_untold(found, judged.pair, config)
+    )
+    return torque_untold or doubtful(judged.cells, config.sensors.weights) or not pair.valid(judged.pair)
 
 
 UNKNOWN_PART = 0.5

@@ -3,7 +3,8 @@
 Magnetometer: b_body = M (z - o), z the reading, o its offset; M may mirror, as wrongly wired axes do. Sun
 sensor: s_body = R z. Coil driver: each of its three outputs drives the coil along one body axis, in one of
 two senses. Beyond this module coil j is the coil along body axis j, with the sense of that axis. Its gain and
-its true axis are in ``coil_axes`` of the actuation.
+its true axis are in ``coil_axes`` of the actuation. A current without a level stays as the board reads it,
+in the sense of the output: the status does not tell in which coil it flows.
 """
 
 from dataclasses import dataclass
@@ -80,9 +81,8 @@ def _by_axis(readings: Readings, outputs: Outputs) -> Readings:
     coil, refused, dipole = readings.coil, readings.refused, readings.dipole
     if coil is not None:
         sign = outputs.sign[coil.coil]
-        coil = coil._replace(
-            coil=outputs.axis[coil.coil], level=sign * coil.level, current_ma=sign * coil.current_ma
-        )
+        current_ma = sign * coil.current_ma if coil.level else coil.current_ma
+        coil = coil._replace(coil=outputs.axis[coil.coil], level=sign * coil.level, current_ma=current_ma)
     if refused is not None and refused.coil < len(outputs.axis):
         refused = refused._replace(coil=outputs.axis[refused.coil])
     if dipole is not None:

@@ -9,6 +9,8 @@ Others may come between the two. What is in doubt is forgotten when a settled co
 that strange SYNCs between true ones never add up. A count that has skipped or restarted settles in
 ``LEAP_S``; until then the one that was abandoned for it may be believed again. Of two plants that both
 advance tick by tick, nothing here can decide which is the false one.
+
+Whether the time is in doubt is another matter: a bus that loses a SYNC now and then shows the right one.
 """
 
 from enum import Enum, auto
@@ -16,6 +18,10 @@ from typing import NamedTuple
 
 LEAP_S = 60
 """A SYNC no further ahead is believed at once: those between were lost. A new count settles in as long."""
+
+FEW_TICKS = 5
+"""Lost in a row they leave no doubt about the time: were the skip forged, field and Sun would hardly be
+others, and the next two SYNCs of the plant would show it."""
 
 MOST_DOUBTED = 64
 """How many ticks are remembered as in doubt, the latest."""
@@ -37,20 +43,23 @@ class SyncWatch(NamedTuple):
     """SYNCs in doubt.
 
     ``doubted``: their ticks, the latest last; ``settled_tick``: the count is settled from here on;
-    ``strange_tick``: the latest strange one that has not been reported yet, -1 if there is none.
+    ``strange_tick``: the latest strange one that has not been reported yet, -1 if there is none;
+    ``timed_tick``: the time is no longer in doubt from here on.
     """
 
     doubted: tuple[int, ...] = ()
     settled_tick: int = 0
     strange_tick: int = -1
+    timed_tick: int = 0
 
     def settled(self, tick: int) -> bool:
-        """Whether the count of ticks is not in doubt."""
-        return tick >= self.settled_tick
+        """Whether field and Sun are those of the time: no restart, and no long skip, lately."""
+        return tick >= self.timed_tick
 
     def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state."""
-        return (*self.doubted, self.settled_tick, self.strange_tick)
+        """For the checksum of the state; the doubt about the time counts where there has been one."""
+        timed = (self.timed_tick,) if self.timed_tick else ()
+        return (*self.doubted, self.settled_tick, self.strange_tick, *timed)
 
 
 def judge(watch: SyncWatch, current: int, tick: int, leap_ticks: int) -> tuple[Belief, SyncWatch]:
@@ -72,7 +81,8 @@ def judge(watch: SyncWatch, current: int, tick: int, leap_ticks: int) -> tuple[B
         return Belief.IGNORED, watch._replace(doubted=_with(watch.doubted, tick))
     if tick in watch.doubted or tick - 1 in watch.doubted:
         doubted = _with(_without(watch.doubted, tick, tick - 1), current)
-        return Belief.RESTARTED, SyncWatch(doubted, settled_tick=tick + leap_ticks)
+        settled_tick = tick + leap_ticks
+        return Belief.RESTARTED, SyncWatch(doubted, settled_tick, timed_tick=settled_tick)
     return Belief.IGNORED, watch._replace(doubted=_with(watch.doubted, tick), strange_tick=tick)
 
 
@@ -84,7 +94,9 @@ def near(current: int, tick: int, leap_ticks: int) -> bool:
 def _gone_on(watch: SyncWatch, current: int, tick: int, leap_ticks: int) -> SyncWatch:
     """The watch after a tick not far ahead: a skip may come from a forged SYNC."""
     if tick > current + 1:
-        return watch._replace(settled_tick=tick + leap_ticks)
+        settled_tick = tick + leap_ticks
+        timed_tick = watch.timed_tick if tick <= current + 1 + FEW_TICKS else settled_tick
+        return watch._replace(settled_tick=settled_tick, timed_tick=timed_tick)
     return watch._replace(doubted=()) if watch.doubted and current >= watch.settled_tick else watch
 
 

@@ -82,7 +82,7 @@ class TestSilence:
         assert not any(of(CoilFire, replies) for replies in ticks)
         assert all(isinstance(replies[-1], TickDone) for replies in ticks)
 
-    def test_a_coil_that_drives_by_itself_leads_to_safe_at_once(self, make_world):
+    def test_a_coil_that_drives_by_itself_leads_to_safe_in_its_second_tick(self, make_world):
         world = make_world()
         world.fly(90)
         rogue = CoilStatus(2, 1, 2000, 40, 103000, 0, counter=0)
@@ -92,6 +92,8 @@ class TestSilence:
             frames.append(rogue._replace(counter=inbox.tick & 0xF).encode())
             return inbox._replace(frames=tuple(frames))
 
+        world.step(drive)
+        assert world.state.modes.mode is not Mode.SAFE
         replies = world.step(drive)
         assert (Event.MONITOR_TRIPPED, 7) in [(m.event, m.argument) for m in of(FswEvent, replies)]
         assert world.state.modes.mode is Mode.SAFE

@@ -80,6 +80,12 @@ def test_coils_are_split_into_outputs_and_axes():
     assert found.coils.pulses.coil_axes[0] == pytest.approx(commanded_along_1)
 
 
+def test_a_current_without_a_level_has_the_sense_of_its_output():
+    assert config().fdir.coils.stray_axes == AXES
+    found = config(coils={"matrix": SWAPPED}).fdir.coils.stray_axes
+    assert found == ((-0.9, 0.03, 0.0), (0.0, 1.1, 0.02), (0.05, 0.0, 1.2))
+
+
 def test_the_field_of_the_coils_is_by_axis_and_late_by_whole_ticks():
     found = config(coils={"matrix": SWAPPED, "field_nt_per_am2": FIELD, "field_delay_s": 1.4}).own_field
     commanded_along_1 = np.array(FIELD) @ (0.0, -1.0, 0.0)

@@ -5,7 +5,7 @@ from typing import NamedTuple, TypeVar
 
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.actuation.pulses import PulseConfig
-from fsw.core.algebra.vector import ZERO, Vec3, scale
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, scale, transform, transpose
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.coils.weak_test import NOTHING_OLDER, Older, WeakTest
 from fsw.core.fdir.faults import CoilFault
@@ -17,6 +17,7 @@ class CoilHealthConfig:
     """Current of each level and limits.
 
     ``weak`` tells a weak coil from a sound one; a stray current means a stuck coil after ``stuck_ticks``.
+    ``stray_axes``: by coil, the dipole per nominal one of a current in the sense of its output, body axes.
     """
 
     current_ma: Vec3
@@ -26,6 +27,7 @@ class CoilHealthConfig:
     pulses: PulseConfig
     mekf: MekfConfig
     retest_ticks: int
+    stray_axes: Mat3 = AXES
 
 
 NONE_OLDER = (NOTHING_OLDER, NOTHING_OLDER, NOTHING_OLDER)
@@ -72,7 +74,7 @@ def driven_am2(health: CoilHealth, view: CoilView, config: CoilHealthConfig) -> 
     conducts = AXES[health.faults.index(CoilFault.STUCK)] if stuck else health.conducts
     if not health.stray_ma or conducts == ZERO:
         return view.driven_am2
-    return scale(stray_am2(health, config), conducts)
+    return transform(transpose(config.stray_axes), scale(stray_am2(health, config), conducts))
 
 
 def unattributed_torque(health: CoilHealth) -> bool:
@@ -86,7 +88,7 @@ def flows_somewhere(health: CoilHealth) -> bool:
 
 
 def stray_am2(health: CoilHealth, config: CoilHealthConfig) -> float:
-    """Dipole of the stray current in a coil."""
+    """Nominal dipole of the stray current in a coil, in the sense of its output."""
     return health.stray_ma / config.current_ma[-1] * config.pulses.levels_am2[-1]
 
 

@@ -18,17 +18,24 @@ from fsw.core.fdir.coils import effects
 from fsw.core.fdir.coils.explanations import STRAY, Solution
 from fsw.core.fdir.coils.weak_test import MODEL_ERROR
 from fsw.core.fdir.evidence import SIGMAS
-from fsw.core.laws.plan.pulse_model import AXES
 
 CAUSES = (STRAY, STRAY + 1, STRAY + 2)
 
 
-def kicks_radps(m_am2: float, estimate: Estimate, b_eci_t: Vec3, tuning: MekfConfig) -> Mat3:
-    """What a current of this dipole would do to the rate in a tick, by coil, body axes."""
+def kicks_radps(m_am2: float, axes: Mat3, estimate: Estimate, b_eci_t: Vec3, tuning: MekfConfig) -> Mat3:
+    """What a current of this nominal dipole would do to the rate in a tick, by coil, body axes.
+
+    Args:
+        m_am2: nominal dipole, in the sense of the coil's output.
+        axes: by coil, the dipole per nominal one, body axes.
+        estimate: of this tick.
+        b_eci_t: field, inertial axes.
+        tuning: of the filter.
+    """
     b_body_t = rotate(estimate.q_body_from_eci, b_eci_t)
     first, second, third = (
         transform(tuning.rotor.inertia_inverse, scale(tuning.tick_s * m_am2, cross(axis, b_body_t)))
-        for axis in AXES
+        for axis in axes
     )
     return first, second, third
 

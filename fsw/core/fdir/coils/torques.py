@@ -66,7 +66,8 @@ def judge_effect(
     if estimate is None or not (due or flows):
         return health, state
     if flows:
-        kicks_radps = stray.kicks_radps(stray_am2(health, config), estimate, b_eci_t, config.mekf)
+        m_am2 = stray_am2(health, config)
+        kicks_radps = stray.kicks_radps(m_am2, config.stray_axes, estimate, b_eci_t, config.mekf)
         begins = health.strange_ticks == 1
         estimate = stray.trace(estimate, health.conducts, kicks_radps, config.mekf.tick_s, begins)
     if due:

@@ -89,7 +89,11 @@ class Observed(NamedTuple):
     @property
     def begun(self) -> bool:
         """Whether the estimate began with the samples of this tick: they are taken, not compared."""
-        return self.estimate is not None and self.used.sun and self.estimate.numbers == 0
+        return _begun(self.estimate, self.used)
+
+
+def _begun(estimate: Estimate | None, used: Used) -> bool:
+    return estimate is not None and used.sun and estimate.numbers == 0
 
 
 def proven(pair: Pair, weights: EvidenceWeights) -> bool:
@@ -122,16 +126,38 @@ def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cre
         return Pair(Standing.ON_TRIAL, accord=threshold, ended=True)
     if standing is not Standing.DISPUTED and proof >= threshold:
         standing = Standing.TRUSTED
-    elif standing is Standing.TRUSTED and (seen.estimate is None or seen.begun):
-        standing = Standing.ON_TRIAL if pair.owed else Standing.NEW
+    elif seen.estimate is None or seen.begun:
+        standing = _without_proof(pair)
     blind_ticks = 0 if seen.used.field or seen.used.sun else pair.blind_ticks + 1
-    owed = _owed(pair.owed, blind_ticks, seen, weights)
+    owed = _owed(pair.owed, blind_ticks, seen.estimate, seen.used, weights)
     lost = owed > 0.0 and seen.used.field and seen.used.sun and not seen.sound
     slow = weights.agrees / PAIR_NUMBERS  # a faulty coil, which looks the same at first, is found sooner
     strange = weigh(pair.strange, slow if lost else -slow, threshold)
     if strange >= threshold:
         return Pair(ended=True)
     return Pair(standing, proof, doubt, accord, False, blind_ticks, owed, strange)
+
+
+def unjudged(pair: Pair, used: Used, estimate: Estimate | None, weights: EvidenceWeights) -> Pair:
+    """The pair after a tick in which field and Sun may be those of another time.
+
+    What is taken then shows nothing, for the estimate or against a sensor: the time without a sample goes on.
+    But an estimate that has begun anew is not the one that was proven, and one that lags has to be.
+    """
+    blind_ticks = pair.blind_ticks + 1
+    owed = max(pair.owed, _owed(pair.owed, blind_ticks, estimate, used, weights))
+    if estimate is None or _begun(estimate, used):
+        return pair._replace(
+            standing=_without_proof(pair), proof=0.0, ended=False, blind_ticks=blind_ticks, owed=0.0
+        )
+    return pair._replace(ended=False, blind_ticks=blind_ticks, owed=owed)
+
+
+def _without_proof(pair: Pair) -> Standing:
+    """The standing where there is no estimate, or another has begun: a trusted one has ended."""
+    if pair.standing is not Standing.TRUSTED:
+        return pair.standing
+    return Standing.ON_TRIAL if pair.owed else Standing.NEW
 
 
 def _misfit(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> float:
@@ -176,20 +202,22 @@ def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: Cr
     return weigh(pair.proof, by / slow, weights.threshold)
 
 
-def _owed(owed: float, blind_ticks: int, seen: Observed, weights: EvidenceWeights) -> float:
+def _owed(
+    owed: float, blind_ticks: int, estimate: Estimate | None, used: Used, weights: EvidenceWeights
+) -> float:
     """What both sensors have to prove anew.
 
     After a time without a sample, in which pulses may have failed; and if the innovations have a mean that is
     not chance, which contradicts the covariance: sooner with one sensor alone, as in the shadow.
     """
-    if seen.estimate is None:
+    if estimate is None:
         return 0.0
-    alone = seen.used.field != seen.used.sun
+    alone = used.field != used.sun
     most = ALONE * weights.threshold if alone else weights.threshold
-    lags = mean_misfit(seen.estimate.lag, weights) >= most
+    lags = mean_misfit(estimate.lag, weights) >= most
     if lags or blind_ticks > weights.blind_ticks:
         return weights.threshold
-    both = seen.used.field and seen.used.sun
+    both = used.field and used.sun
     return max(0.0, owed - weights.fits) if both else owed
 
 

@@ -25,11 +25,11 @@ from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
 from fsw.core.actuation import pulses
-from fsw.core.actuation.actuator import CoilView, actuate, update_view
+from fsw.core.actuation.actuator import OF_ANY_FRAME, CoilView, actuate, update_view
 from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import Demand
-from fsw.core.laws.plan.pulse_model import Pulse
-from fsw.wire.messages import CoilBoot, CoilFire
+from fsw.core.laws.plan.pulse_model import NO_PULSE, Pulse
+from fsw.wire.messages import CoilBoot, CoilFire, CoilRefused, CoilRefusedReason
 
 
 def test_after_a_boot_of_the_board_nothing_goes_out_before_its_word_is_heard():
@@ -207,6 +207,32 @@ def test_a_refusal_of_another_request_or_one_that_comes_too_late_gives_nothing_b
 def test_a_refusal_before_the_first_request_gives_nothing_back():
     state, _, _ = run(ready(ZERO), readings=BOARD_IS_THERE._replace(refused=refusal(255)), tick=1)
     assert state.owed_impulse_body_nms == ZERO
+
+
+@pytest.mark.parametrize("seq", [1, 9])
+@pytest.mark.parametrize("reason", CoilRefusedReason)
+def test_a_request_that_is_reported_as_driven_was_not_refused(seq, reason):
+    """Another frame of that tick was: a broken one, a repeated one, or that of another sender."""
+    state, view, request = run()
+    driven = status(request.coil, level=request.level, seq=request.seq)
+    readings = NOTHING._replace(coil=driven, refused=CoilRefused(request.coil, seq, reason, TICK & 0xFF))
+    view = update_view(view, readings, TICK + 1, COILS)
+    assert run(state, view, readings=readings, tick=TICK + 1)[1].fired == view.fired
+
+
+@pytest.mark.parametrize("reason", OF_ANY_FRAME)
+def test_a_broken_frame_without_a_status_may_be_any(reason):
+    state, view, _ = run()
+    lost = NOTHING._replace(refused=refusal(TICK)._replace(reason=reason))
+    assert run(state, view, readings=lost, tick=TICK + 1)[1].fired == view.fired
+    off = lost._replace(coil=BOARD_IS_THERE.coil)
+    assert run(state, view, readings=off, tick=TICK + 1)[1].fired == NO_PULSE
+
+
+def test_a_refusal_of_another_coil_is_not_of_this_request():
+    state, view, _ = run()
+    readings = BOARD_IS_THERE._replace(refused=refusal(TICK)._replace(coil=1))
+    assert run(state, view, readings=readings, tick=TICK + 1)[1].fired == view.fired
 
 
 def test_a_refused_impulse_is_not_owed():

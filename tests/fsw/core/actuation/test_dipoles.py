@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from fsw.core.actuation import dipoles, pulses
 from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, update_view
-from fsw.core.actuation.dipoles import MOST, DipoleConfig, driven_dipole_am2, request, saturate
+from fsw.core.actuation.dipoles import MOST, Asked, DipoleConfig, dipole_am2, request, saturate
 from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.algebra.vector import ZERO, inverse
 from fsw.core.gate.readings import NOTHING
@@ -85,12 +85,14 @@ class TestSaturation:
 
 class TestDriven:
     def test_is_what_the_board_says_of_full_scale(self):
-        assert driven_dipole_am2(CoilDipoleStatus(0.5, -0.25, 0.125), CONFIG) == pytest.approx(
-            (4.8, -2.4, 1.2)
-        )
+        assert dipole_am2(CoilDipoleStatus(0.5, -0.25, 0.125), CONFIG) == pytest.approx((4.8, -2.4, 1.2))
 
-    def test_without_a_word_it_is_none(self):
-        assert driven_dipole_am2(None, CONFIG) == ZERO
+    @pytest.mark.parametrize(("age", "driven_am2"), [(1, (1.0, 2.0, 3.0)), (0, ZERO), (2, ZERO)])
+    def test_without_a_report_it_is_what_was_asked_for_this_tick(self, age, driven_am2):
+        view = CoilView(asked=Asked(44 - age, (1.0, 2.0, 3.0)))
+        view = update_view(view, NOTHING, 44, ActuatorConfig(TIMING, CONFIG))
+        assert view.driven_am2 == driven_am2
+        assert not view.asked.reported
 
     def test_it_is_what_the_view_holds_and_no_level_is(self):
         coils = ActuatorConfig(TIMING, CONFIG)
@@ -100,6 +102,7 @@ class TestDriven:
         view = update_view(CoilView(), readings, 44, coils)
         assert view.driven_am2 == pytest.approx((4.8, -2.4, 1.2))
         assert view.driven_level == 0
+        assert view.asked.reported
 
 
 def history(demands, config=CONFIG, timing=TIMING, b=lambda tick: B_BODY_T, boot_tick=0):
@@ -211,6 +214,15 @@ class TestActuate:
     def test_a_request_goes_out_at_once(self):
         assert self.run(Demand((1.0, -2.0, 3.0)))[2] == saturate((1.0, -2.0, 3.0), CONFIG)
         assert np.array(am2(self.run(missing())[2])) == pytest.approx(best_am2())
+
+    def test_it_is_remembered_as_it_is_on_the_wire(self):
+        _, view, sent = self.run(Demand((1.0, -2.0, 3.0)))
+        assert view.asked == Asked(500, dipole_am2(CoilDipole.decode(sent.encode().data), CONFIG))
+        assert view.asked.m_body_am2 == pytest.approx((1.0, -2.0, 3.0), abs=FULL_SCALE_AM2 * LSB)
+
+    def test_one_that_was_not_sent_is_not(self):
+        for demand, readings in ((None, self.HEARD), (missing(), NOTHING)):
+            assert self.run(demand, readings)[1] == CoilView()
 
     @pytest.mark.parametrize("demand", [Demand((1.0, -2.0, 3.0)), missing()], ids=["dipole", "impulse"])
     def test_nothing_goes_to_a_board_that_is_not_heard(self, demand):

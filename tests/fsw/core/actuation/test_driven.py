@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from fsw.core.actuation.actuator import CoilView, update_view
-from fsw.core.actuation.dipoles import DipoleConfig
+from fsw.core.actuation.dipoles import Asked, DipoleConfig
 from fsw.core.actuation.driven import driven
 from fsw.core.estimation.dynamics.error_dynamics import Driven
 from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.plan.pulse_model import Pulse
-from fsw.wire.messages import CoilStatus
+from fsw.wire.messages import CoilDipoleStatus, CoilStatus
 
 ZERO = (0.0, 0.0, 0.0)
 IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -100,7 +100,39 @@ def test_a_stray_current_that_the_filter_knows_of_is_no_doubt(coils):
     assert now == [Driven((0.3, 0.0, 0.0), ZERO)]
 
 
-def test_a_continuous_driver_reports_dipoles_and_has_no_pulses(coils):
-    continuous = coils._replace(dipoles=DipoleConfig(9.6, IDENTITY, genetic=False))
-    said_am2, ticks = (4.8, -2.4, 1.2), range(TICK + 1, TICK + 4)
-    assert driven(FIRED, said_am2, False, ticks, continuous) == [(ZERO, ZERO), (ZERO, ZERO), (said_am2, ZERO)]
+class TestContinuousDriver:
+    """It reports dipoles and has no pulses; a request is for one tick."""
+
+    WANTED_AM2 = (4.8, -2.4, 1.2)
+    SAYS = CoilDipoleStatus(0.5, -0.25, 0.125)
+    IN_DOUBT = (WANTED_AM2, WANTED_AM2)
+    OFF = (ZERO, ZERO)
+
+    @pytest.fixture
+    def drives(self, coils):
+        """As those of pulses, after a request for ``WANTED_AM2``."""
+        continuous = coils._replace(dipoles=DipoleConfig(9.6, IDENTITY, genetic=False))
+
+        def over(ticks_after, status=None, skipped=0, asked_am2=self.WANTED_AM2):
+            tick, view = TICK + ticks_after, CoilView(asked=Asked(TICK, asked_am2))
+            after = update_view(view, NOTHING._replace(dipole=status), tick, continuous)
+            return driven(after, after.driven_am2, True, range(tick - skipped, tick + 1), continuous)
+
+        return over
+
+    def test_what_is_reported_as_it_was_asked_for_is_certain(self, drives):
+        assert drives(1, self.SAYS) == [(self.WANTED_AM2, ZERO)]
+        assert drives(2, CoilDipoleStatus(0.0, 0.0, 0.0)) == [self.OFF]
+
+    def test_without_a_report_all_that_was_asked_for_is_in_doubt(self, drives):
+        assert drives(1) == [self.IN_DOUBT]
+        assert drives(2) == [self.OFF]
+
+    def test_a_report_of_something_else_is_in_doubt_by_the_difference(self, drives):
+        (now,) = drives(1, CoilDipoleStatus(0.25, -0.25, 0.125))
+        assert now.m_body_am2 == pytest.approx((2.4, -2.4, 1.2))
+        assert now.doubted_am2 == pytest.approx((2.4, 0.0, 0.0))
+
+    def test_in_ticks_that_were_skipped_only_the_first_was_asked_for(self, drives):
+        assert drives(3, CoilDipoleStatus(0.0, 0.0, 0.0), skipped=2) == [self.IN_DOUBT, self.OFF, self.OFF]
+        assert drives(3, skipped=2) == [self.IN_DOUBT, self.OFF, self.OFF]

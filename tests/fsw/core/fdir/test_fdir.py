@@ -223,22 +223,48 @@ class TestJudgement:
         weak_part = make_world().config.fdir.coils.weak.weak_part
         assert asked == [tuple(weak_part if part is WEAK_PART else part for part in believed)]
 
-    def test_while_the_time_is_in_doubt_no_sensor_is_judged(self, make_world, monkeypatch):
+    @pytest.fixture
+    def in_doubt(self, make_world, monkeypatch):
+        """As ``judged``, while the time is in doubt: no sensor may be judged."""
         world = make_world()
         world.fly_until_valid()
         state, config = world.state, world.config
         reference = reference_at(state.ephemeris, state.tick, config.ephemeris)
         findings = fdir.examine(NOTHING, state.health, reference, config.fdir)
-        used = fdir.Used(False, False, False)
+        used = fdir.Used(True, True, False)
         evidence = Evidence(state.tick, findings, state.coil, reference, used, settled=False)
         monkeypatch.setattr(fdir.sensor_health, "judge", None)
-        for before, valid in ((Health(SensorHealth(pair=PROVEN)), True), (Health(), False)):
-            health, estimator, attitude = fdir.judge(
-                before, state.estimator, state.attitude, evidence, config.fdir
-            )
-            assert health is before
-            assert attitude == state.attitude._replace(valid=valid)
-            assert estimator.estimate.trace is None
+
+        def judge(health):
+            return fdir.judge(health, state.estimator, state.attitude, evidence, config.fdir), state
+
+        return judge
+
+    @pytest.mark.parametrize(
+        ("before", "valid"),
+        [
+            (sensors(pair=PROVEN), True),
+            (Health(), False),
+            (
+                Health(sensors(pair=PROVEN).sensors, CoilHealth(strange_ticks=9, stray_ma=40, stuck=True)),
+                False,
+            ),
+        ],
+        ids=["proven", "new", "stray current"],
+    )
+    def test_while_the_time_is_in_doubt_no_sensor_is_judged(self, in_doubt, before, valid):
+        (health, estimator, attitude), state = in_doubt(before)
+        assert (health.sensors.field, health.sensors.sun) == (before.sensors.field, before.sensors.sun)
+        assert health.coils is before.coils
+        assert attitude == state.attitude._replace(valid=valid)
+        assert estimator.estimate.trace is None
+
+    def test_nor_does_what_is_taken_show_the_attitude(self, in_doubt, make_world):
+        limit = make_world().config.fdir.sensors.weights.blind_ticks
+        for blind_ticks, valid in ((limit - 1, True), (limit, False)):
+            (health, _, attitude), _ = in_doubt(sensors(pair=PROVEN._replace(blind_ticks=blind_ticks)))
+            assert health.sensors.pair.blind_ticks == blind_ticks + 1
+            assert attitude.valid is valid
 
     def test_enough_doubt_ends_the_filter(self, judged, monkeypatch):
         disputed = SensorHealth(pair=Pair(Standing.DISPUTED, ended=True))

@@ -84,6 +84,14 @@ def test_a_report_of_an_output_is_one_of_its_axis_and_back(output, axis, sign):
     assert fired == request._replace(coil=output, level=-3 * sign)
 
 
+@pytest.mark.parametrize("output", [0, 1, 2])
+def test_a_current_without_a_level_stays_as_it_was_read(output):
+    """It may flow in any coil: in which sense of its axis is for who finds the coil."""
+    sent = CoilStatus(level=0, coil=output, remaining_ms=0, current_ma=-100, lockout_ms=90, seq=9)
+    found = calibrated(NOTHING._replace(coil=sent), Calibration(outputs=OUTPUTS)).coil
+    assert found == sent._replace(coil=OUTPUTS.axis[output])
+
+
 def test_a_refusal_names_the_axis_and_one_of_no_coil_stays():
     for output, axis in ((0, 2), (3, 3)):
         sent = CoilRefused(output, 9, CoilRefusedReason.BAD_COIL, 4)

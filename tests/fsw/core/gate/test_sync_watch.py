@@ -5,7 +5,7 @@ from random import Random
 
 import pytest
 
-from fsw.core.gate.sync_watch import LEAP_S, MOST_DOUBTED, Belief, SyncWatch, judge, near
+from fsw.core.gate.sync_watch import FEW_TICKS, LEAP_S, MOST_DOUBTED, Belief, SyncWatch, judge, near
 
 FAR = 10**9
 AT = 5000
@@ -121,6 +121,40 @@ class TestTwoStrange:
 
     def test_a_pair_of_either_kind_is_believed_once(self, count):
         assert count.answers(FAR, FAR, FAR + 1, FAR + 2) == [FAR, FAR + 1, FAR + 2]
+
+
+class TestTheTime:
+    """Whether field and Sun may be those of another time."""
+
+    def test_is_not_in_doubt_where_few_syncs_are_lost(self, count):
+        for _ in range(40):
+            assert count.hear(count.tick + 1 + FEW_TICKS) is Belief.NEXT
+            assert count.watch.settled(count.tick)
+
+    def test_is_in_doubt_after_a_long_skip(self, count):
+        count.hear(AT + 2 + FEW_TICKS)
+        assert not count.watch.settled(count.tick + LEAP_TICKS - 1)
+        assert count.watch.settled(count.tick + LEAP_TICKS)
+
+    def test_a_short_skip_ends_no_doubt(self, count):
+        count.hear(AT + 2 + FEW_TICKS)
+        count.hear(count.tick + 2)
+        assert not count.watch.settled(count.tick)
+
+    @pytest.mark.parametrize("step", [0, 1])
+    def test_is_in_doubt_after_a_restart(self, count, step):
+        count.answers(FAR, FAR + step)
+        assert not count.watch.settled(count.tick)
+
+    def test_a_short_skip_that_was_forged_is_soon_in_doubt(self, count):
+        assert count.answers(AT + 3, AT + 1, AT + 2) == [AT + 3, AT + 2]
+        assert not count.watch.settled(count.tick)
+
+    def test_the_checksum_is_of_all(self, count):
+        before = count.watch.integers()
+        count.hear(AT + 2 + FEW_TICKS)
+        assert count.watch.integers() != before
+        assert count.watch.integers() != count.watch._replace(timed_tick=1).integers()
 
 
 class TestTheTickThatWasAnswered:

@@ -90,7 +90,7 @@ def test_a_wrong_current_names_the_coil_at_its_second_pulse(make_world, factor, 
     assert argument == 100 * (first + 1) + kind
     own = [tick for tick, coil in fires(said) if coil == first]
     assert len(own) == 1  # the first pulse went out before
-    assert named == own[0] + 3
+    assert named == own[0] + 2
     assert world.state.health.coils.faults[first] == kind
     assert fires(said)[-1][0] > named
     assert world.state.modes.trips == 0
@@ -103,8 +103,9 @@ def test_a_coil_that_was_not_fired_is_not_judged(make_world):
     pulses, health = config.coils.pulses, CoilHealth()
     off = NOTHING._replace(coil=CoilStatus(0, 0, 0, 0, 0, 0))
     for view in (CoilView(), CoilView(fired_tick=700)):
-        tick = view.fired_tick + pulses.pulse_ticks
-        assert judge_current(health, view, off, False, tick, config.fdir.coils) == health
+        for age in range(pulses.pulse_ticks + 1):
+            tick = view.fired_tick + age
+            assert judge_current(health, view, off, False, tick, config.fdir.coils) == health
 
 
 def test_a_single_wrong_current_names_nobody(make_world):
@@ -155,6 +156,25 @@ class TestStuck:
         assert error_deg(world) < 4.0
         assert events(said, Event.FILTER_RESTARTED) == []
 
+    @pytest.mark.parametrize(
+        ("coils", "matrix", "coil", "ampere"),
+        [
+            ({"wiring": [1, -2, 3]}, [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]], 0, 0.3),
+            ({"wiring": [1, -2, 3]}, [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]], 1, -0.3),
+            ({"dipole_scale": [1.0, 1.0, 2.5]}, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 2.5]], 2, 0.3),
+        ],
+        ids=["beside an output of the other sense", "of an output of the other sense", "with another gain"],
+    )
+    def test_it_is_named_by_what_the_calibration_has_of_it(self, make_world, coils, matrix, coil, ampere):
+        world = make_world(coils=coils, flight={"calibration": {"coils": {"matrix": matrix}}})
+        world.fly(SETTLED)
+        conduct(world.plant, coil, ampere)
+        assert [argument for _, argument in events(fly(world, 120), Event.COIL_FAULT)] == [
+            100 * (coil + 1) + 4
+        ]
+        assert world.state.attitude.valid
+        assert error_deg(world) < 4.0
+
     def test_until_then_no_attitude_is_called_valid_and_after_it_the_current_is_reckoned_with(
         self, make_world
     ):
@@ -198,11 +218,13 @@ class TestStuck:
         assert not world.state.attitude.valid
 
     @pytest.mark.requirement("REQ-COIL-04")
-    def test_a_level_that_nobody_asked_for_trips_at_once_and_is_named_when_it_lasts(self, make_world):
+    def test_a_level_that_nobody_asked_for_trips_in_its_second_tick_and_is_named_when_it_lasts(
+        self, make_world
+    ):
         world = make_world()
         world.fly(90)
         said = fly(world, 60, told_by_driver(level=2, coil=1, current_ma=100))
-        assert events(said, Event.MONITOR_TRIPPED) == [(0, 7)]
+        assert events(said, Event.MONITOR_TRIPPED) == [(1, 7)]
         assert events(said, Event.COIL_FAULT) == [(world.config.fdir.coils.stuck_ticks - 1, 204)]
         assert world.state.modes.mode is Mode.SAFE
 

@@ -42,7 +42,7 @@ def fly_stray(flows, tuning=CONFIG, ticks=30, start=START, actual=START):
         s = rotate(truth.q_body_from_eci, S_ECI)
         s = add(s, tuple(radians(0.5) * random.normal(size=3)))
         estimate = mekf.update_sun(estimate, s, S_ECI, tuning) or estimate
-        kicks = stray.kicks_radps(LEVEL_AM2, estimate, B_ECI_T, tuning)
+        kicks = stray.kicks_radps(LEVEL_AM2, AXES, estimate, B_ECI_T, tuning)
         estimate = stray.trace(estimate, ZERO, kicks, 1.0, begins=tick == 0)
     return estimate, truth
 
@@ -110,7 +110,7 @@ def fly_followed(coil, ticks=90):
         estimate = mekf.predict(estimate, E1_ECI, B_ECI_T, 3e-6, scale(LEVEL_AM2, conducts), CONFIG)
         s = add(rotate(truth.q_body_from_eci, S_ECI), tuple(radians(0.5) * random.normal(size=3)))
         estimate = mekf.update_sun(estimate, s, S_ECI, CONFIG) or estimate
-        kicks = stray.kicks_radps(LEVEL_AM2, estimate, B_ECI_T, CONFIG)
+        kicks = stray.kicks_radps(LEVEL_AM2, AXES, estimate, B_ECI_T, CONFIG)
         estimate = stray.trace(estimate, conducts, kicks, 1.0, begins=tick == 0)
         _, solution = solve(estimate, CONFIG)
         followed = stray.follow(estimate, solution, CONFIG)

@@ -10,7 +10,7 @@ from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.evidence import weights
 from fsw.core.fdir.sensors.credibility import credibility_config
-from fsw.core.fdir.sensors.pair import Observed, Pair, Standing, judge, proven, valid
+from fsw.core.fdir.sensors.pair import Observed, Pair, Standing, judge, proven, unjudged, valid
 from fsw.core.fdir.sensors.plausibility import Findings, Memory
 
 CONFIG = tuned(mag_bias_t=Prior((3e-7,) * 3, (0.0,) * 3))
@@ -199,6 +199,37 @@ class TestDoubt:
         assert after(TRUSTED, alone._replace(estimate=TURNED), 100).standing is Standing.TRUSTED
         large = ESTIMATE._replace(nis=15.0, numbers=3)
         assert after(TRUSTED, alone._replace(estimate=large), 35).standing is Standing.DISPUTED
+
+
+class TestUnjudged:
+    """While the time is in doubt: nothing is shown, but what ends or lags is not trusted."""
+
+    def after(self, pair, estimate=ESTIMATE, used=TAKEN.used, ticks=1):
+        for _ in range(ticks):
+            pair = unjudged(pair, used, estimate, WEIGHTS)
+        return pair
+
+    def test_an_estimate_that_goes_on_keeps_its_standing_for_two_minutes(self):
+        assert self.after(TRUSTED, ticks=120) == TRUSTED._replace(blind_ticks=120)
+        assert not valid(self.after(TRUSTED, ticks=121))
+
+    def test_what_it_owes_is_not_paid(self):
+        owes = TRUSTED._replace(owed=3.0)
+        assert self.after(owes, ticks=50).owed == 3.0
+
+    @pytest.mark.parametrize("estimate", [None, BEGUN.estimate], ids=["none", "begun"])
+    @pytest.mark.parametrize(("owed", "standing"), [(0.0, Standing.NEW), (1.0, Standing.ON_TRIAL)])
+    def test_one_that_has_ended_was_proven_in_vain(self, estimate, owed, standing):
+        pair = self.after(TRUSTED._replace(owed=owed), estimate)
+        assert (pair.standing, pair.proof, pair.owed) == (standing, 0.0, 0.0)
+
+    @pytest.mark.parametrize("standing", [Standing.NEW, Standing.DISPUTED, Standing.ON_TRIAL])
+    def test_any_other_standing_stays(self, standing):
+        assert self.after(Pair(standing), None).standing is standing
+
+    def test_one_that_lags_is_not_valid(self):
+        lagging = ESTIMATE._replace(lag=(0.0, 2.0, 0.0, 0.0, 0.0, 0.0))
+        assert not valid(self.after(TRUSTED, lagging))
 
 
 class TestStrange:
