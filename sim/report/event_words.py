@@ -71,7 +71,7 @@ _FSW: dict[int, Words] = {
     ),
     Event.MONITOR_TRIPPED: (
         lambda number: f"monitor tripped: {_named(_MONITORS, number)}",
-        "A check of the flight software failed: it goes to SAFE, coils off.",
+        "A check failed: the flight software goes to SAFE, coils off; too fast a turn is left to DETUMBLE.",
     ),
     Event.REQUEST_REFUSED: (
         lambda reason: f"pulse refused by the coil board: {_name(CoilRefusedReason, reason)}",
