@@ -4,7 +4,7 @@ from math import ceil
 from typing import NamedTuple
 
 from fsw.core.actuation import dipoles, pulses
-from fsw.core.actuation.dipoles import NOTHING_ASKED, Asked, DipoleConfig
+from fsw.core.actuation.dipoles import NOTHING_ASKED, DipoleConfig, RequestedDipole
 from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale
 from fsw.core.gate.readings import Readings
@@ -42,7 +42,7 @@ class CoilView(NamedTuple):
     paid_body_nms: Vec3 = ZERO
     idle_ticks: int = 0
     past_am2: tuple[Vec3, ...] = ()
-    asked: Asked = NOTHING_ASKED
+    asked: RequestedDipole = NOTHING_ASKED
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state."""

@@ -33,7 +33,7 @@ class DipoleConfig:
     coils_from_body: Mat3 | None = None
 
 
-class Asked(NamedTuple):
+class RequestedDipole(NamedTuple):
     """The last request: the tick that it answered, and its dipole as it is on the wire, body axes, A m^2.
 
     ``reported``: whether the board has said what it drove over the tick that just ended.
@@ -48,12 +48,12 @@ class Asked(NamedTuple):
         return self.m_body_am2 if tick == self.tick + 1 else ZERO
 
 
-NOTHING_ASKED = Asked(-1, ZERO)
+NOTHING_ASKED = RequestedDipole(-1, ZERO)
 
 
-def asked(request: CoilDipole, tick: int, config: DipoleConfig) -> Asked:
+def asked(request: CoilDipole, tick: int, config: DipoleConfig) -> RequestedDipole:
     """What is remembered of a request."""
-    return Asked(tick, dipole_am2(CoilDipole.decode(request.encode().data), config))
+    return RequestedDipole(tick, dipole_am2(CoilDipole.decode(request.encode().data), config))
 
 
 def dipole_am2(fractions: CoilDipoleStatus | CoilDipole, config: DipoleConfig) -> Vec3:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from fsw.core.actuation import dipoles, pulses
 from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, update_view
-from fsw.core.actuation.dipoles import MOST, Asked, DipoleConfig, dipole_am2, request, saturate
+from fsw.core.actuation.dipoles import MOST, DipoleConfig, RequestedDipole, dipole_am2, request, saturate
 from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.algebra.vector import ZERO, inverse
 from fsw.core.gate.readings import NOTHING
@@ -89,7 +89,7 @@ class TestDriven:
 
     @pytest.mark.parametrize(("age", "driven_am2"), [(1, (1.0, 2.0, 3.0)), (0, ZERO), (2, ZERO)])
     def test_without_a_report_it_is_what_was_asked_for_this_tick(self, age, driven_am2):
-        view = CoilView(asked=Asked(44 - age, (1.0, 2.0, 3.0)))
+        view = CoilView(asked=RequestedDipole(44 - age, (1.0, 2.0, 3.0)))
         view = update_view(view, NOTHING, 44, ActuatorConfig(TIMING, CONFIG))
         assert view.driven_am2 == driven_am2
         assert not view.asked.reported
@@ -217,7 +217,7 @@ class TestActuate:
 
     def test_it_is_remembered_as_it_is_on_the_wire(self):
         _, view, sent = self.run(Demand((1.0, -2.0, 3.0)))
-        assert view.asked == Asked(500, dipole_am2(CoilDipole.decode(sent.encode().data), CONFIG))
+        assert view.asked == RequestedDipole(500, dipole_am2(CoilDipole.decode(sent.encode().data), CONFIG))
         assert view.asked.m_body_am2 == pytest.approx((1.0, -2.0, 3.0), abs=FULL_SCALE_AM2 * LSB)
 
     def test_one_that_was_not_sent_is_not(self):

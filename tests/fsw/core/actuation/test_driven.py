@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fsw.core.actuation.actuator import CoilView, update_view
-from fsw.core.actuation.dipoles import Asked, DipoleConfig
+from fsw.core.actuation.dipoles import DipoleConfig, RequestedDipole
 from fsw.core.actuation.driven import driven
 from fsw.core.estimation.dynamics.error_dynamics import Driven
 from fsw.core.gate.readings import NOTHING
@@ -114,7 +114,7 @@ class TestContinuousDriver:
         continuous = coils._replace(dipoles=DipoleConfig(9.6, IDENTITY, genetic=False))
 
         def over(ticks_after, status=None, skipped=0, asked_am2=self.WANTED_AM2):
-            tick, view = TICK + ticks_after, CoilView(asked=Asked(TICK, asked_am2))
+            tick, view = TICK + ticks_after, CoilView(asked=RequestedDipole(TICK, asked_am2))
             after = update_view(view, NOTHING._replace(dipole=status), tick, continuous)
             return driven(after, after.driven_am2, True, range(tick - skipped, tick + 1), continuous)
 
