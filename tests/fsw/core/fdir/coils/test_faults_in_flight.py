@@ -67,10 +67,10 @@ def conduct(plant, coil, ampere):
     """Let a coil carry this current all the time."""
     advance = plant._coils.advance
 
-    def stuck(driven_a, on_s, step_s):
-        current_a = list(driven_a if on_s else (0.0, 0.0, 0.0))
-        current_a[coil] = ampere
-        return advance(tuple(current_a), step_s, step_s)
+    def stuck(driven_a, on_s, step_s, held_a):
+        on_a, off_a = list(driven_a), list(held_a)
+        on_a[coil] = off_a[coil] = ampere
+        return advance(tuple(on_a), on_s, step_s, tuple(off_a))
 
     plant._coils.advance = stuck
 
