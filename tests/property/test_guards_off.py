@@ -31,7 +31,7 @@ def ready_at_once(tick, config):
     return PulseState(ready_tick=(tick, tick, tick), busy_until=tick)
 
 
-def believing(watch, current, tick):
+def believing(watch, current, tick, leap_ticks):
     """Every tick ahead is believed at once, and none behind ever."""
     return Belief.NEXT if tick > current else Belief.IGNORED, watch
 
