@@ -8,10 +8,7 @@ import pytest
 from sim.campaign.claim import ClaimVerdict
 from sim.errors import HarnessError
 from sim.plant.environment.orbit import MU_M3PS2
-from sim.validate.reference import attitude_check, reference
-from sim.validate.reference.attitude_check import read_case
-from sim.validate.reference.floquet_check import apart
-from sim.validate.reference.reference_table import ReferenceTable
+from sim.validate.reference import reference
 from sim.validate.reference.two_body import two_body
 
 ROWS = {"attitude_d_offdiag.csv": 6, "attitude_c_dipole.csv": 6, "floquet.csv": 7}
@@ -375,34 +372,3 @@ def test_columns_that_no_check_reads_are_reported(folder):
     unused = reference.check_file(folder.path / "triad_mekf.csv", "triad_mekf.csv").unused
     assert {"lambda", "p_triad_xx", "sep_deg"} <= set(unused)
     assert not {"q_triad_0", "p_dav_xx", "gap"} & set(unused)
-
-
-def test_steps_shrink_with_the_rate():
-    slow, fast = (attitude_check.step_s(np.full((3, 3), rate)) for rate in (1e-5, 0.1))
-    assert slow == attitude_check.LONGEST_STEP_S
-    assert fast == pytest.approx(0.006 / (0.1 * np.sqrt(3.0)))
-
-
-def test_the_orbit_of_a_header(folder):
-    table = ReferenceTable(folder.copy("attitude_c_dipole.csv"))
-    case, times = read_case(table), table.column("t_s")
-    r_km = table.columns("r_eci_x_km", "r_eci_y_km", "r_eci_z_km")
-    ours_m = two_body(case.r0_m, case.v0_mps, case.mu_m3ps2, times)
-    assert np.abs(ours_m - 1e3 * r_km).max() < 1e-4
-
-
-def test_multipliers_are_compared_as_sets():
-    theirs = np.array([3.0, 0.5 + 0.2j, 0.5 - 0.2j, 0.1, 1e-9, 1e-14])
-    assert apart(theirs[::-1], theirs) == 0.0
-    assert apart(theirs + np.array([0.0, 0.0, 0.0, 1e-5, 0.0, 0.0]), theirs) == pytest.approx(1e-5)
-    assert apart(theirs * np.array([1.0 + 1e-5, 1, 1, 1, 1, 1]), theirs) == pytest.approx(1e-5)
-
-
-def test_of_a_double_multiplier_the_mean_counts():
-    """The two of a double root part by 1e-5, up and down; an error moves them together or far apart."""
-    double = np.array([0.5, 0.5, 0.1, 0.05, 0.01, 0.0], dtype=complex)
-    first_two = np.array([1.0, 1.0, 0.0, 0.0, 0.0, 0.0])
-    parted = double + np.array([1e-5, -1e-5, 0.0, 0.0, 0.0, 0.0])
-    assert apart(parted, double) < 1e-15
-    assert apart(double + 1e-5 * first_two, double) == pytest.approx(1e-5)
-    assert apart(double + np.array([0.02, -0.02, 0.0, 0.0, 0.0, 0.0]), double) == pytest.approx(0.02)
