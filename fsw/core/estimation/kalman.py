@@ -4,6 +4,7 @@ With it, a trace of what unmodelled deviations would do to errors and innovation
 """
 
 import struct
+from itertools import chain
 from math import nan
 from typing import NamedTuple
 
@@ -117,8 +118,9 @@ class Trace(NamedTuple):
 
     def packed(self) -> bytes:
         """For the checksum of the state."""
-        causes = b"".join([struct.pack("<q2d", *cause) for cause in self.causes])
-        return struct.pack("<q", self.measured) + causes + self.effect.tobytes() + self.sums.tobytes()
+        shape = "<q" + "q2d" * len(self.causes)
+        causes = struct.pack(shape, self.measured, *chain.from_iterable(self.causes))
+        return causes + self.effect.tobytes() + self.sums.tobytes()
 
 
 def carried(trace: Trace, transition: Matrix) -> Trace:
