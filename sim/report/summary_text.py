@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from sim.report.requirements.judge import Outcome
+from sim.statistics.settling import HELD_S
 
 Json = dict[str, Any]
 
@@ -89,7 +90,7 @@ def _pointing(summary: Json) -> Iterator[tuple[str, str]]:
 
 def _under(settled: float | None, threshold: float, unit: str) -> str:
     if settled is None:
-        return f"not settled under {threshold:g} {unit}"
+        return f"not settled: not under {threshold:g} {unit} for the last {HELD_S:g} s"
     return f"under {threshold:g} {unit} from {settled:.2f} orbits on"
 
 

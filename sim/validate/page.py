@@ -26,7 +26,7 @@ says. *own prototype*: what an earlier computation of this project has found. *o
 figure, at most ten times off, or with the reason. *fitted*: the paper's figure, to which a number of the
 scenario was fitted; that it is met shows nothing, so it does not count. A paper tells one flight; what all
 starts give stands in the column *all starts*: least, median and most, and how many meet the tolerance.
-Settled means from then on, to the end.
+Settled means from then on to the end, for 600 s at least.
 """
 
 

@@ -232,6 +232,16 @@ class TestSettling:
         tilt[-1] = 5.1
         assert "settle_orbits_5deg" not in self.tilted(tilt).summary(audit)["axis1_deg"]
 
+    @pytest.mark.parametrize(("within_s", "settled"), [(1, False), (599, False), (600, True)])
+    def test_what_is_within_only_at_the_last_has_not_been_seen_to_stay(self, audit, within_s, settled):
+        tilt = np.full(TICKS, 60.0)
+        tilt[-within_s:] = 1.0
+        summary = self.tilted(tilt).summary(audit)
+        assert ("settle_orbits" in summary["controlled"]) is settled
+        assert ("settle_orbits_5deg" in summary["axis1_deg"]) is settled
+        text = summary_text(summary)
+        assert ("not settled: not under 5 deg for the last 600 s" in text) is not settled
+
     def test_what_was_always_within_has_settled_at_once(self, audit):
         assert self.tilted(np.full(TICKS, 1.0)).summary(audit)["axis1_deg"]["settle_orbits_5deg"] == 0.0
 
@@ -272,6 +282,8 @@ class TestSpin:
         left = np.full(TICKS, 0.02)
         left[-1] = 0.0211
         assert "settle_s_1e-3" not in self.spinning(audit, left)["spin_radps"], "out again at the end"
+        left[:-599], left[-599:] = 0.0, 0.02
+        assert "settle_s_1e-3" not in self.spinning(audit, left)["spin_radps"], "reached just before the end"
         assert spin["max_dev_last_orbit"] == pytest.approx(0.01)
 
 
