@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
+from sim.report.event_words import events_left_out
 from sim.report.requirements.judge import Outcome
 from sim.statistics.settling import HELD_S
 
@@ -51,6 +52,8 @@ def _figures(summary: Json) -> Iterator[tuple[str, str]]:
     if "mode_final" in summary:
         yield "mode", summary["mode_final"]
     yield "isolated", ", ".join(summary["isolated"]) or "no unit"
+    if cut := events_left_out(summary):
+        yield "events", f"{summary['event_count']}; {cut[0].lower()}{cut[1:]} are in summary.json"
     if "replay" in summary:
         yield "replay", "bit-exact" if summary["replay"]["bit_exact"] else "NOT bit-exact"
     failed = summary.get("failures", {})

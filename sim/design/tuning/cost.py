@@ -5,9 +5,9 @@
 T the length of the flight, T_s when the error is under 5 deg from then on, however short the rest (T if it
 never is), RMS that of the last orbit. The error is the angle from the nominal attitude, with
 ``modes.axis_only`` that of body axis 1 from the vertical; of laws that do not point it is the rate less the
-one wanted, 0.05 deg/s in place of 5 deg,
-or, where the scenario requires a spin rate, that about body axis 1 alone, which a spin that is fixed in space
-holds while the orbital frame turns; the requirement says when it has settled.
+one wanted, 0.05 deg/s in place of 5 deg, or, where the scenario requires a spin rate, that about body axis 1
+alone, which a spin that is fixed in space holds while the orbital frame turns; the requirement says when it
+has settled.
 """
 
 from math import log2

@@ -13,7 +13,7 @@ from sim.record.candump import LogEntry
 from sim.record.estimates import Estimates
 from sim.report.figures.estimate_error import nees, within_3sigma
 from sim.report.figures.performance import perform
-from sim.report.summary import BusTally, summarise
+from sim.report.summary import MAX_EVENTS, BusTally, summarise
 from sim.report.summary_text import summary_text
 from sim.scenario.schema import load, orbit_period_s, parse_settings
 
@@ -302,6 +302,19 @@ class TestTally:
             {"t_s": 17.25, "node": "FSW", "event": 4, "severity": 2, "argument": -5},
             {"t_s": 18.0, "node": "PLANT", "event": 9, "severity": 1, "argument": 3},
         ]
+
+    def test_all_events_are_counted_and_the_first_kept_and_the_cut_is_said(self, audit):
+        tally = BusTally(self.EPOCH_US)
+        for tick in range(MAX_EVENTS + 1):
+            tally.take(self.entry(FswEvent(1, 1, tick, 3).encode(), tick))
+            if tick == MAX_EVENTS - 1:
+                whole = Made(error_of(np.full(10, 1.0))).summary(audit, tally=tally)
+                assert (whole["event_count"], len(whole["events"])) == (MAX_EVENTS, MAX_EVENTS)
+                assert "events " not in summary_text(whole)
+        assert (tally.event_count, len(tally.events)) == (MAX_EVENTS + 1, MAX_EVENTS)
+        summary = Made(error_of(np.full(10, 1.0))).summary(audit, tally=tally)
+        assert summary["event_count"] == MAX_EVENTS + 1
+        assert "201; the first 200 of 201 events are in summary.json" in summary_text(summary)
 
     def test_refusals_are_counted(self):
         tally = BusTally(self.EPOCH_US)
