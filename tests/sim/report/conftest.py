@@ -167,7 +167,7 @@ class Run:
         return DrawnFlight.of(self.scenario, self.lines(self.truth() | truth, self.estimates()), self.audit())
 
     def lines(self, truth: Histories, estimates: Estimates) -> Lines:
-        lines = Lines(self.ticks, self.scenario.time.tick_hz)
+        lines = Lines(self.ticks, self.scenario)
         for block in blocks(truth, estimates):
             lines.take(*block)
         return lines
