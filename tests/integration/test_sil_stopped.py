@@ -101,7 +101,6 @@ def test_the_deadlines_of_the_command_are_long_enough_for_a_loaded_machine():
     assert sil.PATIENCE.answer_s == sil.PATIENCE.silence_s == 20.0
 
 
-@pytest.mark.skipif(os.environ.get("TORQUER_REAL_DEADLINES") != "1", reason="takes half a minute")
 def test_so_does_the_command_itself(start, is_alive, tmp_path):
     """With the deadlines that it has."""
     words = ("torquer", "sil", "--bus", "loop", "--orbits", "10", "--out", tmp_path / "run")
