@@ -7,7 +7,7 @@ import can
 from fsw.bus.interface import Bus, BusError
 from fsw.bus.python_can import PythonCan
 
-BITRATE = 500_000
+SLCAN_BITRATE = 500_000
 
 
 def open_slcan(port: str) -> Bus:
@@ -17,7 +17,7 @@ def open_slcan(port: str) -> Bus:
         BusError: pyserial is missing, or there is no adapter.
     """
     try:
-        bus = can.Bus(interface="slcan", channel=port, bitrate=BITRATE)
+        bus = can.Bus(interface="slcan", channel=port, bitrate=SLCAN_BITRATE)
     except can.CanInterfaceNotImplementedError as error:
         raise BusError("a serial CAN adapter needs pyserial: install it with pip install pyserial") from error
     except (can.CanError, OSError, ValueError) as error:

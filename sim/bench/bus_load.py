@@ -3,6 +3,7 @@
 from fsw.wire.frame import EXTENDED_FLAG, REMOTE_FLAG, Frame
 
 BITRATE = 125_000
+"""Of a CAN bus that a nanosatellite has; the load is stated as a part of it."""
 _AFTER_CRC = 1 + 2 + 7 + 3
 """CRC delimiter, acknowledge slot and its delimiter, end of frame, interframe space: never stuffed."""
 

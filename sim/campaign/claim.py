@@ -34,6 +34,8 @@ class ClaimVerdict(StrEnum):
     """Within its limits, but fitted to them."""
     ABSENT = "absent"
     """The data to judge it by are missing."""
+    TOO_FEW = "too few to judge"
+    """Fewer flights than the claim is made for: their median or mean is no verdict on that of all."""
 
 
 @dataclass(frozen=True, slots=True)

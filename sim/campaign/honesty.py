@@ -11,8 +11,9 @@ from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures.attitude_arrays import angle_rad
 from sim.report.figures.estimate_error import converged_tick, estimate_error, nees, within_3sigma
-from sim.report.figures.spans import held_from, spans
+from sim.report.figures.spans import spans
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
+from sim.statistics.settling import settled_tick
 
 Array = NDArray[np.float64]
 
@@ -28,8 +29,8 @@ def honesty_figures(scenario: Scenario, truth: Histories, estimates: Estimates) 
     about that body axis inside 3 sigma; ``estimate_deg``: RMS of the error in them; ``nees``: mean over all
     ticks after convergence. The same with ``point_`` before the name: from the first tick in POINT on,
     whatever modes follow. ``wrong_5deg_s`` and ``wrong_10deg_s``: longest time of the whole flight valid with
-    a larger error. ``pointing_deg``: RMS over the last orbits; ``pointed_orbits``: from when on it stays
-    small, infinite if never; ``in_point``: 1 if the flight ends in POINT.
+    a larger error. ``pointing_deg``: RMS over the last orbits; ``pointed_orbits``: when it has settled
+    under 10 deg, infinite if never; ``in_point``: 1 if the flight ends in POINT.
     """
     tick_hz, ticks = scenario.time.tick_hz, len(truth["t_s"])
     orbit_ticks = orbit_period_s(scenario) * tick_hz
@@ -39,7 +40,7 @@ def honesty_figures(scenario: Scenario, truth: Histories, estimates: Estimates) 
     in_point = estimates.mode[:ticks] == Mode.POINT
     starts = {"": converged_tick(error_deg, tick_hz), "point_": _first(in_point)}
     inside, consistency = within_3sigma(truth, estimates), nees(truth, estimates)
-    pointed = held_from(pointing_deg < POINTED_DEG)
+    pointed = settled_tick(pointing_deg < POINTED_DEG, tick_hz)
     return {
         **_differences(scenario),
         **{

@@ -59,12 +59,15 @@ class FlightStudy(Study):
     Attributes:
         source: of its claims.
         counted: what its claims state the number of; empty: nothing.
+        made_for: the number of flights that claims on a median or mean are made for: fewer are too few to
+            judge them by; 0: any.
         groups: its orders.
         figures: by which they are judged.
     """
 
     source: str = ""
     counted: str = ""
+    made_for: int = 0
     groups: tuple[Group, ...] = ()
     figures: tuple[Figure, ...] = ()
 
@@ -77,22 +80,31 @@ class FlightStudy(Study):
 def part_of(study: FlightStudy, flies: Callable[[Order], bool]) -> FlightStudy:
     """The study with only the orders that ``flies`` selects."""
     groups = [Group(group.name, tuple(filter(flies, group.orders))) for group in study.groups]
-    return campaign(study.id, study.source, groups, study.figures, study.counted)
+    return campaign(study.id, study.source, groups, study.figures, study.counted, study.made_for)
 
 
 def campaign(
-    study_id: str, source: str, groups: Sequence[Group], figures: Sequence[Figure], counted: str = ""
+    study_id: str,
+    source: str,
+    groups: Sequence[Group],
+    figures: Sequence[Figure],
+    counted: str = "",
+    made_for: int = 0,
 ) -> FlightStudy:
-    """The study that flies all orders and judges every figure; ``counted`` as in ``FlightStudy``."""
+    """The study that flies all orders and judges every figure; the arguments as in ``FlightStudy``."""
     names = [group.name for group in groups for _ in group.orders]
     tasks = tuple(partial(fly_order, order) for group in groups for order in group.orders)
     stated = f"{source}; {len(tasks)} {counted}" if counted else source
 
     def conclude(flights: Sequence[FlightResult]) -> list[ClaimOutcome]:
         named_flights = list(zip(names, flights, strict=True))
-        return [_judge(study_id, stated, figure, _counted(figure, named_flights)) for figure in figures]
+        short = len(flights) < made_for
+        few = f"{len(flights)} of the {made_for} {counted} that it is claimed for" if short else ""
+        return [_judge(study_id, stated, figure, _counted(figure, named_flights), few) for figure in figures]
 
-    return FlightStudy(study_id, tasks, conclude, True, source, counted, tuple(groups), tuple(figures))
+    return FlightStudy(
+        study_id, tasks, conclude, True, source, counted, made_for, tuple(groups), tuple(figures)
+    )
 
 
 def summary_number(flight: FlightResult, key: str, missing: float = nan) -> float:
@@ -129,7 +141,10 @@ def _counted(figure: Figure, named_flights: Sequence[tuple[str, FlightResult]]) 
     return group if figure.counts is None else [flight for flight in group if figure.counts(flight)]
 
 
-def _judge(study_id: str, source: str, figure: Figure, flights: Sequence[FlightResult]) -> ClaimOutcome:
+def _judge(
+    study_id: str, source: str, figure: Figure, flights: Sequence[FlightResult], few: str
+) -> ClaimOutcome:
+    """The outcome of a figure; ``few``: why a median or mean is not judged, empty where it is."""
     claim = Claim(
         f"{study_id}.{figure.id}",
         figure.statement,
@@ -143,11 +158,20 @@ def _judge(study_id: str, source: str, figure: Figure, flights: Sequence[FlightR
     if not flights:
         return ClaimOutcome(claim, ClaimVerdict.ABSENT)
     values = [figure.pick(flight) for flight in flights]
-    excess = [inf if isnan(value) else max(figure.low - value, value - figure.high) for value in values]
+    spread, without = spread_of(claim, values), [place for place, value in enumerate(values) if isnan(value)]
+    if without:
+        first = describe_order(flights[without[0]].order)
+        return claim.judge(nan, f"no figure in {len(without)} of {len(values)} flights: {first}", spread)
+    excess = [max(figure.low - value, value - figure.high) for value in values]
     worst = max(range(len(values)), key=lambda place: excess[place])
-    value = _COMBINATIONS[figure.of](values) if figure.of in _COMBINATIONS else values[worst]
+    if figure.of not in _COMBINATIONS:
+        value = values[worst]
+    else:
+        value = _COMBINATIONS[figure.of](values)
+        if few:
+            return ClaimOutcome(claim, ClaimVerdict.TOO_FEW, value, few, spread)
     where = f"worst: {describe_order(flights[worst].order)}: {values[worst]:.3g}"
-    return claim.judge(value, where, spread_of(claim, values))
+    return claim.judge(value, where, spread)
 
 
 def spread_of(claim: Claim, values: Sequence[float]) -> Spread:

@@ -26,6 +26,7 @@ from sim.record.run_dir import write_json
 from sim.report.figures.controlled import Controlled
 from sim.report.summary_text import last_orbit
 from sim.scenario.schema import Scenario, load, orbit_period_s, parse_settings
+from sim.statistics.settling import HELD_S
 
 BEST, SCENARIO = "best", "scenario"
 """Gains: those that were found for the body, or the scenario's."""
@@ -139,7 +140,8 @@ def _heading(scenario: Scenario, seed: int, ticks: int, by: Controlled) -> str:
     flown_s = ticks / scenario.time.tick_hz
     return (
         f"{scenario.name}, seed {seed}, {flown_s:.0f} s: {by.words}; settled: under "
-        f"{by.threshold:g} {by.unit} from then on; RMS, max and rate over {_window(scenario, ticks)}"
+        f"{by.threshold:g} {by.unit} from then on, for {HELD_S:g} s at least; "
+        f"RMS, max and rate over {_window(scenario, ticks)}"
     )
 
 

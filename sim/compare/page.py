@@ -13,11 +13,13 @@ from sim.drawing.page_parts import PageHeader, PageSection, Table, Tile, section
 from sim.drawing.time_chart import Level, Panel, Series, TimeChart, draw, time_data
 from sim.report.figures.controlled import Controlled
 from sim.scenario.schema import Scenario
+from sim.statistics.settling import HELD_S
 
 PANEL_IN = 2.8
 _MEANING = (
-    "Judged by the {what}. Settled: under {threshold} from then on. RMS, max and rate over {window}; ∫ m² is "
-    "the energy lost in the coils but for a factor. Best first, each aim of laws for itself."
+    "Judged by the {what}. Settled: under {threshold} from then on to the end, for {held:g} s at least. RMS, "
+    "max and rate over {window}; ∫ m² is the energy lost in the coils but for a factor. Best first, each aim "
+    "of laws for itself."
 )
 
 
@@ -43,7 +45,9 @@ def compare_page(
     With gains ``kept`` for the body it tells those of each law, and what they cost on the rigid body.
     """
     flights = [result for result in results if result.history is not None]
-    meaning = _MEANING.format(what=by.words, threshold=with_unit(by.threshold, by), window=window)
+    meaning = _MEANING.format(
+        what=by.words, threshold=with_unit(by.threshold, by), held=HELD_S, window=window
+    )
     sections = [PageSection("scores", "The laws", meaning, (as_table(scores, by),), text=_failures(scores))]
     time = None
     if flights and flights[0].history is not None:

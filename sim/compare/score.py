@@ -16,10 +16,11 @@ from sim.errors import HarnessError
 from sim.record.truth import Histories
 from sim.report.charts.drawn_flight import whole_flight
 from sim.report.figures.coil_effort import dipole_squared_a2m4s, driven_s
-from sim.report.figures.controlled import Controlled, error_vectors, held_from
+from sim.report.figures.controlled import Controlled, error_vectors
 from sim.report.figures.histories import FlightHistories
 from sim.report.figures.spans import spans
 from sim.scenario.schema import Scenario, orbit_period_s
+from sim.statistics.settling import settled_tick
 
 Array = NDArray[np.float64]
 
@@ -36,7 +37,7 @@ class Score:
         law: its name.
         aim: of the law.
         driver: of the coils.
-        settle_orbits: from when on the error of what they are judged by stays small; None: never.
+        settle_orbits: when the error of what they are judged by has settled; None: never.
         error_rms: of that error over the last orbit, deg or deg/s.
         error_max: its largest.
         rate_rms_degps: rate relative to the orbital frame, less the spin reference, over the last orbit.
@@ -96,13 +97,13 @@ def judge(case: ComparisonCase, record: RecordedFlight, by: Controlled) -> Score
     tick_hz, orbit_s = scenario.time.tick_hz, orbit_period_s(scenario)
     error = error_of(record, by)
     last_orbit = slice(-round(orbit_s * tick_hz), None)
-    settled = held_from(error, by.threshold)
+    settled = settled_tick(error < by.threshold, tick_hz)
     continuous = case.driver is Driver.CONTINUOUS
     return Score(
         law=case.law,
         aim=case.aim,
         driver=case.driver,
-        settle_orbits=settled / tick_hz / orbit_s if settled < len(error) else None,
+        settle_orbits=None if settled is None else settled / tick_hz / orbit_s,
         error_rms=_rms(error[last_orbit]),
         error_max=float(error[last_orbit].max()),
         rate_rms_degps=_rms(_rate_error_degps(scenario, truth)[last_orbit]),

@@ -15,7 +15,7 @@ import numpy as np
 import tomli_w
 
 from fsw.input import gzip_text
-from fsw.input.schema import TableError
+from fsw.input.schema import Nested, TableError
 from sim.errors import HarnessError
 from sim.record.destination import check_folder
 from sim.record.log_index import SUFFIX
@@ -146,6 +146,25 @@ def read_scenario(path: Path) -> Scenario:
         return with_law_withheld(load(str(path / SCENARIO)))
     except TableError as error:
         raise HarnessError(str(error)) from None
+
+
+def scenario_of_log(log: Path, folder: Path, named: str | None, settings: Nested) -> Scenario:
+    """The scenario by which a log is judged: that of its folder, unless one is named.
+
+    Args:
+        log: the log.
+        folder: where the files of its run would lie, as ``locate`` gives both.
+        named: a shipped scenario or a path; None: none.
+        settings: laid over it.
+
+    Raises:
+        HarnessError: there is none.
+        TableError: it is not valid.
+    """
+    beside = folder / SCENARIO
+    if named is None and not beside.is_file():
+        raise HarnessError(f"{log}: no {SCENARIO} beside it: name its scenario by --scenario")
+    return load(named or str(beside), settings)
 
 
 def write_json(path: Path, content: Json) -> None:

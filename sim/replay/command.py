@@ -30,7 +30,7 @@ from sim.replay.log_replay import ReplayResult, replay
 from sim.scenario.assemble import plant_config
 from sim.scenario.law_named import with_law_named
 from sim.scenario.own_effects import own_effects
-from sim.scenario.schema import Scenario, flight_table, load
+from sim.scenario.schema import Scenario, flight_table
 
 LONGEST_PAUSE_S = 86_400.0
 """In a log that is played onto a bus: a longer pause means that it was not recorded in one piece."""
@@ -102,10 +102,8 @@ def locate(
     with binding.beside_errors():
         next(iter(read_log(log)))  # a file that is not a log is reported first
         record = run_dir.read_run(folder) if (folder / run_dir.RUN).is_file() else None
-        beside = folder / run_dir.SCENARIO
-        if scenario is None and not beside.is_file():
-            raise HarnessError(f"{log}: no {run_dir.SCENARIO} beside it: name its scenario by --scenario")
-        return log, LoggedRun(load(scenario or str(beside), settings), record, binding, law, effects)
+        judged_by = run_dir.scenario_of_log(log, folder, scenario, settings)
+        return log, LoggedRun(judged_by, record, binding, law, effects)
 
 
 def through_flight_software(log: Path, run: LoggedRun) -> ReplayReport:

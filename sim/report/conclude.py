@@ -101,7 +101,7 @@ def _replay(
     path: Path, scenario: Scenario, truth: TruthBlocks, watch: Watch, more: More | None = None
 ) -> _Replayed:
     performance = Performance(scenario, truth.complete)
-    lines = Lines(truth.complete, scenario.time.tick_hz)
+    lines = Lines(truth.complete, scenario)
 
     def take_block(histories: Histories, estimates: Estimates) -> None:
         performance.take(histories, estimates)

@@ -153,14 +153,22 @@ def in_words(event: Json) -> EventInWords:
 
 
 def event_table(summary: Json, scenario: Scenario) -> Table:
-    """What the nodes reported, in order."""
+    """What the nodes reported, in order; the caption says where the summary holds the first ones alone."""
     orbit_s = orbit_period_s(scenario)
     events = [in_words(one) for one in summary.get("events", [])]
     rows = [
         (seconds_text(one.t_s), f"{one.t_s / orbit_s:.2f}", one.node, one.severity, one.what, one.meaning)
         for one in events
     ]
-    return Table(("t [s]", "orbit", "node", "severity", "what happened", "what it means"), rows)
+    head = ("t [s]", "orbit", "node", "severity", "what happened", "what it means")
+    return Table(head, rows, events_left_out(summary))
+
+
+def events_left_out(summary: Json) -> str:
+    """A clause on the events that the summary counts and does not hold; empty where it holds all."""
+    held = len(summary.get("events", []))
+    count = summary.get("event_count", held)
+    return f"The first {held} of {count} events" if count > held else ""
 
 
 def _unit(event: Event, argument: int, faults: Mapping[int, str], now: str = "isolated") -> str:

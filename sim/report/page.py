@@ -56,6 +56,7 @@ def write_report(
         moves=lines.ticks > 0,
         parameters=parameter_table(summary),
         events=events,
+        event_count=summary.get("event_count", len(events.rows)),
         events_open=len(events.rows) <= tables.EVENTS_OPEN,
         scenario=tables.scenario_in_words(scenario),
         scenario_toml=tables.scenario_toml(scenario),

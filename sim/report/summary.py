@@ -15,18 +15,21 @@ from sim.scenario.schema import Scenario
 Json = dict[str, Any]
 
 MAX_EVENTS = 200
+"""Events that are kept in full, the first ones."""
 
 
 @dataclass(slots=True)
 class BusTally:
-    """Refusals on the bus, the first events in full, and the units that were isolated, in that order."""
+    """Refusals on the bus, the first events and the number of all, and the units that were isolated."""
 
     epoch_us: int
     refused: int = 0
     events: list[Json] = field(default_factory=list)
     isolated: list[str] = field(default_factory=list)
+    """In the order of their first isolation."""
     out_of_use: dict[str, float] = field(default_factory=dict)
     """The units that are isolated now, and since when, s."""
+    event_count: int = 0
 
     def take(self, entry: LogEntry) -> None:
         """Count one frame."""
@@ -42,6 +45,7 @@ class BusTally:
         seconds = (entry.timestamp_us - self.epoch_us) / 1e6
         if can_id == FswEvent.ID:
             self._take_isolation(values["event"], values["argument"], seconds)
+        self.event_count += 1
         if len(self.events) < MAX_EVENTS:
             self.events.append(
                 {
@@ -97,6 +101,7 @@ def summarise(
     summary["spin_radps"] = _spin(performance.spin(), audit)
     summary["requirements"] = performance.judgement.outcomes(audit, tally.out_of_use, "flown" in run)
     summary["isolated"] = tally.isolated
+    summary["event_count"] = tally.event_count
     summary["events"] = tally.events
     return {key: value for key, value in summary.items() if value is not None}
 

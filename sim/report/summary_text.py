@@ -3,7 +3,9 @@
 from collections.abc import Iterator
 from typing import Any
 
+from sim.report.event_words import events_left_out
 from sim.report.requirements.judge import Outcome
+from sim.statistics.settling import HELD_S
 
 Json = dict[str, Any]
 
@@ -50,6 +52,8 @@ def _figures(summary: Json) -> Iterator[tuple[str, str]]:
     if "mode_final" in summary:
         yield "mode", summary["mode_final"]
     yield "isolated", ", ".join(summary["isolated"]) or "no unit"
+    if cut := events_left_out(summary):
+        yield "events", f"{summary['event_count']}; {cut[0].lower()}{cut[1:]} are in summary.json"
     if "replay" in summary:
         yield "replay", "bit-exact" if summary["replay"]["bit_exact"] else "NOT bit-exact"
     failed = summary.get("failures", {})
@@ -89,7 +93,7 @@ def _pointing(summary: Json) -> Iterator[tuple[str, str]]:
 
 def _under(settled: float | None, threshold: float, unit: str) -> str:
     if settled is None:
-        return f"not settled under {threshold:g} {unit}"
+        return f"not settled: not under {threshold:g} {unit} for the last {HELD_S:g} s"
     return f"under {threshold:g} {unit} from {settled:.2f} orbits on"
 
 

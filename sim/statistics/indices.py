@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from sim.statistics.order_statistics import least_part_bounded, quantile, runs_needed, upper_bound
+from sim.statistics.windows import mean_and_relative
 
 Array = NDArray[np.float64]
 
@@ -39,7 +40,7 @@ class Interpretation(StrEnum):
 
 
 def index_histories(error: Array, knowledge_error: Array, window: int) -> dict[str, Array]:
-    """Each index over the time of a run; MPE has one value per whole window.
+    """Each index over the time of a run; MPE has one value per window, the last of which ends with the run.
 
     Args:
         error: rotation vectors of the pointing error, (n, 3).
@@ -54,15 +55,6 @@ def magnitudes(error: Array) -> Array:
     """APE of pointing errors, AKE of knowledge errors: |e| of each row, (n,)."""
     result: Array = np.linalg.norm(error, axis=1)
     return result
-
-
-def mean_and_relative(error: Array, window: int) -> tuple[Array, Array]:
-    """MPE, one value per whole window, and RPE, one value per row of them; fewer rows are one window."""
-    window = min(window, len(error))
-    count = len(error) // window
-    parts = error[: count * window].reshape(count, window, -1)
-    means = parts.mean(axis=1)
-    return np.linalg.norm(means, axis=1), np.linalg.norm(parts - means[:, None], axis=2).ravel()
 
 
 def profile(values: Array) -> Array:

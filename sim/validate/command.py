@@ -8,7 +8,7 @@ from pathlib import Path
 
 from sim.campaign.claim import ClaimVerdict, Study
 from sim.campaign.runner import StudyResult, run
-from sim.console import answer, say, warn
+from sim.console import answer, counted, say, warn
 from sim.errors import HarnessError
 from sim.junit import prepare_junit, write_junit
 from sim.progress import progress
@@ -50,7 +50,8 @@ def validate(
         out: path of the page.
         quick: leave out flights.
         workers: processes; None: as many as there are cores.
-        satellites: at most so many of each population; None: all.
+        satellites: at most so many of each population, by which claims on the median or mean of more are not
+            judged; None: all.
         junit: file for the verdicts as JUnit XML; None: not written.
         flight_data: run only the claims on the recorded passes in this folder.
         record: put the outcomes of each study that is done among those of ``validation.json``, and write the
@@ -58,7 +59,7 @@ def validate(
         keep: file of flights; those in it, of this code, are not flown again, and each new one is added.
 
     Returns:
-        The exit code: 1 if a claim fails, else 0.
+        The exit code: 1 if a claim fails, else 0, also where some are not judged, which is said.
 
     Raises:
         HarnessError: reference data are malformed or missing, an id is unknown, a file cannot be written,
@@ -100,6 +101,11 @@ def validate(
     write_junit(junit, "torquer validate", suites(finished))
     if far := loose(outcomes):
         warn(f"own limits more than ten times off, without a reason: {', '.join(far)}")
+    if few := [outcome.claim.id for outcome in outcomes if outcome.verdict is ClaimVerdict.TOO_FEW]:
+        warn(
+            f"{counted(len(few), 'claim')} on a median or mean not judged: made for more satellites than "
+            f"--satellites {satellites} flies"
+        )
     if flight_data is not None:
         say(claims.NOT_CLAIMED)
     say(f"{tally(outcomes)}; {wall_s:.0f} s")

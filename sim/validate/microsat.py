@@ -17,8 +17,8 @@ from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures.attitude_arrays import angle_rad, relative
 from sim.report.figures.estimate_error import nees
-from sim.report.figures.spans import held_from
 from sim.scenario.schema import Scenario, load, orbit_period_s
+from sim.statistics.settling import settled_tick
 from sim.validate.reference.comparison import Array
 
 SCENARIO = "microsat"
@@ -163,7 +163,7 @@ def pointing_figures(scenario: Scenario, truth: Histories, estimates: Estimates)
 def acquisition_figures(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
     """Orbits after which it stays pointed, infinite if it does not."""
     held = (pointing_deg(truth) < ACQUIRED_DEG) & (estimates.mode[: len(truth["t_s"])] == Mode.POINT)
-    first = held_from(held)
+    first = settled_tick(held, scenario.time.tick_hz)
     return {
         "held_orbits": inf if first is None else first / scenario.time.tick_hz / orbit_period_s(scenario),
     }

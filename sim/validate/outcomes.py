@@ -56,12 +56,12 @@ class _File(RootModel[dict[str, _Row]]):
 
 
 def as_record(finished: Sequence[StudyResult]) -> Record:
-    """What the file is to hold of them; a claim without its data is left out."""
+    """What the file is to hold of them; a claim that is not judged is left out."""
     return {
         outcome.claim.id: Recorded(outcome, code_digest() if done.study.has_flights else "")
         for done in finished
         for outcome in done.outcomes
-        if outcome.verdict is not ClaimVerdict.ABSENT
+        if outcome.verdict not in (ClaimVerdict.ABSENT, ClaimVerdict.TOO_FEW)
     }
 
 

@@ -26,7 +26,7 @@ says. *own prototype*: what an earlier computation of this project has found. *o
 figure, at most ten times off, or with the reason. *fitted*: the paper's figure, to which a number of the
 scenario was fitted; that it is met shows nothing, so it does not count. A paper tells one flight; what all
 starts give stands in the column *all starts*: least, median and most, and how many meet the tolerance.
-Settled means from then on, to the end.
+Settled means from then on to the end, for 600 s at least.
 """
 
 
@@ -65,7 +65,11 @@ def render(
 
 def loose(outcomes: Sequence[ClaimOutcome]) -> list[str]:
     """The claims whose limit is this project's own and far from the figure, without a reason."""
-    return [one.claim.id for one in outcomes if one.ours is not None and one.claim.is_loose(one.ours)]
+    return [
+        one.claim.id
+        for one in outcomes
+        if one.ours is not None and one.verdict is not ClaimVerdict.TOO_FEW and one.claim.is_loose(one.ours)
+    ]
 
 
 def claims_table(outcomes: Sequence[ClaimOutcome], marked: Collection[str] = ()) -> list[str]:
@@ -105,17 +109,15 @@ def as_json(outcome: ClaimOutcome) -> dict[str, object]:
 
 
 def suites(finished: Sequence[StudyResult]) -> dict[str, list[JunitCase]]:
-    """The outcomes as tests, by study; one without its data, or fitted, is skipped."""
+    """The outcomes as tests, by study; one that is not judged, or fitted, is skipped."""
     return {study.study.id: [_test(outcome) for outcome in study.outcomes] for study in finished}
 
 
 def _test(outcome: ClaimOutcome) -> JunitCase:
-    said = {outcome.verdict: line(outcome)}
+    said, failed = line(outcome), outcome.verdict is ClaimVerdict.FAIL
+    skipped = not failed and outcome.verdict is not ClaimVerdict.PASS
     return JunitCase(
-        "validate",
-        outcome.claim.id,
-        failure=said.get(ClaimVerdict.FAIL, ""),
-        skipped=said.get(ClaimVerdict.ABSENT, said.get(ClaimVerdict.FITTED, "")),
+        "validate", outcome.claim.id, failure=said if failed else "", skipped=said if skipped else ""
     )
 
 
@@ -123,7 +125,7 @@ def tally(outcomes: Sequence[ClaimOutcome]) -> str:
     """How many claims hold, fail, are fitted, and could not be judged."""
     count = {verdict: sum(outcome.verdict is verdict for outcome in outcomes) for verdict in ClaimVerdict}
     text = f"{counted(count[ClaimVerdict.PASS], 'claim')} met, {count[ClaimVerdict.FAIL]} failed"
-    others = (ClaimVerdict.FITTED, ClaimVerdict.ABSENT)
+    others = (ClaimVerdict.FITTED, ClaimVerdict.ABSENT, ClaimVerdict.TOO_FEW)
     return text + "".join(f", {count[verdict]} {verdict.value}" for verdict in others if count[verdict])
 
 
@@ -140,6 +142,8 @@ def _row(outcome: ClaimOutcome, mark: str) -> str:
     ours = "" if outcome.ours is None else figure_text(outcome)
     if outcome.verdict is ClaimVerdict.FAIL and outcome.where:
         ours += f" at {outcome.where}"
+    if outcome.verdict is ClaimVerdict.TOO_FEW:
+        ours += f" of {outcome.where}"
     limits = f"{claim.limits} {_unit(claim.unit)}".strip() if outcome.ours is not None else ""
     limits += f" ({claim.wide})" if claim.wide and limits else ""
     cells = (

@@ -4,9 +4,8 @@ from collections import deque
 from dataclasses import dataclass, field
 
 from fsw.wire.frame import Frame
+from sim.bench.bus_load import BITRATE
 
-BITRATE = 125_000
-"""Of a CAN bus that a nanosatellite has; the load is stated as a part of it."""
 WINDOW_S = 2.0
 """Time over which frames are counted."""
 

@@ -101,8 +101,20 @@ def test_the_deadlines_of_the_command_are_long_enough_for_a_loaded_machine():
     assert sil.PATIENCE.answer_s == sil.PATIENCE.silence_s == 20.0
 
 
-@pytest.mark.skipif(os.environ.get("TORQUER_REAL_DEADLINES") != "1", reason="takes half a minute")
-def test_so_does_the_command_itself(start, is_alive, tmp_path):
+def node_of(process, module):
+    """The process that the command has started for a node."""
+    for child in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split():
+        words = Path(f"/proc/{child}/cmdline").read_text().split("\0")
+        if module in words:
+            return int(child)
+    raise AssertionError(f"{module} is not running")
+
+
+@pytest.mark.parametrize(
+    ("victim", "says"),
+    [("fsw", "no answer from the flight software"), ("sim.flight.plant_process", "the plant is stalled")],
+)
+def test_so_does_the_command_itself(victim, says, start, is_alive, tmp_path):
     """With the deadlines that it has."""
     words = ("torquer", "sil", "--bus", "loop", "--orbits", "10", "--out", tmp_path / "run")
     sil_run = start(*words, start_new_session=True)
@@ -110,8 +122,9 @@ def test_so_does_the_command_itself(start, is_alive, tmp_path):
     while not (log.exists() and log.stat().st_size > 10_000):
         time.sleep(0.05)
     children = Path(f"/proc/{sil_run.process.pid}/task/{sil_run.process.pid}/children").read_text().split()
-    os.kill(int(children[0]), signal.SIGSTOP)
+    os.kill(node_of(sil_run.process, victim), signal.SIGSTOP)
     ended = sil_run.wait(90)
     assert (ended.code, ended.out) == (1, "")
+    assert says in ended.sentence
     assert "the run is not complete" in ended.sentence
     assert not any(is_alive(child) for child in children)

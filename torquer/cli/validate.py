@@ -32,7 +32,10 @@ EXAMPLES = examples(
 )
 @click.option("--quick", is_flag=True, help="Leave out flights.")
 @click.option(
-    "--satellites", type=click.IntRange(min=1), help="At most so many of each population. Default: all."
+    "--satellites",
+    type=click.IntRange(min=1),
+    help="At most so many of each population. A claim on the median or mean of more is then not judged. "
+    "Default: all.",
 )
 @click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
 @click.option(

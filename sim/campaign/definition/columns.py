@@ -56,7 +56,6 @@ def cells(summary: Mapping[str, Any]) -> dict[str, Cell]:
         "requirements_failed": None if Outcome.NOT_JUDGED in outcomes else outcomes.count(Outcome.FAILED),
         "isolated": ", ".join(units),
         "isolated_units": len(units),
-        "event_count": len(summary["events"]),
     }
 
 

@@ -24,7 +24,7 @@ from sim.progress import progress
 from sim.record import run_dir
 from sim.record.destination import check_folder
 from sim.record.pace import Pace
-from sim.scenario.schema import Scenario, flight_table, load, scenario_of
+from sim.scenario.schema import Scenario, flight_table, scenario_of
 
 LAW = "phasing"
 SETTLED_TICKS = 20
@@ -60,10 +60,7 @@ def of_log(run_or_log: Path, scenario: str | None, settings: Nested, known: Know
         TableError: the scenario is not valid.
     """
     log, folder = run_dir.locate(run_or_log)
-    beside = folder / run_dir.SCENARIO
-    if scenario is None and not beside.is_file():
-        raise HarnessError(f"{log}: no {run_dir.SCENARIO} beside it: name its scenario by --scenario")
-    return _judge(log, flight_table(load(scenario or str(beside), settings)), known)
+    return _judge(log, flight_table(run_dir.scenario_of_log(log, folder, scenario, settings)), known)
 
 
 def of_flight(scenario: Scenario, rounds: int, seed: int, known: Known, out: Path | None) -> int:

@@ -24,7 +24,7 @@ import numpy as np
 from scipy.optimize import linprog
 
 from sim.design.theory.bodies import Body
-from sim.design.theory.linear import Array
+from sim.design.theory.linear import Array, dipole_field
 
 UNIT_RADPS = 1e-3
 """With which a rate counts as much as a radian."""
@@ -104,15 +104,7 @@ def _by(factor: Array, vectors: Array) -> Array:
 def _change(case: Slew, q: Array, relative: Array, m: Array, t_s: Array) -> tuple[Array, Array]:
     """dq/dt and dOmega/dt of each plan."""
     inertia, w0 = np.array(case.body.inertia_kgm2), case.body.rate_radps
-    u, inclination = case.u0_rad + w0 * t_s, np.radians(case.body.inclination_deg)
-    b_orbit = case.body.field_t * np.stack(
-        [
-            -2.0 * np.sin(inclination) * np.sin(u),
-            np.sin(inclination) * np.cos(u),
-            np.full_like(u, np.cos(inclination)),
-        ],
-        axis=1,
-    )
+    b_orbit = case.body.field_t * dipole_field(case.u0_rad + w0 * t_s, case.body)
     e1, e3 = (_turned(q, np.tile(axis, (len(q), 1))) for axis in np.eye(3)[[0, 2]])
     omega = relative + w0 * e3
     torque = np.cross(m, _turned(q, b_orbit)) + 3.0 * w0**2 * np.cross(e1, e1 @ inertia)

@@ -2,11 +2,12 @@
 
     cost = T_s / T + log2(1 + RMS / 5 deg)
 
-T the length of the flight, T_s when the error is under 5 deg from then on (T if it never is), RMS that of
-the last orbit. The error is the angle from the nominal attitude, with ``modes.axis_only`` that of body axis 1
-from the vertical; of laws that do not point it is the rate less the one wanted, 0.05 deg/s in place of 5 deg,
-or, where the scenario requires a spin rate, that about body axis 1 alone, which a spin that is fixed in space
-holds while the orbital frame turns; the requirement says when it has settled.
+T the length of the flight, T_s when the error is under 5 deg from then on, however short the rest (T if it
+never is), RMS that of the last orbit. The error is the angle from the nominal attitude, with
+``modes.axis_only`` that of body axis 1 from the vertical; of laws that do not point it is the rate less the
+one wanted, 0.05 deg/s in place of 5 deg, or, where the scenario requires a spin rate, that about body axis 1
+alone, which a spin that is fixed in space holds while the orbital frame turns; the requirement says when it
+has settled.
 """
 
 from math import log2
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from fsw.core.laws.entry import Aim
 from sim.design.tuning.flown import FlownMotion
 from sim.scenario.schema import Scenario, flight_table
+from sim.statistics.settling import Settling, held_ticks
 
 Array = NDArray[np.float64]
 BY_RATE = frozenset({Aim.RATE, Aim.SPIN, Aim.SUN})
@@ -47,14 +49,14 @@ def cost_of(flight: FlownMotion, scenario: Scenario, aim: Aim) -> Cost:
         error, settled = flight.axis1_deg if axis_only else flight.pointing_deg, SETTLED_DEG
     else:
         error, settled = _rate_error_degps(flight, scenario)
-    outside = np.flatnonzero(~(error < settled))
-    first = int(outside[-1]) + 1 if len(outside) else 0
     rms = float(np.sqrt(np.mean(error[flight.orbit(-1)] ** 2)))
     step_s = float(flight.t_s[1])
-    settle_orbits = first * step_s / flight.orbit_s if first < len(error) else None
+    settling = Settling(held_ticks(1.0 / step_s))
+    settling.take(error < settled)
+    settle_orbits = None if settling.tick is None else settling.tick * step_s / flight.orbit_s
     if not np.isfinite(rms):
         return Cost(LOST, None, rms)
-    return Cost(first / len(error) + log2(1.0 + rms / settled), settle_orbits, rms)
+    return Cost(settling.since / len(error) + log2(1.0 + rms / settled), settle_orbits, rms)
 
 
 def _rate_error_degps(flight: FlownMotion, scenario: Scenario) -> tuple[Array, float]:

@@ -1,4 +1,4 @@
-"""The charts of the report that show the coils against their limits: rasters, duty, gaps, levels."""
+"""The charts of the report that show the pulses against their limits: rasters, gaps, levels."""
 
 from collections.abc import Iterable, Sequence
 
@@ -13,7 +13,6 @@ from sim.audit.findings import COILS, DrivenPulse
 from sim.drawing.canvas import (
     AXES_COLOURS,
     BOTTOM_IN,
-    INK,
     LEFT_IN,
     LEGEND_IN,
     LIMIT,
@@ -27,7 +26,7 @@ from sim.drawing.canvas import (
     stacked,
 )
 from sim.drawing.envelope import BINS
-from sim.drawing.time_chart import DrawnChart, Panel, Series, TimeChart, draw
+from sim.drawing.time_chart import DrawnChart
 from sim.report.charts.drawn_flight import DrawnFlight
 from sim.report.charts.pulse_lanes import pulse_lanes
 
@@ -89,33 +88,6 @@ def zoom(flight: DrawnFlight) -> DrawnChart:
     panel.set_title(f"{part}, to scale, back-off shaded")
     _violations(panel, flight, time)
     return DrawnChart(figure)
-
-
-def duty(flight: DrawnFlight) -> DrawnChart:
-    """Duty over the orbit before each time, against what pulse length and back-off allow."""
-    limits, t_s = flight.audit.limits, flight.t_s
-    cycle_s = (limits.pulse_us + limits.backoff_us) / 1e6
-    known = t_s >= min(5.0 * cycle_s, flight.length_s / 4.0)
-    duties = [np.where(known, 100.0 * flight.duty(coil, t_s), np.nan) for coil in COILS]
-    series = [
-        Series(f"coil {coil}", duty, colour)
-        for coil, duty, colour in zip(COILS, duties, AXES_COLOURS, strict=True)
-    ]
-    if limits.shared:
-        series.append(Series("all", sum(duties, np.zeros_like(t_s)), INK, 1.3))
-    long_run = 100.0 * limits.pulse_us / (limits.pulse_us + limits.backoff_us)
-    what = "all coils" if limits.shared else "each coil"
-    bound = np.where(known, 100.0 * flight.most_duty(t_s), np.nan)
-    series.append(Series(f"{long_run:.2f} %: limit of {what}", bound, LIMIT, 1.3))
-    most = max([long_run, *(float(np.nanmax(line)) for line in (bound, *duties) if known.any())])
-    panel = Panel(
-        "Duty over the last orbit",
-        "duty [%]",
-        1.8,
-        series,
-        reach=(0.0, 1.15 * most),
-    )
-    return draw(flight.time, TimeChart(t_s, (panel,)))
 
 
 def gaps_and_levels(flight: DrawnFlight) -> DrawnChart:

@@ -41,6 +41,7 @@ class DrawnFlight:
         tick_hz: ticks a second.
         orbit_s: period of the orbit.
         start_unix_s: UTC of tick 0.
+        wheel_nms: largest momentum of a driven wheel relative to the body; None: there is none.
     """
 
     lines: Lines
@@ -48,11 +49,15 @@ class DrawnFlight:
     tick_hz: int
     orbit_s: float
     start_unix_s: int
+    wheel_nms: float | None
 
     @classmethod
     def of(cls, scenario: Scenario, lines: Lines, audit: AuditReport) -> "DrawnFlight":
         """That of a scenario."""
-        return cls(lines, audit, scenario.time.tick_hz, orbit_period_s(scenario), scenario.epoch_unix_s)
+        most_nms = scenario.wheel.max_momentum_nms if scenario.wheel else None
+        return cls(
+            lines, audit, scenario.time.tick_hz, orbit_period_s(scenario), scenario.epoch_unix_s, most_nms
+        )
 
     @property
     def length_s(self) -> float:
@@ -81,7 +86,7 @@ class DrawnFlight:
         return self.lines.places / self.tick_hz
 
     def line(self, name: str) -> Array:
-        """A quantity at each point, (points,), or a vector, (points, 3)."""
+        """A quantity at each point, (points,), or several of a kind, (points, n)."""
         return self.lines.line(name)
 
     def duty(self, coil: int, at_s: Array) -> Array:

@@ -6,10 +6,12 @@ from numpy.typing import NDArray
 from fsw.wire.messages import Mode
 from sim.drawing.envelope import Envelope
 from sim.record.estimates import Estimates
-from sim.record.truth import Histories
+from sim.record.truth import OF_WHEEL, Histories
 from sim.report.charts.motion import MotionSamples
+from sim.report.figures.coil_effort import driven_coils
 from sim.report.figures.histories import FlightHistories
 from sim.report.figures.spans import spans
+from sim.scenario.schema import Scenario, orbit_period_s
 
 Array = NDArray[np.float64]
 
@@ -43,14 +45,14 @@ class Spans:
 class _RunningMean:
     """The mean of vectors over the last ``rows`` rows, over fewer at the beginning."""
 
-    def __init__(self, rows: int) -> None:
+    def __init__(self, rows: int, width: int = 3) -> None:
         self._rows = rows
-        self._before = np.zeros((0, 3))
+        self._before = np.zeros((0, width))
 
     def take(self, vectors: Array) -> Array:
         """The mean at each of the next rows."""
         known = np.concatenate((self._before, vectors))
-        total = np.concatenate((np.zeros((1, 3)), np.cumsum(known, axis=0)))
+        total = np.concatenate((np.zeros((1, known.shape[1])), np.cumsum(known, axis=0)))
         past = np.arange(len(self._before) + 1, len(known) + 1)
         first = np.maximum(past - self._rows, 0)
         self._before = known[-self._rows :]
@@ -78,17 +80,32 @@ class _Torques:
         return sizes
 
 
+class _Duty:
+    """Fraction of the orbit before each tick, or of the flight so far, that a continuous driver drove."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self._scenario = scenario
+        self._mean = _RunningMean(max(1, round(orbit_period_s(scenario) * scenario.time.tick_hz)), 4)
+
+    def of(self, truth: Histories) -> Array:
+        """Of each coil, and of the time in which any was driven, (n, 4)."""
+        driven = driven_coils(self._scenario, truth["m_body_am2"])
+        each_and_any = np.column_stack((driven, driven.any(axis=1))).astype(float)
+        return self._scenario.coils.on_fraction * self._mean.take(each_and_any)
+
+
 class Lines:
     """Of a flight of ``ticks`` ticks, from its blocks in order; memory does not grow with its length."""
 
-    def __init__(self, ticks: int, tick_hz: int) -> None:
+    def __init__(self, ticks: int, scenario: Scenario) -> None:
         self.ticks = ticks
         self.dark = Spans()
         self.modes = {mode: Spans() for mode in Mode}
         self.motion = MotionSamples(ticks)
         self.has_estimates = False
         """Whether the controller estimated with a filter, at some tick."""
-        self._torques = _Torques(round(MEAN_S * tick_hz))
+        self._torques = _Torques(round(MEAN_S * scenario.time.tick_hz))
+        self._duty = _Duty(scenario) if scenario.coils.driver == "continuous" else None
         self._columns: dict[str, slice] = {}
         self._envelope: Envelope | None = None
 
@@ -101,6 +118,8 @@ class Lines:
             ticks.take(estimates.mode[: flight.ticks] == mode)
         self.has_estimates |= bool(np.isfinite(estimates.covariance[: flight.ticks, 0, 0]).any())
         drawn = _quantities(flight) | self._torques.of(truth)
+        if self._duty is not None:
+            drawn["duty"] = self._duty.of(truth)
         samples = np.column_stack(list(drawn.values()))
         if self._envelope is None:
             ends = np.cumsum([history.size // flight.ticks for history in drawn.values()])
@@ -117,7 +136,7 @@ class Lines:
         return np.zeros(0) if self._envelope is None else self._envelope.places.astype(float)
 
     def line(self, name: str) -> Array:
-        """A quantity, (points,), or a vector, (points, 3).
+        """A quantity, (points,), a vector, (points, 3), or ``duty`` of each coil and of any, (points, 4).
 
         Raises:
             KeyError: there is none of this name.
@@ -138,6 +157,7 @@ def _quantities(flight: FlightHistories) -> dict[str, Array]:
     """By name, (n,) or (n, 3): angles in degrees and degrees per second, the others in SI."""
     omega_degps = np.degrees(flight.truth["omega_body_orbit_radps"])
     b_body_t = flight.truth["b_body_t"]
+    wheel = OF_WHEEL[0]
     return {
         "pointing_deg": flight.pointing_deg,
         "axis1_deg": flight.axis1_deg,
@@ -150,4 +170,5 @@ def _quantities(flight: FlightHistories) -> dict[str, Array]:
         "b_body_t": b_body_t,
         "field_t": np.linalg.norm(b_body_t, axis=1),
         "m_body_am2": flight.truth["m_body_am2"],
+        **({wheel: flight.truth[wheel]} if wheel in flight.truth else {}),
     }

@@ -9,7 +9,7 @@ from sim.drawing.canvas import style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import Chart
 from sim.drawing.time_chart import DrawnChart
-from sim.report.charts import coils, ground_track, over_time
+from sim.report.charts import coils, effort, ground_track, over_time
 from sim.report.charts.drawn_flight import DrawnFlight
 from sim.report.charts.lines import Lines
 from sim.scenario.schema import Scenario
@@ -39,11 +39,22 @@ def sections(scenario: Scenario, lines: Lines, audit: AuditReport) -> list[Chart
             ChartSection("estimate", "Estimate", _charts(flight, _ESTIMATE))
             if lines.has_estimates
             else ChartSection("estimate", "Estimate", note=_NO_ESTIMATE[scenario.knowledge]),
-            ChartSection("coils", _COILS_TITLE, _charts(flight, _coils(audit.limits)))
-            if audit.pulses
-            else ChartSection("coils", _COILS_TITLE, note="No coil was driven."),
+            _effort(flight),
             ChartSection("environment", "Field, dipole and torques", _charts(flight, _ENVIRONMENT)),
         ]
+
+
+def _effort(flight: DrawnFlight) -> ChartSection:
+    """How coils, and a wheel that is driven, are used."""
+    audit, wheel = flight.audit, _WHEEL if flight.wheel_nms is not None else ()
+    title = "Coils and wheel against their limits" if wheel else "Coils against their limits"
+    if audit.limits.is_continuous:
+        used, driven = _CONTINUOUS, audit.dipoles is not None and audit.dipoles.any_driven > 0
+    else:
+        used, driven = _coils(audit.limits), bool(audit.pulses)
+    if driven:
+        return ChartSection("coils", title, _charts(flight, (*used, *wheel)))
+    return ChartSection("coils", title, _charts(flight, wheel), "No coil was driven.")
 
 
 def _charts(flight: DrawnFlight, drawings: tuple[Drawing, ...]) -> tuple[Chart, ...]:
@@ -88,7 +99,20 @@ _ENVIRONMENT: tuple[Drawing, ...] = (
         "torque over ten minutes.",
     ),
 )
-_COILS_TITLE = "Coils against their limits"
+_CONTINUOUS: tuple[Drawing, ...] = (
+    (
+        effort.continuous_duty,
+        "Fraction of the orbit before each time, or of the flight so far, for which a coil was driven: ticks "
+        "in which the plant has a dipole along it, by the part of a tick for which the driver drives.",
+    ),
+)
+_WHEEL: tuple[Drawing, ...] = (
+    (
+        effort.wheel,
+        "Momentum of the driven wheel along its axis, relative to the body, as the plant has it. Dashed: "
+        "where its motor can speed it up no more.",
+    ),
+)
 _NO_ESTIMATE = {
     "perfect": "Perfect knowledge: the plant sent attitude and rate to the controller.",
     "filter": "The filter gave no estimate in this flight.",
@@ -109,7 +133,7 @@ def _coils(limits: AuditLimits) -> tuple[Drawing, ...]:
             f"{limits.backoff_us / 1e6:g} s from the end of a pulse, in which no pulse of {whose} may start.",
         ),
         (
-            coils.duty,
+            effort.duty,
             "Fraction of the orbit before each time, or of the flight so far, for which a coil was driven, "
             "and the most that the limits admit in that time: pulses fit a little more into a short one.",
         ),

@@ -23,9 +23,15 @@ def dipole_squared_a2m4s(scenario: Scenario, dipole_am2: Array) -> float:
     return float(np.sum(dipole_am2**2)) / fraction / scenario.time.tick_hz
 
 
-def driven_s(scenario: Scenario, dipole_am2: Array) -> float:
-    """Time for which a continuous driver drove any coil, a fraction of each tick; decay does not count."""
+def driven_coils(scenario: Scenario, dipole_am2: Array) -> NDArray[np.bool_]:
+    """Whether a continuous driver drove each coil, by tick, (n, 3); decay does not count."""
     coils = scenario.coils
     full_scale_am2 = coils.on_fraction * (coils.max_dipole_am2 or 0.0)
-    driven = np.abs(dipole_am2).max(axis=1, initial=0.0) > RESIDUAL * full_scale_am2
-    return coils.on_fraction * float(np.count_nonzero(driven)) / scenario.time.tick_hz
+    driven: NDArray[np.bool_] = np.abs(dipole_am2) > RESIDUAL * full_scale_am2
+    return driven
+
+
+def driven_s(scenario: Scenario, dipole_am2: Array) -> float:
+    """Time for which a continuous driver drove any coil, a fraction of each tick."""
+    driven = driven_coils(scenario, dipole_am2).any(axis=1)
+    return scenario.coils.on_fraction * float(np.count_nonzero(driven)) / scenario.time.tick_hz

@@ -14,6 +14,7 @@ from sim.record.truth import Histories
 from sim.report.figures.attitude_arrays import axis1_errors, errors
 from sim.report.figures.mean import Mean
 from sim.scenario.schema import Scenario, flight_table
+from sim.statistics.settling import Settling
 
 Array = NDArray[np.float64]
 Json = dict[str, Any]
@@ -62,29 +63,20 @@ def error_vectors(what: str, truth: Histories, spin_radps: float) -> Array:
     return rate[:, :1] if what == "spin" else rate
 
 
-def held_from(error: Array, threshold: float) -> int:
-    """The first row from which all errors are below the threshold; the number of rows if there is none."""
-    large = np.flatnonzero(~(error < threshold))
-    return int(large[-1]) + 1 if len(large) else 0
-
-
 @dataclass(slots=True)
 class ControlledError:
-    """The error of what is controlled over the last orbit, and the tick from which it stays small."""
+    """The error of what is controlled over the last orbit, and the tick at which it has settled."""
 
     of: Controlled
     spin_radps: float
+    settling: Settling
     last_orbit: Mean = field(default_factory=Mean)
-    settled: int = 0
-    taken: int = 0
 
     def take(self, truth: Histories, recent: slice) -> Array:
         """The next block, of which ``recent`` is in the last orbit; returns the errors' magnitudes."""
         error: Array = np.linalg.norm(error_vectors(self.of.what, truth, self.spin_radps), axis=1)
         self.last_orbit.take(error[recent])
-        row = held_from(error, self.of.threshold)
-        self.settled = self.taken + row if row else self.settled
-        self.taken += len(error)
+        self.settling.take(error < self.of.threshold)
         return error
 
     def figures(self, ticks_per_orbit: float) -> Json:
@@ -94,6 +86,6 @@ class ControlledError:
             "rms_last_orbit": self.last_orbit.rms,
             "max_last_orbit": self.last_orbit.most,
         }
-        if self.settled < self.taken:
-            figures["settle_orbits"] = self.settled / ticks_per_orbit
+        if (settled := self.settling.tick) is not None:
+            figures["settle_orbits"] = settled / ticks_per_orbit
         return figures

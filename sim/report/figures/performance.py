@@ -25,6 +25,7 @@ from sim.report.figures.mean import Mean
 from sim.report.figures.spans import spans
 from sim.report.requirements.judge import Judgement
 from sim.scenario.schema import Scenario, orbit_period_s
+from sim.statistics.settling import Settling, held_ticks
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -37,18 +38,16 @@ SPIN_SETTLED_RADPS = 1e-3
 
 @dataclass(slots=True)
 class _Angle:
-    """An angle from nominal, in the last orbit and at the end, and the tick from which it stays small."""
+    """An angle from nominal, in the last orbit and at the end, and the tick at which it has settled."""
 
+    settling: Settling
     last_orbit: Mean = field(default_factory=Mean)
     final_deg: float = np.nan
-    held_from: int = 0
 
-    def take(self, angle_deg: Array, first: int, recent: slice) -> None:
+    def take(self, angle_deg: Array, recent: slice) -> None:
         self.last_orbit.take(angle_deg[recent])
         self.final_deg = float(angle_deg[-1])
-        large = np.flatnonzero(~(angle_deg < SETTLED_DEG))
-        if len(large):
-            self.held_from = first + int(large[-1]) + 1
+        self.settling.take(angle_deg < SETTLED_DEG)
 
     def figures(self) -> Json:
         return {
@@ -138,20 +137,18 @@ class _Convergence:
 
 @dataclass(slots=True)
 class _Spin:
-    """The spin about body axis 1 against its reference, and the tick from which it stays close to that."""
+    """The spin about body axis 1 against its reference, and the tick at which it has settled at that."""
 
     reference_radps: float
+    settling: Settling
     last_orbit: Mean = field(default_factory=Mean)
     deviation: Mean = field(default_factory=Mean)
-    held_from: int = 0
 
-    def take(self, spin_radps: Array, first: int, recent: slice) -> None:
+    def take(self, spin_radps: Array, recent: slice) -> None:
         deviation = np.abs(spin_radps - self.reference_radps)
         self.last_orbit.take(spin_radps[recent])
         self.deviation.take(deviation[recent])
-        outside = np.flatnonzero(~(deviation < SPIN_SETTLED_RADPS))
-        if len(outside):
-            self.held_from = first + int(outside[-1]) + 1
+        self.settling.take(deviation < SPIN_SETTLED_RADPS)
 
 
 class Performance:
@@ -168,10 +165,12 @@ class Performance:
         self._last_orbit_from = max(0, ticks - round(self._orbit_s * self._hz))
         self.ticks = 0
         """Taken so far."""
-        self._pointing, self._axis1 = _Angle(), _Angle()
+        held = held_ticks(self._hz)
+        self._pointing, self._axis1 = _Angle(Settling(held)), _Angle(Settling(held))
         self._convergence = _Convergence(round(CONVERGED_FOR_S * self._hz))
-        self._spin = _Spin(scenario.control.spin_radps)
-        self._controlled = ControlledError(controlled(scenario), scenario.control.spin_radps)
+        spin_radps = scenario.control.spin_radps
+        self._spin = _Spin(spin_radps, Settling(held))
+        self._controlled = ControlledError(controlled(scenario), spin_radps, Settling(held))
         self.judgement = Judgement(scenario, ticks)
         """By the requirements of the scenario."""
         self._last: tuple[Histories, Estimates] | None = None
@@ -183,10 +182,10 @@ class Performance:
         first, rows = self.ticks, len(truth["t_s"])
         q = truth["q_body_from_orbit"]
         recent = slice(max(0, self._last_orbit_from - first), rows)
-        self._pointing.take(np.degrees(angle_rad(q)), first, recent)
-        self._axis1.take(np.degrees(axis1_angle_rad(q)), first, recent)
+        self._pointing.take(np.degrees(angle_rad(q)), recent)
+        self._axis1.take(np.degrees(axis1_angle_rad(q)), recent)
         self._convergence.take(truth, estimates, first)
-        self._spin.take(truth["omega_body_orbit_radps"][:, 0], first, recent)
+        self._spin.take(truth["omega_body_orbit_radps"][:, 0], recent)
         self._controlled.take(truth, recent)
         self.judgement.take(truth, estimates)
         self._last = truth, estimates
@@ -199,8 +198,8 @@ class Performance:
             return {}
         truth, estimates = self._last
         axis1 = self._axis1.figures() | {"mean_last_orbit": self._axis1.last_orbit.mean}
-        if self._axis1.held_from < self.ticks:
-            axis1["settle_orbits_5deg"] = self._axis1.held_from / self._hz / self._orbit_s
+        if (settled := self._axis1.settling.tick) is not None:
+            axis1["settle_orbits_5deg"] = settled / self._hz / self._orbit_s
         result: Json = {
             "orbits": self.ticks / self._hz / self._orbit_s,
             "controlled": self._controlled.figures(self._orbit_s * self._hz),
@@ -224,8 +223,8 @@ class Performance:
             "mean_last_orbit": spin.last_orbit.mean,
             "max_dev_last_orbit": spin.deviation.most,
         }
-        if spin.held_from < self.ticks:
-            result["settle_s_1e-3"] = spin.held_from / self._hz
+        if (settled := spin.settling.tick) is not None:
+            result["settle_s_1e-3"] = settled / self._hz
         return result
 
 

@@ -8,9 +8,3 @@ def spans(holds: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """The first tick of each span and the one past its last, in order."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], holds.astype(np.int8), [0]))))
     return [(int(first), int(past)) for first, past in zip(edges[::2], edges[1::2], strict=True)]
-
-
-def held_from(holds: NDArray[np.bool_]) -> int | None:
-    """The tick from which it holds to the end; None if it does not hold in the last tick."""
-    found = spans(holds)
-    return found[-1][0] if found and found[-1][1] == len(holds) else None

@@ -9,10 +9,11 @@ from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.requirements.causes import reasons
 from sim.report.requirements.evidence import EvidenceGatherer, Missed
-from sim.report.requirements.gather import HELD_S, Gathered
+from sim.report.requirements.gather import Gathered
 from sim.report.requirements.words import number, orbits
 from sim.scenario.requirements import DEG, INDICES, OF, ORBITS
 from sim.scenario.schema import Scenario
+from sim.statistics.settling import HELD_S
 
 Json = dict[str, Any]
 
@@ -79,7 +80,7 @@ class Judgement:
             return {"measured": measured, "verdict": Outcome.MET.value, "text": f" {text}", "reasons": []}
         limits = {DEG: section.limit, ORBITS: one.threshold}
         evidence = self._evidence[one.what].evidence(audit, isolated_s)
-        settled = one.settled_at / one.ticks_per_orbit if one.settled else None
+        settled = _settled_orbits(one)
         found = reasons(Missed(section.index, one.what, limits.get(section.unit), settled), evidence)
         return {
             "measured": measured,
@@ -112,15 +113,13 @@ def _measured(one: Gathered, scenario: Scenario, audit: AuditReport) -> tuple[fl
     limit = f"at most {section.limit:g} {section.unit.symbol}"
     under = f"{one.threshold:g} {'deg/s' if one.what == 'spin' else 'deg'}"
     if section.index == "settling":
-        value = one.settled_at / one.ticks_per_orbit if one.settled else None
+        value = _settled_orbits(one)
         if value is None:
             return None, f"not under {under} for the last {HELD_S:g} s, {limit}"
         return value, f"under {under} from {orbits(value)} on, {limit}"
-    if section.window == "settled" and not (
-        one.settled and one.settled_at <= section.by_orbit * one.ticks_per_orbit
-    ):
-        when = f"but from {orbits(one.settled_at / one.ticks_per_orbit)} on"
-        but = when if one.settled else f"nor for the last {HELD_S:g} s"
+    settled = _settled_orbits(one)
+    if section.window == "settled" and (settled is None or settled > section.by_orbit):
+        but = f"nor for the last {HELD_S:g} s" if settled is None else f"but from {orbits(settled)} on"
         return None, f"not settled, under {under}, by orbit {section.by_orbit:g}, {but}; {limit}"
     value = _of_coils(one, scenario, audit) if section.index in ("duty", "energy") else one.value()
     if value is None:
@@ -130,6 +129,10 @@ def _measured(one: Gathered, scenario: Scenario, audit: AuditReport) -> tuple[fl
     if value > section.limit and float(shown) <= section.limit:
         shown = f"{value:.7g}"
     return value, f"{shown} {section.unit.symbol}{statistic} over {_window(one)}, {limit}"
+
+
+def _settled_orbits(one: Gathered) -> float | None:
+    return None if one.settled_at is None else one.settled_at / one.ticks_per_orbit
 
 
 def _of_coils(one: Gathered, scenario: Scenario, audit: AuditReport) -> float:
@@ -162,7 +165,9 @@ def _window(one: Gathered) -> str:
         return "the flight"
     if section.window == "settled":
         window = (
-            f"{orbits(one.window_orbits)} from settling on" if one.settled else "the time from settling on"
+            "the time from settling on"
+            if one.settled_at is None
+            else f"{orbits(one.window_orbits)} from settling on"
         )
     elif one.window_from == 0:
         window = f"the whole flight of {orbits(one.window_orbits)}"

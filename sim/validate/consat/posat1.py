@@ -27,8 +27,9 @@ from sim.campaign.study import (
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures.attitude_arrays import axis1_angle_rad
-from sim.report.figures.controlled import SETTLED_DEG, held_from
+from sim.report.figures.controlled import SETTLED_DEG
 from sim.scenario.schema import Scenario
+from sim.statistics.settling import settled_tick
 
 SOURCE = "Tavares et al., ConSat: PoSAT-1"
 NODES_DEG = (0.0, 60.0, 120.0, 180.0, 240.0, 300.0)
@@ -272,7 +273,8 @@ def _spun_up_min(flight: FlightResult) -> float:
 def effort(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
     """The sum of m^2 [A^2 m^4 s] until the boom has settled, and the largest dipole of what may be given."""
     m, largest = truth["m_body_am2"], scenario.coils.largest_am2
-    settled = held_from(np.degrees(axis1_angle_rad(truth["q_body_from_orbit"])), SETTLED_DEG)
+    error_deg = np.degrees(axis1_angle_rad(truth["q_body_from_orbit"]))
+    settled = settled_tick(error_deg < SETTLED_DEG, scenario.time.tick_hz)
     return {
         "m2_until_settled": float(np.square(m[:settled]).sum()) / scenario.time.tick_hz,
         "of_full_scale": float(np.abs(m).max()) / largest,

@@ -61,7 +61,7 @@ def microsatellites(seeds: Sequence[int]) -> FlightStudy:
         _pointing("pointing_worst", "all", high=8.0),
     )
     orders = tuple(population_order("50kg", seed, ORBITS) for seed in seeds)
-    return _study("50kg", orders, figures)
+    return _study("50kg", orders, figures, SATELLITES["50kg"])
 
 
 def large_dipoles(seeds: Sequence[int]) -> FlightStudy:
@@ -70,7 +70,7 @@ def large_dipoles(seeds: Sequence[int]) -> FlightStudy:
     orders = [population_order("50kg", seed, ORBITS, overrides=per_coil) for seed in seeds]
     large = tuple(order for order in orders if _dipole_am2(order) > SMALL_DIPOLE_AM2)
     statement = "dipole above 0.04 A m^2, back-off per coil, all"
-    return _study("50kg_per_coil", large, (ISOLATED, _pointing("pointing", statement, high=4.0)))
+    return _study("50kg_per_coil", large, (ISOLATED, _pointing("pointing", statement, high=4.0)), 0)
 
 
 def cubesats(kind: str, seeds: Sequence[int], pointing_deg: float | None = None) -> FlightStudy:
@@ -82,19 +82,19 @@ def cubesats(kind: str, seeds: Sequence[int], pointing_deg: float | None = None)
     pointing = (
         [] if pointing_deg is None else [_pointing("pointing", "median", of="median", high=pointing_deg)]
     )
-    return _study(kind, orders, (*quiet_and_honest(), *pointing))
+    return _study(kind, orders, (*quiet_and_honest(), *pointing), SATELLITES[kind])
 
 
 def tumbling(name: str, rate_degps: tuple[float, float], orbits: float, seeds: Sequence[int]) -> FlightStudy:
     """50 kg satellites that start by tumbling about any axis: honest once they have come to POINT."""
     orders = tuple(population_order("50kg", seed, orbits, rate_degps=rate_degps) for seed in seeds)
-    return _study(name, orders, (*quiet_and_honest(SINCE_POINT), IN_POINT))
+    return _study(name, orders, (*quiet_and_honest(SINCE_POINT), IN_POINT), TUMBLING)
 
 
 def twice_the_bounds(seeds: Sequence[int]) -> FlightStudy:
     """50 kg satellites that differ from their table by twice what is declared."""
     orders = tuple(population_order("50kg", seed, ORBITS, twice=True) for seed in seeds)
-    return _study("twice", orders, (ISOLATED, WRONG))
+    return _study("twice", orders, (ISOLATED, WRONG), TWICE)
 
 
 def isolated_units(flight: FlightResult) -> float:
@@ -145,8 +145,8 @@ def _pointing(
     return Figure(name, statement, "deg", figure_of("pointing_deg"), of, counts=counts, high=high)
 
 
-def _study(name: str, orders: tuple[Order, ...], figures: Sequence[Figure]) -> FlightStudy:
-    return campaign(f"population.{name}", SOURCE, (Group("", orders),), figures, "satellites")
+def _study(name: str, orders: tuple[Order, ...], figures: Sequence[Figure], made_for: int) -> FlightStudy:
+    return campaign(f"population.{name}", SOURCE, (Group("", orders),), figures, "satellites", made_for)
 
 
 def _has_small_dipole(flight: FlightResult) -> bool:

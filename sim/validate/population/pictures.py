@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from statistics import median
 from typing import NamedTuple
 
 import numpy as np
@@ -44,7 +43,7 @@ def spread_of(size: float, flights: Flights) -> SizeSpread:
 
     def both(figure: str) -> tuple[float, float]:
         values = [flight.figures[figure] for flight in flights]
-        return median(values), float(np.max(values))
+        return float(np.median(values)), float(np.max(values))
 
     means, worst = ([pick(flight) for flight in flights] for pick in (mean_inside, worst_inside))
     shares = (100.0 * float(np.mean(means)), 100.0 * float(np.min(worst)))

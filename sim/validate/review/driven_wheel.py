@@ -15,6 +15,7 @@ from sim.campaign.study import Figure, Group, campaign, summary_value
 from sim.plant.environment.orbit import Array
 from sim.plant.rotation import Vec3
 from sim.plant.wheel_config import WheelConfig
+from sim.statistics.settling import settled_tick
 from sim.validate.review.figures import FigureClaim
 from sim.validate.review.law_flight import ConstantTorque, LawFlight, fly
 from sim.validate.review.law_history import LawHistory
@@ -129,11 +130,9 @@ def pitch_speed() -> float:
 
 
 def _settled_s(flown: LawHistory) -> float:
-    """The time after which the angle stays under 1 deg; infinite where it does not."""
-    above = np.flatnonzero(flown.angle_deg >= 1.0)
-    if len(above) == len(flown.t_s) or above[-1] == len(flown.t_s) - 1:
-        return inf
-    return float(flown.t_s[above[-1] + 1])
+    """The time at which the angle has settled under 1 deg; infinite where it has not."""
+    row = settled_tick(flown.angle_deg < 1.0, 1.0 / float(flown.t_s[1] - flown.t_s[0]))
+    return inf if row is None else float(flown.t_s[row])
 
 
 def momentum_left() -> float:

@@ -41,6 +41,17 @@ def test_a_pulsed_driver_that_reports_dipoles_is_named_once_a_stretch(dipoles):
     assert report.dipoles is None
 
 
+def test_a_stretch_that_begins_with_the_first_status_is_named(dipoles):
+    report = audit(dipoles({0: (1.0, 0.0, 0.0), 1: (1.0, 0.0, 0.0)}).entries(), AuditLimits())
+    assert found(report) == [(ViolationKind.DRIVER, 0)]
+
+
+def test_ticks_are_counted_by_coil(dipoles):
+    driven = {tick: (float(tick < 1), float(tick < 2), float(tick < 4)) for tick in range(10)}
+    count = audit(dipoles(driven).entries(), CONTINUOUS).dipoles
+    assert (count.statuses, count.driven, count.any_driven) == (10, (1, 2, 4), 4)
+
+
 def test_without_sync_it_is_named_at_its_time(dipoles):
     report = audit(dipoles(DRIVEN, sync=False).entries(), AuditLimits())
     assert [(one.kind, one.time_s) for one in report.violations] == [

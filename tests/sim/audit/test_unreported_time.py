@@ -1,11 +1,15 @@
 """Stretches without COIL_STATUS: which of them may hide a whole pulse."""
 
+from fractions import Fraction
+from types import SimpleNamespace
+
 import pytest
 
 from fsw.wire.messages import CoilStatus, Sync
 from sim.audit.auditor import AuditLimits, audit
 from sim.audit.check import render
 from sim.audit.documents import as_json, suites
+from sim.audit.unreported_time import UnreportedTime
 
 
 def silent(log, ticks):
@@ -98,3 +102,89 @@ def test_a_status_with_a_wrong_crc_reports_nothing(judge, bus_log):
         frame = log.statuses[tick][0]
         log.statuses[tick] = [frame._replace(data=bytes(CoilStatus.LENGTH))]
     assert judge(log).unreported_s == 10
+
+
+SECOND = 1_000_000
+
+
+class TestStretches:
+    """At a tick a second: a stretch of four seconds may hide a pulse of three."""
+
+    @pytest.fixture
+    def time(self):
+        clock = SimpleNamespace(
+            units=1, period=SECOND, epoch_s=0, seconds=lambda instant: Fraction(instant, SECOND)
+        )
+        found = UnreportedTime(clock, AuditLimits())
+        found.begin(SECOND)
+        return found
+
+    def report(self, time, second, seq=0, *, on=False):
+        status = CoilStatus(
+            level=int(on), coil=0, remaining_ms=1000 * on, current_ma=0, lockout_ms=0, seq=seq
+        )
+        time.take(second * SECOND, [status])
+
+    def wait(self, time, ticks):
+        for _ in range(ticks):
+            time.sync()
+
+    @pytest.mark.parametrize("ticks", [3, 4])
+    def test_only_ticks_whose_sync_is_in_the_log_are_doubted(self, time, ticks):
+        self.wait(time, ticks)
+        self.report(time, 10)
+        assert bool(time.doubt) is (ticks == 4)
+        assert time.total == 9 * SECOND
+
+    @pytest.mark.parametrize("ended_by", ["status", "boot", "run"])
+    def test_ticks_are_counted_anew_after(self, time, ended_by):
+        self.wait(time, 1)
+        self.report(time, 2)
+        self.wait(time, 2)
+        if ended_by == "status":
+            self.report(time, 4)
+        elif ended_by == "boot":
+            time.boot(4 * SECOND)
+        else:
+            time.begin(4 * SECOND)
+        self.wait(time, 3)
+        self.report(time, 9, seq=1)
+        assert time.doubt == ""
+        self.wait(time, 4)
+        self.report(time, 20, seq=2)
+        assert "seq is 1 before and 2 after it" in time.doubt
+
+    def test_a_board_that_has_booted_is_off_and_has_accepted_nothing(self, time):
+        self.report(time, 1, seq=7, on=True)
+        time.boot(2 * SECOND)
+        self.wait(time, 5)
+        self.report(time, 8, seq=0)
+        assert time.doubt == ""
+        self.wait(time, 5)
+        time.boot(20 * SECOND)
+        assert "the board boots after it" in time.doubt
+
+    def test_after_its_first_boot_a_second_one_may_hide_a_pulse(self, time):
+        time.boot(2 * SECOND)
+        self.wait(time, 5)
+        time.boot(20 * SECOND)
+        assert "in the 17.000 s from t=2.000 s: the board boots after it" in time.doubt
+
+    def test_another_run_begins_with_the_coils_off_until_its_first_boot(self, time):
+        self.report(time, 1, seq=7, on=True)
+        time.begin(10 * SECOND)
+        self.wait(time, 9)
+        time.boot(20 * SECOND)
+        assert (time.doubt, time.total) == ("", 0)
+        self.report(time, 21, seq=0, on=True)
+        time.begin(30 * SECOND)
+        self.wait(time, 9)
+        self.report(time, 40, seq=3)
+        assert "no status before or after it" in time.doubt
+
+    def test_one_coil_that_is_on_is_enough(self, time):
+        on, off = (CoilStatus(int(on), int(on), 500 * on, 0, 0, 0) for on in (True, False))
+        time.take(2 * SECOND, [off, on])
+        self.wait(time, 5)
+        self.report(time, 9)
+        assert "a coil was on when it began" in time.doubt

@@ -1,7 +1,8 @@
 """A flight without files has the results of ``torquer sil``."""
 
 import json
-from math import inf, nan
+from itertools import permutations
+from math import inf, isnan, nan
 
 import numpy as np
 import pytest
@@ -9,7 +10,15 @@ import pytest
 from fsw.input.schema import merge
 from sim.campaign.claim import ClaimVerdict
 from sim.campaign.flight import FlightResult, Order, fly_order
-from sim.campaign.study import Figure, Group, campaign, describe_order, summary_number, summary_value
+from sim.campaign.study import (
+    Figure,
+    Group,
+    campaign,
+    describe_order,
+    part_of,
+    summary_number,
+    summary_value,
+)
 from sim.record import run_dir
 from sim.report.conclude import conclude
 
@@ -21,6 +30,7 @@ OVERRIDES = {
     "flight": {"modes": {"settle_s": 20.0}},
 }
 ORBITS = 300 / (86400.0 / 14.30166407)
+COMBINED = ("median", "mean", "worst")
 UNTIMED = {"wall_seconds", "realtime_factor", "replay"}
 
 
@@ -97,7 +107,37 @@ class TestFigures:
     def test_a_flight_without_the_figure_fails(self):
         outcome = self.outcome([1.0, nan, 2.0], high=3.0)
         assert outcome.verdict.value == "FAIL"
-        assert "seed 1" in outcome.where
+        assert outcome.where == "no figure in 1 of 3 flights: x, seed 1"
+
+    @pytest.mark.parametrize("of", COMBINED)
+    @pytest.mark.parametrize("values", [*permutations([nan, 1.0, 2.0, 3.0])])
+    def test_what_is_no_number_hides_in_no_combination(self, of, values):
+        """Wherever it stands among the flights: sorting would not tell."""
+        outcome = self.outcome(list(values), of=of, high=5.0)
+        assert outcome.verdict is ClaimVerdict.FAIL
+        assert isnan(outcome.ours)
+        assert outcome.where == f"no figure in 1 of 4 flights: x, seed {values.index(nan)}"
+        assert (outcome.spread.meet, outcome.spread.most) == (3, inf)
+
+    def test_a_median_or_mean_of_fewer_flights_than_the_claim_is_made_for_is_no_verdict(self):
+        orders = tuple(Order("x", seed=seed) for seed in range(3))
+        figures = [Figure(of, "what", "deg", summary_value("v", nan), of, high=2.5) for of in COMBINED]
+        for made_for, verdicts in (
+            (0, ["PASS", "FAIL", "FAIL"]),
+            (3, ["PASS", "FAIL", "FAIL"]),
+            (4, ["too few to judge", "too few to judge", "FAIL"]),
+        ):
+            study = campaign("s", "who", (Group("", orders),), figures, "satellites", made_for)
+            flights = [
+                FlightResult(order, {"v": v}, {}) for order, v in zip(orders, (1.0, 2.0, 9.0), strict=True)
+            ]
+            assert [outcome.verdict.value for outcome in study.conclude(flights)] == verdicts
+        few = study.conclude(flights)[0]
+        assert (few.ours, few.where) == (2.0, "3 of the 4 satellites that it is claimed for")
+        part = part_of(study, lambda order: order.seed < 2)
+        assert part.conclude(flights[:2])[0].where == "2 of the 4 satellites that it is claimed for"
+        flights[1] = FlightResult(orders[1], {}, {})
+        assert {outcome.verdict for outcome in study.conclude(flights)} == {ClaimVerdict.FAIL}
 
     def test_one_that_never_settles_is_worst_but_may_be_beyond_the_median(self):
         assert self.outcome([1.0, inf, 2.0], high=3.0).verdict.value == "FAIL"

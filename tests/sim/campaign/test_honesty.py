@@ -170,3 +170,5 @@ def test_pointing_is_that_of_the_last_three_orbits(made):
 def test_one_that_is_off_at_the_end_never_points(made):
     made.pointing_deg[-1] = 10.1
     assert made.figures()["pointed_orbits"] == inf
+    made.pointing_deg[-600], made.pointing_deg[-1] = 10.1, 9.9
+    assert made.figures()["pointed_orbits"] == inf, "pointed for 599 s"

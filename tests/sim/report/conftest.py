@@ -167,7 +167,7 @@ class Run:
         return DrawnFlight.of(self.scenario, self.lines(self.truth() | truth, self.estimates()), self.audit())
 
     def lines(self, truth: Histories, estimates: Estimates) -> Lines:
-        lines = Lines(self.ticks, self.scenario.time.tick_hz)
+        lines = Lines(self.ticks, self.scenario)
         for block in blocks(truth, estimates):
             lines.take(*block)
         return lines
@@ -175,7 +175,7 @@ class Run:
     def write(self, path: Path, estimates: Estimates | None = None, **truth: np.ndarray) -> Page:
         histories = self.truth() | truth
         estimates = estimates or self.estimates()
-        tally = BusTally(0, self.refused, self.events, self.isolated)
+        tally = BusTally(0, self.refused, self.events, self.isolated, event_count=len(self.events))
         performance = perform(self.scenario, histories, estimates)
         summary = summarise(self.scenario, FLOWN, performance, self.audit(), tally)
         if self.replay is not None:

@@ -59,3 +59,6 @@ def test_the_table_tells_the_orbit_too():
     table = event_table({"events": [event]}, load("microsat"))
     assert table.rows[0][:5] == ("6041.000", "1.00", "FSW", "info", "mode SAFE")
     assert event_table({}, load("microsat")).rows == []
+    assert table.caption == event_table({"events": [event], "event_count": 1}, load("microsat")).caption == ""
+    cut = event_table({"events": [event], "event_count": 4711}, load("microsat"))
+    assert cut.caption == "The first 1 of 4711 events"

@@ -30,6 +30,7 @@ CONTRACT = {
     "axis1_deg": {"final", "rms_last_orbit", "max_last_orbit", "mean_last_orbit"},
     "mode_final": None,
     "isolated": None,
+    "event_count": None,
     "events": None,
 }
 """What every flight has; ``estimate_deg``, ``converged_at_s``, ``nees_mean``, ``spin_radps`` come on top."""

@@ -13,7 +13,7 @@ from sim.record.candump import LogEntry
 from sim.record.estimates import Estimates
 from sim.report.figures.estimate_error import nees, within_3sigma
 from sim.report.figures.performance import perform
-from sim.report.summary import BusTally, summarise
+from sim.report.summary import MAX_EVENTS, BusTally, summarise
 from sim.report.summary_text import summary_text
 from sim.scenario.schema import load, orbit_period_s, parse_settings
 
@@ -232,6 +232,16 @@ class TestSettling:
         tilt[-1] = 5.1
         assert "settle_orbits_5deg" not in self.tilted(tilt).summary(audit)["axis1_deg"]
 
+    @pytest.mark.parametrize(("within_s", "settled"), [(1, False), (599, False), (600, True)])
+    def test_what_is_within_only_at_the_last_has_not_been_seen_to_stay(self, audit, within_s, settled):
+        tilt = np.full(TICKS, 60.0)
+        tilt[-within_s:] = 1.0
+        summary = self.tilted(tilt).summary(audit)
+        assert ("settle_orbits" in summary["controlled"]) is settled
+        assert ("settle_orbits_5deg" in summary["axis1_deg"]) is settled
+        text = summary_text(summary)
+        assert ("not settled: not under 5 deg for the last 600 s" in text) is not settled
+
     def test_what_was_always_within_has_settled_at_once(self, audit):
         assert self.tilted(np.full(TICKS, 1.0)).summary(audit)["axis1_deg"]["settle_orbits_5deg"] == 0.0
 
@@ -272,6 +282,8 @@ class TestSpin:
         left = np.full(TICKS, 0.02)
         left[-1] = 0.0211
         assert "settle_s_1e-3" not in self.spinning(audit, left)["spin_radps"], "out again at the end"
+        left[:-599], left[-599:] = 0.0, 0.02
+        assert "settle_s_1e-3" not in self.spinning(audit, left)["spin_radps"], "reached just before the end"
         assert spin["max_dev_last_orbit"] == pytest.approx(0.01)
 
 
@@ -290,6 +302,19 @@ class TestTally:
             {"t_s": 17.25, "node": "FSW", "event": 4, "severity": 2, "argument": -5},
             {"t_s": 18.0, "node": "PLANT", "event": 9, "severity": 1, "argument": 3},
         ]
+
+    def test_all_events_are_counted_and_the_first_kept_and_the_cut_is_said(self, audit):
+        tally = BusTally(self.EPOCH_US)
+        for tick in range(MAX_EVENTS + 1):
+            tally.take(self.entry(FswEvent(1, 1, tick, 3).encode(), tick))
+            if tick == MAX_EVENTS - 1:
+                whole = Made(error_of(np.full(10, 1.0))).summary(audit, tally=tally)
+                assert (whole["event_count"], len(whole["events"])) == (MAX_EVENTS, MAX_EVENTS)
+                assert "events " not in summary_text(whole)
+        assert (tally.event_count, len(tally.events)) == (MAX_EVENTS + 1, MAX_EVENTS)
+        summary = Made(error_of(np.full(10, 1.0))).summary(audit, tally=tally)
+        assert summary["event_count"] == MAX_EVENTS + 1
+        assert "201; the first 200 of 201 events are in summary.json" in summary_text(summary)
 
     def test_refusals_are_counted(self):
         tally = BusTally(self.EPOCH_US)

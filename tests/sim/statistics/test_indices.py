@@ -5,6 +5,7 @@ import pytest
 from scipy.special import ndtri, stdtrit
 
 from sim.statistics.indices import POINTS, Interpretation, index_histories, percentile, profile, table
+from sim.statistics.windows import Windows, mean_and_relative
 
 TEMPORAL, ENSEMBLE, MIXED = Interpretation.TEMPORAL, Interpretation.ENSEMBLE, Interpretation.MIXED
 
@@ -20,10 +21,28 @@ def test_an_offset_is_all_mean_and_a_jitter_all_relative():
     assert found["ape"] == pytest.approx(np.linalg.norm(error, axis=1))
 
 
-def test_a_rest_shorter_than_the_window_has_no_mean():
-    found = index_histories(np.ones((250, 3)), np.zeros((250, 3)), window=100)
-    assert [len(found[name]) for name in ("ape", "mpe", "rpe", "ake")] == [250, 2, 200, 250]
-    assert len(index_histories(np.ones((40, 3)), np.zeros((40, 3)), window=100)["mpe"]) == 1
+def test_the_last_window_ends_with_the_run_and_overlaps_the_one_before():
+    """0 but in the last 30 of 250 rows: of the last 100, the mean is 0.3 of it."""
+    error = np.zeros((250, 3))
+    error[220:, 1] = 10.0
+    found = index_histories(error, np.zeros((250, 3)), window=100)
+    assert found["mpe"] == pytest.approx([0.0, 0.0, 3.0])
+    assert found["rpe"] == pytest.approx([0.0] * 200 + [3.0] * 20 + [7.0] * 30)
+    short = index_histories(error[-40:], np.zeros((40, 3)), window=100)
+    assert short["mpe"] == pytest.approx([7.5])
+    assert short["rpe"] == pytest.approx([7.5] * 10 + [2.5] * 30)
+
+
+@pytest.mark.parametrize("window", [1, 7, 100, 250, 400])
+def test_windows_are_the_same_however_the_errors_come(window):
+    error = np.random.default_rng(11).normal(size=(250, 3))
+    whole = mean_and_relative(error, window)
+    for cuts in ((), (1,), (99, 100, 101), (0, 249), range(0, 250, 13)):
+        windows = Windows(window)
+        found = [windows.take(part) for part in np.split(error, cuts)] + [windows.rest()]
+        for expected, parts in zip(whole, zip(*found, strict=True), strict=True):
+            assert np.concatenate(parts) == pytest.approx(expected, rel=1e-12)
+    assert len(whole[1]) == 250
 
 
 def test_a_profile_has_the_quantiles_and_the_largest():

@@ -10,6 +10,7 @@ from click.testing import CliRunner
 from sim.campaign.claim import Claim, Study
 from sim.campaign.code_digest import code_digest
 from sim.campaign.flight import FlightResult, Order
+from sim.campaign.study import Figure, Group, campaign
 from sim.design.predictive.time_optimal import NoSlewError
 from sim.errors import HarnessError
 from sim.validate import command, flight_rows
@@ -88,6 +89,25 @@ class TestCommand:
         monkeypatch.chdir(tmp_path)
         self.call()
         assert (tmp_path / "validation.md").exists()
+
+    def test_what_too_few_satellites_decide_is_told_and_is_no_failure(self, monkeypatch):
+        """A median that a whole population would miss; and a healthy unit that is isolated, which fails."""
+        order = Order("microsat")
+        figures = [
+            Figure("median", "Pointing", "deg", lambda flight: 9.0, "median", high=2.0),
+            Figure("isolated", "Isolated", "1", lambda flight: flight.figures["isolated"], high=0.0),
+        ]
+        for isolated, code in ((0.0, 0), (1.0, 1)):
+            few = campaign("population.x", "", [Group("", (order,))], figures, "satellites", 30)
+            task = partial(FlightResult, order, {}, {"isolated": isolated})
+            few = replace(few, tasks=(task,))
+            monkeypatch.setattr(command, "all_studies", lambda satellites, few=few: [few])
+            result = self.call("--satellites", "1")
+            assert result.exit_code == code
+            assert "too few to judge population.x.median: Pointing: 9 deg" in result.stdout
+            assert "[1 of the 30 satellites that it is claimed for]" in result.stdout
+            assert f"{1 - code} claim{'s' * code} met, {code} failed, 1 too few to judge" in result.stdout
+            assert "1 claim on a median or mean not judged: made for more satellites" in result.stderr
 
     def test_what_is_recorded_in_parts_is_one_page(self, tmp_path, monkeypatch, study):
         parts = [study("a", [1.0]), study("b", [20.0], has_flights=True)]

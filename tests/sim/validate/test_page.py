@@ -4,6 +4,7 @@ import pytest
 
 from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Spread, Threshold
 from sim.campaign.runner import StudyResult
+from sim.validate.outcomes import as_record
 from sim.validate.page import as_json, line, loose, render, suites, tally
 
 CLAIM = Claim("a.b", "Least | most", "Somebody 2001", "deg", low=1.0, high=2.0, threshold=Threshold.PAPER)
@@ -69,6 +70,22 @@ class TestPage:
         assert "fitted" in cases["a.e"].skipped
         assert not cases["a.e"].failure
         assert not cases["a.b"].skipped
+
+    def test_what_too_few_flights_say_is_shown_as_no_verdict(self, study):
+        claim = Claim("a.f", "Pointing, median", "Drawn", "deg", high=100.0)
+        few = ClaimOutcome(claim, ClaimVerdict.TOO_FEW, 2.0, "3 of the 30 satellites that it is claimed for")
+        assert line(few) == (
+            "too few to judge a.f: Pointing, median: 2 deg (<= 100, own choice)  "
+            "[3 of the 30 satellites that it is claimed for]"
+        )
+        assert tally([few]) == "0 claims met, 0 failed, 1 too few to judge"
+        finished = [StudyResult(study("a", []), (few,), (), 1.0)]
+        (case,) = suites(finished)["a"]
+        assert (case.failure, case.skipped) == ("", line(few))
+        assert "| 2 deg of 3 of the 30 satellites that it is claimed for |" in render([few], finished, 1.0)
+        assert as_json(few)["verdict"] == "too few to judge"
+        assert loose([few]) == []
+        assert as_record(finished) == {}
 
     def test_a_limit_of_one_s_own_far_from_the_figure_is_named_unless_it_says_why(self):
         outcomes = [

@@ -15,7 +15,7 @@ from sim.commissioning.recorded.result_files import check_results, write_result
 from sim.console import answer, say, warn
 from sim.errors import HarnessError
 from sim.record import run_dir
-from sim.scenario.schema import flight_table, load
+from sim.scenario.schema import flight_table
 
 
 def calibrate(
@@ -30,10 +30,7 @@ def calibrate(
     """
     log, folder = run_dir.locate(run_or_log)
     check_results({"--out": out, "--page": page}, _read(log, scenario))
-    beside = folder / run_dir.SCENARIO
-    if scenario is None and not beside.is_file():
-        raise HarnessError(f"{log}: no {run_dir.SCENARIO} beside it: name its scenario by --scenario")
-    table = flight_table(load(scenario or str(beside), settings))
+    table = flight_table(run_dir.scenario_of_log(log, folder, scenario, settings))
     if table.calibration.model_dump(exclude_none=True):
         warn(
             "the scenario's table is calibrated already; the log holds what the boards sent, and so is judged"

@@ -7,11 +7,12 @@ import pytest
 
 from fsw.wire.messages import Mode
 from sim.report.charts.lines import MEAN_S, Lines, Spans
+from sim.scenario.schema import load
 
 
 def in_blocks(run, *cuts, **truth):
     truth, estimates = run.truth() | truth, run.estimates()
-    lines, edges = Lines(run.ticks, tick_hz=1), (0, *cuts, run.ticks)
+    lines, edges = Lines(run.ticks, run.scenario), (0, *cuts, run.ticks)
     for first, past in itertools.pairwise(edges):
         rows = slice(first, past)
         lines.take({name: history[rows] for name, history in truth.items()}, estimates.part(rows))
@@ -63,11 +64,11 @@ def test_a_filter_that_estimated_at_some_time_is_known_to_have(made_run):
     assert in_blocks(run, 10).has_estimates
     unknown = run.estimates()
     unknown.covariance[:] = np.nan
-    lines = Lines(50, 1)
+    lines = Lines(50, run.scenario)
     lines.take(run.truth(), unknown)
     assert not lines.has_estimates
 
 
 def test_a_flight_without_a_tick_has_no_lines():
-    lines = Lines(0, 1)
+    lines = Lines(0, load("microsat"))
     assert (len(lines.places), lines.torques(), lines.ticks) == (0, {}, 0)

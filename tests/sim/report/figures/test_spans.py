@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.report.figures.spans import held_from, spans
+from sim.report.figures.spans import spans
 
 
 @pytest.mark.parametrize(
@@ -18,11 +18,3 @@ from sim.report.figures.spans import held_from, spans
 )
 def test_each_span_has_its_first_tick_and_the_one_past_its_last(ticks, expected):
     assert spans(np.array([tick == "#" for tick in ticks], dtype=bool)) == expected
-
-
-@pytest.mark.parametrize(
-    ("ticks", "expected"),
-    [("", None), ("###.", None), ("....", None), ("####", 0), ("##.#", 3), (".#.##", 3)],
-)
-def test_what_holds_to_the_end_is_told_by_its_first_tick(ticks, expected):
-    assert held_from(np.array([tick == "#" for tick in ticks], dtype=bool)) == expected

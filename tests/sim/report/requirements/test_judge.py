@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sim.audit.findings import DrivenPulse
-from sim.report.requirements.gather import HELD_S
 from sim.report.requirements.judge import Outcome
+from sim.statistics.settling import HELD_S
 
 
 def ape(**values):

@@ -104,11 +104,15 @@ class TestEffort:
         return {"q_body_from_orbit": q, "m_body_am2": np.asarray(m, dtype=float)}
 
     def test_counts_until_it_has_left_the_band_for_the_last_time(self):
-        truth = self.truth(
-            [60.0, 4.0, 6.0, 4.9, 1.0], [[1, 2, 0], [3, 0, 0], [0, 0, -2], [9, 0, 0], [0, 9, 0]]
-        )
-        found = posat1.effort(load("posat1"), truth, estimates(5))
+        angles_deg, m = [60.0, 4.0, 6.0, 4.9], [[1, 2, 0], [3, 0, 0], [0, 0, -2], [9, 0, 0]]
+        truth = self.truth([*angles_deg, *[1.0] * 599], [*m, *[[0, 9, 0]] * 599])
+        found = posat1.effort(load("posat1"), truth, estimates(603))
         assert found["m2_until_settled"] == pytest.approx(1 + 4 + 9 + 4)
+
+    def test_counts_the_whole_flight_where_it_has_not_been_seen_to_stay(self):
+        truth = self.truth([60.0, *[1.0] * 599], [[1, 0, 0]] * 600)
+        found = posat1.effort(load("posat1"), truth, estimates(600))
+        assert found["m2_until_settled"] == pytest.approx(600)
 
     def test_the_largest_component_is_told_of_the_full_scale(self):
         scenario = load("posat1", posat1.FREE)

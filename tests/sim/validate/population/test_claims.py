@@ -63,6 +63,24 @@ def test_fewer_where_fewer_are_asked_for(studies):
         ]
 
 
+def test_of_a_few_satellites_each_is_judged_and_no_median_or_mean(studies):
+    """Too few pass or fail no claim on a population, however good or bad they are."""
+    for few in population.studies(most=2):
+        outcomes = (
+            few.conclude(flights(few, change={"pointing_deg": 2.4, "nees": 900.0})) if few.tasks else []
+        )
+        unjudged = {o.claim.id.rpartition(".")[2] for o in outcomes if o.verdict is ClaimVerdict.TOO_FEW}
+        combined = {figure.id for figure in few.figures if figure.of in ("median", "mean")}
+        assert unjudged == (combined if few.tasks else set())
+        assert {o.verdict for o in outcomes if o.verdict is not ClaimVerdict.TOO_FEW} <= {ClaimVerdict.PASS}
+    two = population.studies(most=2)[0]
+    bad = {"inside_2": 0.9, "wrong_10deg_s": 61.0, "in_point": 0.0}
+    judged = {o.claim.id: o.verdict for o in two.conclude(flights(two, change=bad, isolated=["coil 0"]))}
+    for name in ("isolated", "inside_worst", "wrong", "in_point"):
+        assert judged[f"population.50kg.{name}"] is ClaimVerdict.FAIL
+    assert {study.made_for for study in studies.values() if "50kg_per" not in study.id} == {100, 30}
+
+
 def test_a_study_without_satellites_is_not_judged(studies):
     empty = population.large_dipoles([])
     assert {outcome.verdict for outcome in empty.conclude([])} == {ClaimVerdict.ABSENT}
