@@ -165,7 +165,8 @@ def _update(
         return Observation(readings, None, state.estimator, UNKNOWN)
     if config.estimator.perfect:
         return Observation(readings, reference, state.estimator, perfect_attitude(readings, state.attitude))
-    findings = fdir.examine(readings, state.health, reference, config.fdir)
+    known = state.estimator.estimate if state.attitude.valid else None
+    findings = fdir.examine(readings, state.health, reference, config.fdir, known)
     readings = fdir.trusted(readings, state.health, findings)
     updated, used = update(state.estimator, readings, reference, config.estimator)
     attitude = orbital_attitude(updated.estimate, reference, config.estimator.valid_sigma_rad)

@@ -8,7 +8,7 @@ from pydantic import Field, Strict, model_validator
 from fsw.core.algebra.vector import Vec3, unit
 from fsw.core.estimation.cells.cell_set import CellSet, Shade
 from fsw.core.estimation.parameters import MOST_CELLS
-from fsw.input.schema import Positive, Section, Triple
+from fsw.input.schema import NotNegative, Positive, Section, Triple
 
 QUANTUM = 1.0 / 128.0
 """Step of a current on the bus, as a fraction of full sunlight."""
@@ -47,12 +47,14 @@ class CellTable(CellShapes):
     """Sun cells as the flight software knows them.
 
     ``full_sun`` is what each shows facing the Sun, as a fraction of its nominal current; ``noise_percent`` is
-    of full sunlight, and so is ``dark_percent``, below which a cell counts as dark. ``albedo`` is the
+    of full sunlight, and so are ``dark_percent``, below which a cell counts as dark, and ``quantum_percent``,
+    the step of a current where it is coarser than that of the bus, 0: it is not. ``albedo`` is the
     fraction of sunlight that the Earth reflects; with 0 the Earth's light is not modelled.
     """
 
     full_sun: Annotated[tuple[Positive, ...], Strict(False)] | None = None
     noise_percent: Positive = 1.0
+    quantum_percent: NotNegative = 0.0
     dark_percent: float = Field(default=5.0, gt=0.0, le=20.0)
     albedo: float = Field(default=0.3, ge=0.0, le=1.0)
 
@@ -72,17 +74,18 @@ def cell_set(table: CellTable, excess_sigma: float, gain_sigma: float, light_sig
         gain_sigma: of the relative error of a gain.
         light_sigma: of the albedo; 0 where the Earth's light is not modelled.
     """
-    normals = tuple(unit(normal) for normal in table.normals)
+    normals, step = tuple(unit(normal) for normal in table.normals), 0.01 * table.quantum_percent
     return CellSet(
         normals_body=normals,
         full_sun=table.full_sun or (1.0,) * len(normals),
         shades=tuple(_shades(table, number) for number in range(1, len(normals) + 1)),
         dark=0.01 * table.dark_percent,
-        sigma=hypot(0.01 * table.noise_percent, QUANTUM / 12.0**0.5),
+        sigma=hypot(0.01 * table.noise_percent, max(QUANTUM, step) / 12.0**0.5),
         excess_sigma=excess_sigma,
         gain_sigma=gain_sigma,
         light_sigma=light_sigma,
         albedo=table.albedo,
+        step=step,
     )
 
 

@@ -27,7 +27,7 @@ from fsw.core.orbit.propagation import Orbit, circular_orbit, sgp4_orbit
 from fsw.core.rates import RateGroup, RateTable
 from fsw.input.schema import TableError
 from fsw.table.calibration import calibration, coil_axes, own_field, stray_axes
-from fsw.table.estimator import estimator_config, plausibility_config
+from fsw.table.estimator import estimator_config, of_steps, plausibility_config
 from fsw.table.own_law import with_own_law
 from fsw.table.schedules import planned_pulses, schedules
 from fsw.table.sections import CoilTable, ModesTable, OrbitTable, TelemetryTable
@@ -157,7 +157,7 @@ def _full_scale(coils: CoilTable) -> float:
 
 def _fdir(table: FlightTable, timing: PulseConfig, mekf: MekfConfig) -> FdirConfig:
     given, tick_hz = table.fdir, table.time.tick_hz
-    budget = weights(given.false_alarm_days, 1.0 / tick_hz)
+    budget = weights(given.false_alarm_days, 1.0 / tick_hz, of_steps(table.estimator))
     return FdirConfig(
         plausibility=plausibility_config(table),
         sensors=SensorConfig(budget, credibility_config(mekf), mekf),

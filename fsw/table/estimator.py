@@ -7,9 +7,11 @@ from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.start.first import StartLimits
 from fsw.core.fdir.sensors.plausibility import PlausibilityConfig
+from fsw.core.fdir.sensors.standstill import Steps
 from fsw.table.calibration import MagnetometerTable, largest_field_nt
 from fsw.table.cells import cell_set
 from fsw.table.ordinary import mean_moment
+from fsw.table.sections import EstimatorTable
 from fsw.table.table import FlightTable
 from fsw.table.uncertainty import (
     LARGEST_FIELD_T,
@@ -51,7 +53,7 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
             tick_s,
             priors(known, table.body.inertia),
             wheel_body_nms=table.body.wheel_nms,
-            magnetometer_sigma_t=tuning.magnetometer_sigma_nt * NT,
+            magnetometer_sigma_t=field_noise_nt(tuning) * NT,
             sun_sigma_rad=_sun_sigma_rad(table),
             attitude_sigma_rad=START_SIGMA_RAD
             if cells is None
@@ -82,12 +84,29 @@ def table_bounds(table: FlightTable) -> Uncertainty:
     return bounds(table.uncertainty, table.ordinary, albedo)
 
 
+def field_noise_nt(tuning: EstimatorTable) -> float:
+    """Standard deviation of a reading: noise, and the error within a step, which is uniform: q / sqrt 12."""
+    return hypot(tuning.magnetometer_sigma_nt, tuning.magnetometer_quantum_nt / sqrt(12.0))
+
+
+def sun_noise_rad(tuning: EstimatorTable) -> float:
+    """The same of the Sun's direction."""
+    return hypot(radians(tuning.sun_sigma_deg), tuning.sun_quantum / sqrt(12.0))
+
+
+def of_steps(tuning: EstimatorTable) -> tuple[float, float]:
+    """The part of the variance of field and Sun that is the error within a step."""
+    field_nt, sun = tuning.magnetometer_quantum_nt / sqrt(12.0), tuning.sun_quantum / sqrt(12.0)
+    return (field_nt / field_noise_nt(tuning)) ** 2, (sun / sun_noise_rad(tuning)) ** 2
+
+
 def _sun_sigma_rad(table: FlightTable) -> float:
     """The noise of the Sun's direction; with Sun cells, from their noise and the bounds of gain and light."""
     if table.cells is None:
-        return radians(table.estimator.sun_sigma_deg)
+        return sun_noise_rad(table.estimator)
     known = table_bounds(table)
-    return hypot(0.01 * table.cells.noise_percent, SIDE * known.cell_gain_part, SIDE * known.cell_light)
+    errors = (0.01 * table.cells.noise_percent, SIDE * known.cell_gain_part, SIDE * known.cell_light)
+    return hypot(*errors, 0.01 * table.cells.quantum_percent / sqrt(12.0))
 
 
 def _cells(table: FlightTable, known: Uncertainty) -> CellSet | None:
@@ -104,7 +123,7 @@ def plausibility_config(table: FlightTable) -> PlausibilityConfig:
     flown over the orbit's radius.
     """
     known, tuning, sigmas = table_bounds(table), table.estimator, sqrt(GATE_NIS)
-    noise_t, noise_rad = tuning.magnetometer_sigma_nt * NT, _sun_sigma_rad(table)
+    noise_t, noise_rad = field_noise_nt(tuning) * NT, _sun_sigma_rad(table)
     model = known.mag_scale_part + 3.0 * known.along_track_m / ORBIT_RADIUS_M
     field_t = sqrt(3.0) * (known.mag_bias_t + sigmas * noise_t)
     sensor = table.calibration.magnetometer or MagnetometerTable()
@@ -117,4 +136,13 @@ def plausibility_config(table: FlightTable) -> PlausibilityConfig:
         sun_norm=sigmas * noise_rad,
         late_ticks=ceil(known.latency_s * table.time.tick_hz - 1e-9),
         cells=_cells(table, known),
+        steps=_steps(table),
     )
+
+
+def _steps(table: FlightTable) -> Steps | None:
+    """The steps of the readings; None where both are continuous."""
+    tuning = table.estimator
+    if not (tuning.magnetometer_quantum_nt or tuning.sun_quantum):
+        return None
+    return Steps(tuning.magnetometer_quantum_nt * NT, tuning.sun_quantum, 1.0 / table.time.tick_hz)

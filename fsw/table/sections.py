@@ -12,13 +12,7 @@ from fsw.core.laws.table import LAWS
 from fsw.core.orbit.propagation import sgp4_orbit
 from fsw.input.near import did_you_mean
 from fsw.input.own_code import short_name
-from fsw.input.schema import (
-    NotNegative,
-    Positive,
-    Section,
-    Square,
-    Triple,
-)
+from fsw.input.schema import NotNegative, Positive, Section, Square, Triple
 from fsw.table.inertia import check_inertia, three_numbers
 
 CIRCULAR_KEYS = ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")
@@ -225,10 +219,16 @@ class ControlTable(Section):
 
 
 class EstimatorTable(Section):
-    """Noise of the sensors, rate at start-up, and standard deviation up to which the attitude is valid."""
+    """Noise of the sensors, rate at start-up, and standard deviation up to which the attitude is valid.
+
+    ``magnetometer_quantum_nt`` and ``sun_quantum`` are steps of a component of field and Sun vector, where
+    they are coarser than those of the bus; 0: they are not.
+    """
 
     magnetometer_sigma_nt: Positive
+    magnetometer_quantum_nt: NotNegative = 0.0
     sun_sigma_deg: Positive
+    sun_quantum: NotNegative = 0.0
     rate_sigma_degps: Positive
     valid_sigma_deg: Positive
 

@@ -54,6 +54,12 @@ from fsw.table.wheel import WheelTable, check_wheel_inertia
 
 LATER_BOUNDS = ("torque_variation_nm", "cell_gain_percent", "cell_light_percent")
 """Keys of ``[uncertainty]`` that earlier tables do not have."""
+LATER_STEPS = (
+    ("estimator", "magnetometer_quantum_nt"),
+    ("estimator", "sun_quantum"),
+    ("cells", "quantum_percent"),
+)
+"""Steps of readings, which they do not have either."""
 
 UNMET = {
     Need.PULSES: "with coils.driver = 'continuous': it plans pulses; allowed is coils.driver = 'pulsed'",
@@ -152,7 +158,7 @@ class FlightTable(Section):
     def crc(self) -> int:
         """CRC-32 of the table in canonical JSON; of a law of one's own the digest counts, not the path.
 
-        A key that earlier tables do not have does not count where it is left out.
+        A key that earlier tables do not have does not count where it is left out, nor a step that is none.
         """
         values = self.model_dump(mode="json")
         for key in LATER_BOUNDS:
@@ -161,6 +167,9 @@ class FlightTable(Section):
         for section in ("cells", "wheel"):
             if getattr(self, section) is None:
                 del values[section]
+        for section, key in LATER_STEPS:
+            if section in values and not values[section][key]:
+                del values[section][key]
         values |= {"calibration": self.calibration.model_dump(mode="json", exclude_none=True)}
         if not values["calibration"]:
             del values["calibration"]

@@ -113,7 +113,8 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         3,
         SensorFault.FROZEN,
         "A sensor whose sample stands still while the other's moves or is missing is isolated.",
-        f"for longer than `uncertainty.latency_s`; {ISOLATES}",
+        "for longer than `uncertainty.latency_s`, and a quantised one until what it measures has moved by "
+        f"more than its step hides; {ISOLATES}",
     ),
     _sensor(
         4,

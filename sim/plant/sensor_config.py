@@ -87,6 +87,7 @@ class SunCellsConfig:
     Attributes:
         cells: each of them.
         noise: standard deviation per sample.
+        quantum: step of a current, 0 for none.
         threshold: below it a current is 0.
         albedo: mean fraction of sunlight that the Earth reflects, 0 for none.
         albedo_spread: standard deviation of its variation over the clouds, as a fraction of it.
@@ -98,6 +99,7 @@ class SunCellsConfig:
 
     cells: tuple[CellConfig, ...]
     noise: float = 0.0
+    quantum: float = 0.0
     threshold: float = 0.0
     albedo: float = 0.0
     albedo_spread: float = 0.0

@@ -182,6 +182,7 @@ def _sun_cells(section: CellsSection) -> SunCellsConfig:
             for number, (normal, gain, turn_deg) in enumerate(each, start=1)
         ),
         noise=0.01 * section.noise_percent,
+        quantum=0.01 * section.quantum_percent,
         threshold=0.01 * section.threshold_percent,
         albedo=section.albedo,
         albedo_spread=section.albedo_spread,

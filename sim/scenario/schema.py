@@ -43,6 +43,7 @@ from sim.scenario.sections import (
     ScenarioWheel,
     SensorsSection,
     onboard_cells,
+    onboard_steps,
     onboard_wheel,
 )
 from sim.scenario.telecommands import Telecommands
@@ -220,6 +221,7 @@ def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
     shared["estimator"] = {
         "magnetometer_sigma_nt": _with_floor(scenario.sensors.magnetometer.noise_nt, FIELD_MODEL_ERROR_NT),
         "sun_sigma_deg": _with_floor(scenario.sensors.sun.noise_deg, SUN_MODEL_ERROR_DEG),
+        **onboard_steps(scenario.sensors),
     }
     if scenario.sensors.cells is not None:
         shared["cells"] = onboard_cells(scenario.sensors.cells)

@@ -149,13 +149,15 @@ class CellsSection(CellShapes):
     """Physics of Sun cells, which replace the Sun sensor; lists are by cell, in the order of ``normals``.
 
     ``gain`` is the current over the nominal one, ``turn_deg`` the rotation vector from the nominal to the
-    true normal, body axes. Currents are in percent of the nominal one in full sunlight. ``albedo`` is the
-    mean fraction of sunlight that the Earth reflects, ``albedo_spread`` its relative standard deviation.
+    true normal, body axes. Currents are in percent of the nominal one in full sunlight, ``quantum_percent``
+    is their step, 0: that of the bus. ``albedo`` is the mean fraction of sunlight that the Earth reflects,
+    ``albedo_spread`` its relative standard deviation.
     """
 
     gain: Annotated[tuple[Positive, ...], Strict(False)] | None = None
     turn_deg: Annotated[tuple[Triple, ...], Strict(False)] | None = None
     noise_percent: NotNegative = 1.0
+    quantum_percent: NotNegative = 0.0
     threshold_percent: NotNegative = 2.0
     albedo: Part = 0.3
     albedo_spread: Part = 0.3
@@ -213,7 +215,25 @@ class DisturbanceSection(Section):
 def onboard_cells(section: CellsSection) -> Nested:
     """The cells as the onboard table has them: what is nominal, with the mean of the Earth's light."""
     nominal = section.model_dump(include={"normals", "shades", "albedo"})
-    return {**nominal, "noise_percent": max(section.noise_percent, LEAST_CELL_NOISE_PERCENT)}
+    return {
+        **nominal,
+        "noise_percent": max(section.noise_percent, LEAST_CELL_NOISE_PERCENT),
+        "quantum_percent": _coarser(section.quantum_percent, BUS_STEP_PERCENT),
+    }
+
+
+def onboard_steps(section: SensorsSection) -> Nested:
+    """The steps of magnetometer and Sun sensor as the onboard table has them: those that the bus shows."""
+    return {
+        "magnetometer_quantum_nt": _coarser(section.magnetometer.quantum_nt, BUS_STEP_NT),
+        "sun_quantum": _coarser(section.sun.quantum, BUS_STEP_SUN),
+    }
+
+
+def _coarser(step: float, of_bus: float) -> float:
+    return step if step > of_bus else 0.0
 
 
 LEAST_CELL_NOISE_PERCENT = 0.1
+BUS_STEP_NT, BUS_STEP_SUN, BUS_STEP_PERCENT = 2.0, 2.0**-14, 100.0 * 2.0**-7
+"""Steps of field, Sun vector and cell current in their messages."""

@@ -41,7 +41,7 @@ class EvidenceWeights(NamedTuple):
     ``against``: a bad sample against a unit, and a good one in its favour; ``fits`` and ``misfits``: a sample
     of an isolated unit; ``agrees``: a pair of samples of which only their angle can be compared.
     ``blind_ticks``: how long a prediction without samples stays valid; ``averaged``: samples in the mean of
-    innovations.
+    innovations; ``lasting``: variance of that mean, of field and of Sun, over what it is of white ones.
     """
 
     threshold: float
@@ -51,17 +51,22 @@ class EvidenceWeights(NamedTuple):
     agrees: float
     blind_ticks: int
     averaged: float
+    lasting: tuple[float, float] = (1.0, 1.0)
 
 
-def weights(false_alarm_days: float, tick_s: float) -> EvidenceWeights:
+def weights(
+    false_alarm_days: float, tick_s: float, of_steps: tuple[float, float] = (0.0, 0.0)
+) -> EvidenceWeights:
     """The weights that keep the budget.
 
     Args:
         false_alarm_days: mean time between false alarms of a unit.
         tick_s: length of a tick.
+        of_steps: part of the variance of a sample, of field and of Sun, that is the error within a step of a
+            quantised reading: it lasts while the reading stands still, and no mean is without it.
     """
-    part = tick_s / CORRELATION_S
-    fits = -log(CHANCE)
+    part, averaged = tick_s / CORRELATION_S, 2.0 * LAG_S / tick_s - 1.0
+    fits, (of_field, of_sun) = -log(CHANCE), of_steps
     return EvidenceWeights(
         threshold=log(false_alarm_days * DAY_S / CORRELATION_S),
         against=part,
@@ -69,7 +74,8 @@ def weights(false_alarm_days: float, tick_s: float) -> EvidenceWeights:
         misfits=log(MISS / (1.0 - CHANCE)),
         agrees=part * fits / PAIR_NUMBERS,
         blind_ticks=round(BLIND_S / tick_s),
-        averaged=2.0 * LAG_S / tick_s - 1.0,
+        averaged=averaged,
+        lasting=(1.0 + averaged * of_field, 1.0 + averaged * of_sun),
     )
 
 
@@ -104,12 +110,13 @@ def mean_misfit(means: tuple[float, ...], weights: EvidenceWeights) -> float:
     """What the mean innovations of the sensor that is further off weigh against the estimate, nats.
 
     The log-likelihood ratio of a lasting deviation, and of a covariance ``INFLATION`` times the filter's:
-    half of chi square, which is n / ``INFLATION`` m^2 for white innovations with mean m over n samples.
+    half of chi square, which is n / ``INFLATION`` m^2 for white innovations with mean m over n samples, and
+    less by 1 + n p where the part p of their variance lasts.
 
     Args:
         means: of field and Sun, three numbers each, in standard deviations.
         weights: of the evidence.
     """
-    field, sun = means[:3], means[3:]
-    most = max(sum([mean * mean for mean in field]), sum([mean * mean for mean in sun]))
+    (of_field, of_sun), field, sun = weights.lasting, means[:3], means[3:]
+    most = max(sum([mean * mean for mean in field]) / of_field, sum([mean * mean for mean in sun]) / of_sun)
     return 0.5 * weights.averaged * most / INFLATION

@@ -80,9 +80,15 @@ def driven_am2(health: Health, view: CoilView, config: FdirConfig) -> Vec3:
     return coil_health.driven_am2(health.coils, view, config.coils)
 
 
-def examine(readings: Readings, health: Health, reference: Reference, config: FdirConfig) -> Findings:
-    """What the samples of this tick show by themselves."""
-    return plausibility.examine(health.sensors.memory, readings, reference, config.plausibility)
+def examine(
+    readings: Readings,
+    health: Health,
+    reference: Reference,
+    config: FdirConfig,
+    estimate: Estimate | None = None,
+) -> Findings:
+    """What the samples of this tick show by themselves; by an estimate, if it is valid, while they repeat."""
+    return plausibility.examine(health.sensors.memory, readings, reference, config.plausibility, estimate)
 
 
 def trusted(readings: Readings, health: Health, findings: Findings) -> Readings:

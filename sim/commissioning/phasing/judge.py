@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fsw.table.estimator import field_noise_nt, sun_noise_rad
 from fsw.table.table import FlightTable
 from sim.commissioning.calibrate.flown.coil_axes import CoilAxes, coil_axes
 from sim.commissioning.calibrate.flown.coil_field import CoilResponse, coil_response
@@ -129,8 +130,8 @@ def _observed(samples: Samples, along: Expected, table: FlightTable) -> FreeSamp
         samples.sun[free],
         along.b_eci_nt[free],
         along.sun_eci[free],
-        table.estimator.magnetometer_sigma_nt,
-        float(np.radians(table.estimator.sun_sigma_deg)),
+        field_noise_nt(table.estimator),
+        sun_noise_rad(table.estimator),
     )
 
 

@@ -75,9 +75,9 @@ class MagnetometerPhysics:
             sensed = self._delay(sensed)
         (bx, by, bz), (sx, sy, sz), (ox, oy, oz) = sensed, config.scale, config.bias_t
         sigma, quantum, most = config.noise_t, config.quantum_t, config.saturation_t
-        x = _quantise(sx * bx + ox + sigma * next(noise), quantum)
-        y = _quantise(sy * by + oy + sigma * next(noise), quantum)
-        z = _quantise(sz * bz + oz + sigma * next(noise), quantum)
+        x = quantise(sx * bx + ox + sigma * next(noise), quantum)
+        y = quantise(sy * by + oy + sigma * next(noise), quantum)
+        z = quantise(sz * bz + oz + sigma * next(noise), quantum)
         if -most <= x <= most and -most <= y <= most and -most <= z <= most:
             return wired((x, y, z), config.wiring), True
         limited = (min(max(x, -most), most), min(max(y, -most), most), min(max(z, -most), most))
@@ -126,9 +126,9 @@ class SunSensorPhysics:
         x, y, z = x + ay * z - az * y, y + az * x - ax * z, z + ax * y - ay * x
         factor, quantum = 1.0 / sqrt(x * x + y * y + z * z), self._config.quantum
         return (
-            _quantise(x * factor, quantum),
-            _quantise(y * factor, quantum),
-            _quantise(z * factor, quantum),
+            quantise(x * factor, quantum),
+            quantise(y * factor, quantum),
+            quantise(z * factor, quantum),
         ), True
 
     def _in_view(self, light_body: Vec3) -> bool:
@@ -168,5 +168,6 @@ def _skewed(non_orthogonality_rad: Vec3, axes: Mat3) -> Mat3:
     return (axes[0], transform(body_from_axes, (xy, yy, 0.0)), transform(body_from_axes, (xz, zy, zz)))
 
 
-def _quantise(value: float, quantum: float) -> float:
+def quantise(value: float, quantum: float) -> float:
+    """The multiple of a step nearest to a value; the value itself without a step."""
     return quantum * round(value / quantum) if quantum else value

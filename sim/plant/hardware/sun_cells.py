@@ -1,11 +1,11 @@
-"""The physics of coarse Sun cells: cosine, gain, shading, the Earth's light, threshold, noise."""
+"""The physics of coarse Sun cells: cosine, gain, shading, the Earth's light, noise, step, threshold."""
 
 from math import exp, sqrt
 
 import numpy as np
 
 from sim.plant.environment.earth_view import earth_view
-from sim.plant.hardware.sensors import Delay
+from sim.plant.hardware.sensors import Delay, quantise
 from sim.plant.random_streams import normals
 from sim.plant.rotation import Mat3, Vec3, from_vector, matrix, transform
 from sim.plant.sensor_config import CellConfig, SunCellsConfig
@@ -15,7 +15,7 @@ CLOUDS_S = 300.0
 
 
 class SunCellPhysics:
-    """c = g (lit max(0, n . s) + A light(n)) + noise, and 0 below the threshold.
+    """c = g (lit max(0, n . s) + A light(n)) + noise, then quantised, and 0 below the threshold.
 
     n is the true normal, s the Sun, A the fraction of the light that the Earth reflects, which varies over
     the clouds as a first-order Markov process of time constant ``CLOUDS_S``; light(n) is ``earth_view``. A
@@ -65,6 +65,7 @@ class SunCellPhysics:
 
     def _current(self, cell: CellConfig, light: float) -> float:
         current = cell.gain * light + self._config.noise * next(self._noise)
+        current = quantise(current, self._config.quantum)
         return current if current >= self._config.threshold else 0.0
 
 

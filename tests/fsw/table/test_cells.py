@@ -33,6 +33,16 @@ def test_normals_are_made_unit_and_the_rest_goes_to_si():
     assert cells.sigma == pytest.approx(hypot(0.02, QUANTUM / sqrt(12.0)))
 
 
+def test_a_step_coarser_than_that_of_the_bus_is_the_error_of_a_current():
+    coarse = cell_set(table({"noise_percent": 2.0, "quantum_percent": 6.0}).cells, 0.1, 0.05, 0.08)
+    assert coarse.step == pytest.approx(0.06)
+    assert coarse.sigma == pytest.approx(hypot(0.02, 0.06 / sqrt(12.0)))
+    assert cell_set(table().cells, 0.1, 0.05, 0.08).step == 0.0
+    assert table({"quantum_percent": 0.0}).crc == table().crc != table({"quantum_percent": 6.0}).crc
+    limits = [plausibility_config(table({"quantum_percent": percent})) for percent in (0.0, 6.0)]
+    assert limits[1].sun_norm > limits[0].sun_norm
+
+
 def test_full_sun_is_nominal_unless_it_is_given():
     assert cell_set(table().cells, 0.1, 0.05, 0.08).full_sun == (1.0, 1.0, 1.0)
 
@@ -47,6 +57,10 @@ def test_full_sun_is_nominal_unless_it_is_given():
         ({"shades": [{"cell": 4, "axis": [1.0, 0.0, 0.0], "half_deg": 5.0}]}, "no such cell"),
         ({"shades": [{"cell": 1, "axis": [0.0, 0.0, 0.0], "half_deg": 5.0}]}, "axis must not be zero"),
         ({"albedo": 1.5}, "cells.albedo"),
+        (
+            {"quantum_percent": -0.5},
+            "cells.quantum_percent = -0.5 is not allowed: .* equal to 0",
+        ),
         ({"gain": [1.0]}, "cells.gain is not a known key"),
     ],
 )

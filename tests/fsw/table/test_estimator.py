@@ -10,7 +10,15 @@ from fsw.core.algebra.quaternion import normalise
 from fsw.core.estimation import mekf
 from fsw.core.estimation.parameters import NAMES, OF_CELLS
 from fsw.input.schema import merge
-from fsw.table.estimator import GATE_NIS, estimator_config, plausibility_config, table_bounds
+from fsw.table.estimator import (
+    GATE_NIS,
+    estimator_config,
+    field_noise_nt,
+    of_steps,
+    plausibility_config,
+    sun_noise_rad,
+    table_bounds,
+)
 from fsw.table.table import flight_table
 from fsw.table.uncertainty import UncertaintyTable, priors
 
@@ -34,6 +42,21 @@ class TestNoise:
         np.testing.assert_allclose(config.sun_noise, np.eye(3) * radians(0.4) ** 2, rtol=1e-12)
         start = np.sqrt(config.initial_covariance.diagonal()[:6])
         np.testing.assert_allclose(start, np.repeat([radians(5.0), radians(1.5)], 3), rtol=1e-12)
+
+    def test_of_a_quantised_reading_is_that_and_the_error_within_a_step(self):
+        noise = {"magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.4}
+        steps = {"magnetometer_quantum_nt": 600.0, "sun_quantum": 0.03}
+        config = configured(estimator=noise | steps).mekf
+        np.testing.assert_allclose(config.field_noise, np.eye(3) * (150e-9**2 + 600e-9**2 / 12.0), rtol=1e-12)
+        sun = radians(0.4) ** 2 + 0.03**2 / 12.0
+        np.testing.assert_allclose(config.sun_noise, np.eye(3) * sun, rtol=1e-12)
+        parts = of_steps(table_with(estimator=noise | steps).estimator)
+        assert parts == pytest.approx((600.0**2 / 12.0 / (150.0**2 + 600.0**2 / 12.0), 0.03**2 / 12.0 / sun))
+
+    def test_of_a_continuous_reading_is_that_to_the_bit(self):
+        tuning = table_with(estimator={"magnetometer_sigma_nt": 153.7, "sun_sigma_deg": 0.37}).estimator
+        assert (field_noise_nt(tuning), sun_noise_rad(tuning)) == (153.7, radians(0.37))
+        assert of_steps(tuning) == (0.0, 0.0)
 
     @pytest.mark.parametrize("tick_hz", [1, 4])
     def test_of_a_tick_follows_from_the_torque_s_bound(self, tick_hz):
@@ -105,6 +128,19 @@ class TestLimitsOfThePair:
         of_strength = "misalignment" not in key
         assert (twice.field_t + twice.field_part > once.field_t + once.field_part) is of_strength
         assert twice.angle_rad + twice.field_t / 3e-5 > once.angle_rad + once.field_t / 3e-5
+
+    def test_a_step_widens_them_and_is_the_one_below_which_a_reading_may_stand_still(self):
+        steps = {"magnetometer_quantum_nt": 600.0, "sun_quantum": 0.03}
+        plain = plausibility_config(table_with(uncertainty=EXACT, estimator=self.SENSORS))
+        table = table_with(uncertainty=EXACT, estimator=self.SENSORS | steps, time={"tick_hz": 4})
+        limits = plausibility_config(table)
+        assert plain.steps is None
+        assert limits.steps == pytest.approx((600e-9, 0.03, 0.25))
+        assert limits.field_t == pytest.approx(sqrt(3.0 * GATE_NIS * (150e-9**2 + 600e-9**2 / 12.0)))
+        assert limits.sun_norm == pytest.approx(sqrt(GATE_NIS * (radians(0.3) ** 2 + 0.03**2 / 12.0)))
+        assert limits.sun_norm > sqrt(3.0) * 0.03 / 2.0, "the length that rounding alone may give"
+        one = plausibility_config(table_with(estimator={"sun_quantum": 0.03}))
+        assert one.steps == (0.0, 0.03, 1.0)
 
     def test_of_an_exact_table_are_the_noise_s(self):
         limits = plausibility_config(table_with(uncertainty=EXACT, estimator=self.SENSORS))

@@ -162,6 +162,8 @@ PLANTED = [
     ("coils.on_fraction", 1.1, "a number above 0 and at most 1"),
     ("estimator.sun_sigma_deg", 0.0, "a number above 0"),
     ("estimator.rate_sigma_degps", -1.0, "a number above 0"),
+    ("estimator.magnetometer_quantum_nt", -1.0, "a number at least 0"),
+    ("estimator.sun_quantum", float("nan"), "a number at least 0"),
     ("estimator.bias", True, "estimator.bias is not a known key"),
     ("uncertainty.inertia_percent", 30.1, "a number at least 0 and at most 30"),
     ("uncertainty.residual_dipole_am2", -0.1, "a number at least 0"),
@@ -340,6 +342,12 @@ class TestChecksum:
                 sums.add(flight_table({section: {key: other}}, "x").crc)
         assert count >= 34
         assert len(sums) == count
+
+    @pytest.mark.parametrize("key", ["magnetometer_quantum_nt", "sun_quantum"])
+    def test_a_step_counts_where_there_is_one(self, key):
+        without = flight_table({}, "x").crc
+        assert flight_table({"estimator": {key: 0.0}}, "x").crc == without
+        assert flight_table({"estimator": {key: 0.5}}, "x").crc != without
 
     def test_how_a_number_is_written_does_not(self):
         assert flight_table(merge({}, {"coils": {"pulse_s": 3}}), "x").crc == flight_table({}, "x").crc

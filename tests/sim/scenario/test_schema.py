@@ -7,10 +7,13 @@ from math import hypot
 import pytest
 
 from fsw.input.schema import TableError
+from fsw.table.cells import QUANTUM
 from fsw.table.config import flight_config
+from fsw.wire.messages import MagField, SunVector
 from sim.plant.plant import Plant
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import flight_table, load, orbit_period_s, parse_settings, shipped
+from sim.scenario.sections import BUS_STEP_NT, BUS_STEP_PERCENT, BUS_STEP_SUN
 
 NAMES = [scenario.name for scenario in shipped()]
 TLE = (
@@ -263,6 +266,33 @@ class TestOnboardTable:
         )
         assert table.estimator.magnetometer_sigma_nt == pytest.approx(hypot(noise_nt, 20.0))
         assert table.estimator.sun_sigma_deg == pytest.approx(hypot(noise_deg, 0.02))
+
+    @pytest.mark.parametrize(
+        ("steps", "expected"),
+        [((2.0, 0.0, 0.0), (0.0, 0.0, 0.0)), ((200.0, 0.004, 5.0), (200.0, 0.004, 5.0))],
+        ids=["of the bus", "coarser"],
+    )
+    def test_the_table_has_the_steps_of_readings_that_are_coarser_than_the_bus(self, steps, expected):
+        field_nt, sun, percent = steps
+        table = flight_table(
+            load(
+                "microsat",
+                settings(
+                    f"sensors.magnetometer.quantum_nt={field_nt}",
+                    f"sensors.sun.quantum={sun}",
+                    f"sensors.cells={{normals=[[1, 0, 0]], quantum_percent={percent}}}",
+                ),
+            )
+        )
+        tuning = table.estimator
+        found = (tuning.magnetometer_quantum_nt, tuning.sun_quantum, table.cells.quantum_percent)
+        assert found == expected
+
+    def test_the_steps_of_the_bus_are_those_of_its_messages(self):
+        field, sun = MagField(1, 0.9, 2.9, 0.0, counter=0), SunVector(1, 0.0, 1.9 / 2**14, 0.0, counter=0)
+        assert MagField.decode(field.encode().data)[1:3] == (0.0, BUS_STEP_NT)
+        assert SunVector.decode(sun.encode().data).s_y == 2.0 * BUS_STEP_SUN
+        assert 100.0 * QUANTUM == BUS_STEP_PERCENT
 
     def test_flight_values_win_over_what_is_derived(self):
         table = flight_table(load("microsat", settings("flight.estimator.sun_sigma_deg=3.0")))

@@ -43,6 +43,11 @@ CONTINUOUS = ("coils.driver=continuous", "coils.max_dipole_am2=12")
         ),
         (["body.plates=[{area_m2=1, normal=[0, 0, 1], specular=1.1}]"], ["body.plates.0.specular"]),
         (["sensors.magnetometer.latency_s=-0.1"], ["sensors.magnetometer.latency_s", "at least 0"]),
+        (
+            ["sensors.cells={normals=[[1, 0, 0]], quantum_percent=-1}"],
+            ["cells.quantum_percent", "equal to 0"],
+        ),
+        (["flight.estimator.sun_quantum=-1"], ["[flight]: estimator.sun_quantum = -1", "at least 0"]),
         (["sensors.sun.latency_s=61"], ["sensors.sun.latency_s", "at most 60"]),
         (["sensors.sun.fov_half_deg=60"], ["sensors.sun", "both fov_half_deg and boresights"]),
         (["sensors.sun.boresights=[[1, 0, 0]]"], ["sensors.sun", "both fov_half_deg and boresights"]),

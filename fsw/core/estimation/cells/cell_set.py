@@ -45,6 +45,7 @@ class CellSet:
         gain_sigma: of the relative error of the gain.
         light_sigma: of the albedo.
         albedo: fraction of the sunlight that the Earth reflects; 0: its light is not modelled.
+        step: of a current, fraction of full sunlight; 0: that of the bus.
     """
 
     normals_body: tuple[Vec3, ...]
@@ -56,6 +57,7 @@ class CellSet:
     gain_sigma: float
     light_sigma: float
     albedo: float
+    step: float = 0.0
 
     @property
     def model_sigma(self) -> float:

@@ -8,7 +8,8 @@ taken with it. What speaks against a cell:
 - its gain, or what it shows beyond its model, exceeds ``SIGMAS`` of the standard deviations that the table
   allows;
 - it faces away from the Sun, and is brighter than that excess and the Earth, as all cells show it, allow;
-- its current does not change by one bit while the predicted one moves by ``STILL``.
+- its current does not change by one bit while the predicted one moves by ``STILL``, and by a step of its own
+  if it has one.
 
 A cell that is still is not used from the next tick on, whatever the evidence.
 
@@ -156,7 +157,7 @@ def _judged(
     shown = before._replace(still=False)
     if current != before.shown:
         shown = CellWatch(before.watch, current, predicted)
-    shown = shown._replace(still=abs(predicted - shown.predicted) > STILL)
+    shown = shown._replace(still=abs(predicted - shown.predicted) > STILL + cells.step)
     unclear = len(evidence.used.refused) > max(1, len(evidence.used.taken))
     verdict = _verdict(shown, cell, current, evidence.used, estimate, cells)
     if verdict is None and before.watch.fault and not evidence.used.refused:

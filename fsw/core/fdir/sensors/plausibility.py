@@ -1,5 +1,7 @@
 """What speaks against a sample by itself: checks that need no attitude, and no history but its repeats.
 
+Only a quantised reading repeats itself while all is well: ``standstill`` says for how long, by the estimate.
+
 Every limit is what the bounds of the table and the noise at the edge of the filter's gate allow in this tick.
 """
 
@@ -9,8 +11,10 @@ from typing import NamedTuple
 
 from fsw.core.algebra.vector import ZERO, Vec3, dot, norm
 from fsw.core.estimation.cells.cell_set import CellSet
+from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.samples import coils_idle, sensed_sun, usable_cells, usable_field
 from fsw.core.fdir.faults import Sensor, SensorFault
+from fsw.core.fdir.sensors.standstill import NO_MOTION, Motion, Steps, frozen, moved_on
 from fsw.core.gate.readings import Readings
 from fsw.core.orbit.earth import RADIUS_M
 from fsw.core.orbit.ephemeris import Reference
@@ -28,7 +32,7 @@ class PlausibilityConfig(NamedTuple):
 
     ``in_range_t``: in a field up to that strength no axis of the magnetometer saturates; ``sun_norm``: of the
     Sun vector's length; ``late_ticks``: how long a sample may be repeated; ``cells``: those that give the Sun
-    in place of a sensor.
+    in place of a sensor; ``steps``: of the readings, None if both are continuous.
     """
 
     field_t: float
@@ -38,23 +42,31 @@ class PlausibilityConfig(NamedTuple):
     sun_norm: float
     late_ticks: int
     cells: CellSet | None = None
+    steps: Steps | None = None
 
 
 class Memory(NamedTuple):
-    """The last samples as they were sent, and for how many ticks each has been repeated."""
+    """The last samples as they were sent, and for how many ticks each has been repeated.
+
+    ``motion``: what field and Sun have moved by meanwhile, None if both readings are continuous.
+    """
 
     field: Vec3 = ZERO
     sun: Vec3 = ZERO
     field_still: int = 0
     sun_still: int = 0
+    motion: Motion | None = None
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state, as is ``floats``."""
         return (self.field_still, self.sun_still)
 
     def floats(self) -> tuple[float, ...]:
-        """The samples."""
-        return (*self.field, *self.sun)
+        """The samples, and the motion."""
+        if self.motion is None:
+            return (*self.field, *self.sun)
+        (by_field, field_sigma), (by_sun, sun_sigma) = self.motion
+        return (*self.field, *self.sun, *by_field, field_sigma, *by_sun, sun_sigma)
 
 
 class Seen(NamedTuple):
@@ -121,7 +133,13 @@ class Findings(NamedTuple):
     shadow: bool = False
 
 
-def examine(memory: Memory, readings: Readings, reference: Reference, limits: PlausibilityConfig) -> Findings:
+def examine(
+    memory: Memory,
+    readings: Readings,
+    reference: Reference,
+    limits: PlausibilityConfig,
+    estimate: Estimate | None = None,
+) -> Findings:
     """Apply the checks to the samples of this tick.
 
     Args:
@@ -129,8 +147,13 @@ def examine(memory: Memory, readings: Readings, reference: Reference, limits: Pl
         readings: all that the boards sent, of isolated sensors too.
         reference: field and Sun as modelled.
         limits: largest deviations if all is well.
+        estimate: predicted to this tick, if it is valid; only quantised readings are judged by it.
     """
-    memory = _remember(memory, readings)
+    memory, late = _remember(memory, readings), limits.late_ticks
+    field_still, sun_still = still = memory.field_still > late, memory.sun_still > late
+    if limits.steps is not None:
+        motion = moved_on(memory.motion or NO_MOTION, still, estimate, reference, limits.steps)
+        memory, (field_still, sun_still) = memory._replace(motion=motion), frozen(motion, still, limits.steps)
     field, sun = usable_field(readings), sensed_sun(readings, limits.cells)
     seen = Seen(
         readings,
@@ -138,8 +161,8 @@ def examine(memory: Memory, readings: Readings, reference: Reference, limits: Pl
         sun,
         norm(reference.b_eci_t),
         sun is not None and _in_shadow(reference),
-        memory.field_still > limits.late_ticks,
-        memory.sun_still > limits.late_ticks,
+        field_still,
+        sun_still,
         limits,
     )
     causes = {Sensor.MAGNETOMETER: 0, Sensor.SUN_SENSOR: 0}
@@ -156,7 +179,7 @@ def examine(memory: Memory, readings: Readings, reference: Reference, limits: Pl
 
 
 def _remember(memory: Memory, readings: Readings) -> Memory:
-    field, sun, field_still, sun_still = memory
+    field, sun, field_still, sun_still, motion = memory
     if readings.field is not None:
         sample = (readings.field.b_x, readings.field.b_y, readings.field.b_z)
         field, field_still = sample, field_still + 1 if sample == field else 0
@@ -164,7 +187,7 @@ def _remember(memory: Memory, readings: Readings) -> Memory:
     if message is not None:
         sample = (message.s_x, message.s_y, message.s_z) if message.valid else DARK
         sun, sun_still = sample, sun_still + 1 if sample == sun and sample is not DARK else 0
-    return Memory(field, sun, field_still, sun_still)
+    return Memory(field, sun, field_still, sun_still, motion)
 
 
 def _in_shadow(reference: Reference) -> bool:

@@ -18,7 +18,15 @@ from fsw.core.estimation.mekf_config import MekfConfig, mekf_config
 from fsw.core.estimation.parameters import Prior
 from fsw.core.estimation.start.triad import triad
 from fsw.core.orbit.earth import MU_M3PS2
-from fsw.table.estimator import DRIVE_SIGMA, LEAST_NOISE_RTS, START_SIGMA_RAD, TORQUE_NOISE_RTS, table_bounds
+from fsw.table.estimator import (
+    DRIVE_SIGMA,
+    LEAST_NOISE_RTS,
+    START_SIGMA_RAD,
+    TORQUE_NOISE_RTS,
+    field_noise_nt,
+    sun_noise_rad,
+    table_bounds,
+)
 from fsw.table.ordinary import mean_moment
 from fsw.table.table import FlightTable
 from fsw.table.uncertainty import priors
@@ -123,8 +131,8 @@ def _config(table: FlightTable) -> MekfConfig:
         1.0 / table.time.tick_hz,
         of_table,
         wheel_body_nms=table.body.wheel_nms,
-        magnetometer_sigma_t=hypot(tuning.magnetometer_sigma_nt, SHEAR_NT) * NT,
-        sun_sigma_rad=float(np.radians(tuning.sun_sigma_deg)),
+        magnetometer_sigma_t=hypot(field_noise_nt(tuning), SHEAR_NT) * NT,
+        sun_sigma_rad=sun_noise_rad(tuning),
         attitude_sigma_rad=START_SIGMA_RAD,
         rate_sigma_radps=float(np.radians(tuning.rate_sigma_degps)),
         torque_noise_nm_rts=max(

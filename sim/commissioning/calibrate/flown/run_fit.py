@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fsw.table.calibration import MagnetometerTable, largest_field_nt
+from fsw.table.estimator import field_noise_nt, sun_noise_rad
 from fsw.table.table import FlightTable
 from sim.commissioning.calibrate.flown.coil_axes import CoilAxes, coil_axes
 from sim.commissioning.calibrate.flown.coil_field import CoilResponse, coil_response
@@ -124,8 +125,8 @@ def _observed(samples: Samples, along: Expected, table: FlightTable, rows: Flags
         samples.sun[rows],
         along.b_eci_nt[rows],
         along.sun_eci[rows],
-        gain * tuning.magnetometer_sigma_nt,
-        gain * float(np.radians(tuning.sun_sigma_deg)),
+        gain * field_noise_nt(tuning),
+        gain * sun_noise_rad(tuning),
     )
 
 

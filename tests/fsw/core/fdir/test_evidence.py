@@ -1,6 +1,6 @@
 """The sequential test: its threshold by the budget, what a sample may weigh, and how rarely it errs."""
 
-from math import exp, log
+from math import exp, log, sqrt
 
 import numpy as np
 import pytest
@@ -100,6 +100,20 @@ class TestMean:
         means = (0.3, -0.4, 0.2, 0.1, 0.0, 0.5)
         assert mean_misfit(means, known) == pytest.approx(0.5 * 119.0 * 0.29 / INFLATION)
         assert mean_misfit((*means[3:], *means[:3]), known) == mean_misfit(means, known)
+
+    def test_of_readings_that_stand_still_it_is_as_much_less_as_they_vary_more(self):
+        plain, coarse = weights(DAYS, 1.0), weights(DAYS, 1.0, of_steps=(0.5, 0.0))
+        field, sun = (0.3, -0.4, 0.2, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.1, 0.0, 0.5)
+        assert plain.lasting == (1.0, 1.0)
+        assert mean_misfit(field, coarse) == pytest.approx(mean_misfit(field, plain) / (1.0 + 0.5 * 119.0))
+        assert mean_misfit(sun, coarse) == mean_misfit(sun, plain)
+
+    def test_of_an_error_within_a_step_that_lasts_is_no_contradiction(self):
+        """Three axes at the edge of their steps, with next to no noise."""
+        edge = (0.95 * sqrt(3.0),) * 3 + (0.0,) * 3
+        assert mean_misfit(edge, weights(DAYS, 1.0)) > weights(DAYS, 1.0).threshold
+        known = weights(DAYS, 1.0, of_steps=(0.9, 0.0))
+        assert mean_misfit(edge, known) < 0.1 * known.threshold
 
     @pytest.mark.parametrize("tick_s", [1.0, 0.1])
     def test_of_noise_twice_as_large_as_the_filter_says_is_no_contradiction(self, tick_s):

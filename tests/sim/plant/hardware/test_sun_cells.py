@@ -70,6 +70,13 @@ def test_a_small_current_reads_as_zero():
     assert measured(replace(CELLS, threshold=0.04), low)[0][0] == 0.0
 
 
+def test_currents_are_whole_quanta():
+    fine = measured(replace(CELLS, noise=0.01), SUN)[0]
+    coarse = measured(replace(CELLS, noise=0.01, quantum=0.125, threshold=0.0), SUN)[0]
+    assert coarse == tuple(0.125 * round(max(0.0, one) / 0.125) for one in fine)
+    assert coarse != fine
+
+
 def test_the_earth_s_light_is_that_of_its_view_also_in_the_shade():
     (currents,) = measured(replace(CELLS, albedo=0.3), SUN)
     eci = np.array(NORMALS) @ np.array(BODY_FROM_ECI)

@@ -1,5 +1,7 @@
 """Which Sun cell is faulty: dead, stuck, too bright; and that a sound one is not called so."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from cell_samples import CELLS, Q_BODY_FROM_ECI, REFERENCE, cell_filter
@@ -40,6 +42,22 @@ def ideal(q=Q_BODY_FROM_ECI):
 def attitude(tick):
     """A slow turn, so that currents change."""
     return normalise(multiply(Q_BODY_FROM_ECI, (1.0, 0.0008 * tick, -0.0006 * tick, 0.0005 * tick)))
+
+
+def watched_coarse(change, step, declared, ticks):
+    """As ``watched``, of cells without noise whose currents are multiples of a step; which were still."""
+    config, health, still = cell_filter(replace(CELLS, step=declared)), (), set()
+    for tick in range(ticks):
+        q = attitude(tick)
+        estimate = mekf.start(q, (0.0,) * 3, config)
+        currents = change([step * round(one / step) for one in ideal(q)])
+        usable = [None if cell in unusable(health) else one for cell, one in enumerate(currents)]
+        estimate, used = update_cells(estimate, usable, SEEN, config)
+        health = judge(
+            health, CellEvidence(currents, used, estimate, SEEN, False, True, False), WEIGHTS, config
+        )
+        still |= {cell for cell, one in enumerate(health) if one.still}
+    return health, still
 
 
 def watched(
@@ -139,6 +157,23 @@ def test_a_stuck_cell_is_put_aside_as_soon_as_its_prediction_has_moved():
 def test_a_current_that_rightly_stays_is_not_stuck():
     health = watched(set_to(LIT[0], ideal()[LIT[0]]), 200, turning=False)
     assert faults(health) == [0] * 6
+
+
+def test_a_coarse_cell_may_stay_for_a_step_longer():
+    cells, step = set(LIT), 0.12
+    _, undeclared = watched_coarse(sound, step, 0.0, 300)
+    health, still = watched_coarse(sound, step, step, 300)
+    assert undeclared & cells
+    assert still == set()
+    assert faults(health) == [0] * 6
+
+
+def test_a_stuck_coarse_cell_is_found_all_the_same():
+    cell, step = LIT[1], 0.12
+    stuck = set_to(cell, step * round(ideal()[cell] / step))
+    health, still = watched_coarse(stuck, step, step, 300)
+    assert cell in still
+    assert health[cell].watch.fault == SensorFault.FROZEN
 
 
 def test_an_excess_that_no_bound_allows_is_found():

@@ -253,3 +253,91 @@ def test_what_is_left_out_does_not_reach_the_damping_either(make_world):
     assert watcher.world.state.health.sensors.field.fault
     assert watcher.world.state.sample.tick <= 30
     assert watcher.world.state.modes.mode is Mode.SAFE
+
+
+def coarse(quantum_nt=2.0, quantum=0.0, **flight):
+    """Sensors with these steps and no noise that would hide them."""
+    return {
+        "sensors": {
+            "magnetometer": {"quantum_nt": quantum_nt, "noise_nt": 0.0 if quantum_nt > 2.0 else 200.0},
+            "sun": {"quantum": quantum, "noise_deg": 0.0 if quantum else 0.5},
+        },
+        "flight": {"estimator": flight},
+    }
+
+
+COARSE = {"field": coarse(200.0), "sun": coarse(quantum=0.004), "both": coarse(200.0, 0.004)}
+
+
+@pytest.mark.long
+@pytest.mark.requirement("REQ-SENSOR-03", "REQ-SENSOR-08")
+@pytest.mark.parametrize("seed", [3, 7, 12])
+@pytest.mark.parametrize("name", COARSE)
+def test_a_coarse_sensor_is_not_frozen(make_world, name, seed):
+    """For two orbits: each reading stands still for up to half a minute."""
+    watcher = Watcher(make_world(seed=seed, **COARSE[name]))
+    watcher.fly(12200)
+    assert watcher.of(Event.SENSOR_ISOLATED) == []
+    assert watcher.of(Event.SENSORS_DISAGREE) == []
+    assert watcher.of(Event.FILTER_RESTARTED) == []
+    assert sum(watcher.valid[BEFORE_S:]) > 0.95 * len(watcher.valid[BEFORE_S:])
+    assert max(watcher.errors_deg[BEFORE_S:]) < 3.0
+
+
+@pytest.mark.long
+@pytest.mark.requirement("REQ-SENSOR-08")
+@pytest.mark.parametrize(("declared", "sound"), [({}, True), ({"quantum_percent": 0.0}, False)])
+def test_nor_is_a_coarse_cell_whose_step_is_declared(make_world, declared, sound):
+    axes = [
+        [1.0, 0.1, 0.0],
+        [-1.0, 0.0, 0.1],
+        [0.1, 1.0, 0.0],
+        [0.0, -1.0, 0.1],
+        [0.1, 0.0, 1.0],
+        [0.0, 0.1, -1.0],
+    ]
+    cells = {"normals": axes, "quantum_percent": 8.0, "noise_percent": 0.0}
+    watcher = Watcher(make_world(sensors={"cells": cells}, flight={"cells": declared}))
+    watcher.fly(6100)
+    assert (watcher.of(Event.SENSOR_ISOLATED) == []) is sound
+
+
+@pytest.mark.parametrize(
+    ("settings", "named"),
+    [
+        (coarse(200.0, magnetometer_quantum_nt=0.0), 103),
+        (coarse(quantum=0.004, sun_quantum=0.0), 202),
+    ],
+    ids=["field", "sun"],
+)
+def test_a_step_that_is_not_declared_looks_like_a_fault(make_world, settings, named):
+    watcher = Watcher(make_world(**settings))
+    watcher.fly(300)
+    assert [argument for _, argument in watcher.of(Event.SENSOR_ISOLATED)] == [named]
+
+
+@pytest.mark.requirement("REQ-SENSOR-03")
+@pytest.mark.parametrize(
+    ("sensors", "wrap", "named", "within_s"),
+    [
+        ({"magnetometer": {"quantum_nt": 200.0}}, of_field, 103, 40),
+        ({"magnetometer": {"quantum_nt": 500.0}}, of_field, 103, 60),
+        ({"sun": {"quantum": 0.004}}, of_sun, 203, 40),
+        ({"sun": {"quantum": 0.02}}, of_sun, 203, 70),
+    ],
+    ids=["200 nT", "500 nT", "Sun 0.004", "Sun 0.02"],
+)
+def test_a_coarse_sensor_that_is_frozen_is_found_once_it_should_have_moved(
+    make_world, sensors, wrap, named, within_s
+):
+    watcher = Watcher(make_world(sensors=sensors))
+    watcher.fly(BEFORE_S)
+    watcher.fly(FAULT_S, frozen(wrap))
+    ((tick, argument),) = watcher.of(Event.SENSOR_ISOLATED)
+    assert argument == named
+    assert 30 < tick - BEFORE_S <= within_s
+    watcher.fly(AFTER_S)
+    assert [argument for _, argument in watcher.of(Event.SENSOR_READMITTED)] == [named]
+    assert len(watcher.of(Event.SENSOR_ISOLATED)) == 1
+    assert all(watcher.valid[BEFORE_S:])
+    assert max(watcher.errors_deg[BEFORE_S:]) < 3.0

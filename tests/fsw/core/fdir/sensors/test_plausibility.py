@@ -8,6 +8,7 @@ import pytest
 from fsw.core.algebra.vector import add, norm, scale
 from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.plausibility import SHADOW_M, Memory, PlausibilityConfig, examine
+from fsw.core.fdir.sensors.standstill import Steps
 from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import reference_at
 from fsw.wire.messages import CoilStatus, MagField, SunVector
@@ -134,6 +135,39 @@ class TestFrozen:
     def test_a_sensor_may_repeat_its_sample_for_as_long_as_it_may_be_late(self, reference, readings):
         assert causes(self.fly(reference, readings, 4, True, False, late_ticks=3)) == (0, 0)
         assert causes(self.fly(reference, readings, 5, True, False, late_ticks=3)) == (SensorFault.FROZEN, 0)
+
+    def test_a_quantised_sample_may_repeat_itself_unless_the_estimate_shows_that_it_moves(
+        self, reference, readings, make_world
+    ):
+        world = make_world()
+        world.fly_until_valid()
+        known = world.state.estimator.estimate
+        limits = LIMITS._replace(steps=Steps(field_t=2e-7, sun=0.0, tick_s=1.0), late_ticks=1)
+        found = {}
+        for name, estimate in (("unknown", None), ("known", known)):
+            memory, causes_found = Memory(), []
+            for tick in range(60):
+                moving = scale(1.0 + 1e-4 * tick, reference.sun_eci)
+                findings = examine(memory, readings(sun_eci=moving), reference, limits, estimate)
+                memory = findings.memory
+                causes_found.append(findings.field_cause)
+            found[name] = causes_found
+        assert found["unknown"] == [0] * 60
+        first = found["known"].index(SensorFault.FROZEN)
+        assert 3 < first < 20
+        assert set(found["known"][first:]) == {SensorFault.FROZEN}
+        assert memory.floats()[6:] == (*memory.motion[0].by_body, memory.motion[0].sigma, *[0.0] * 4)
+
+    def test_a_continuous_sample_needs_no_estimate(self, reference, readings):
+        limits = LIMITS._replace(steps=Steps(field_t=0.0, sun=4e-3, tick_s=1.0))
+        memory = examine(Memory(), readings(), reference, limits).memory
+        moving = readings(sun_eci=scale(1.0001, reference.sun_eci))
+        assert causes(examine(memory, moving, reference, limits)) == (SensorFault.FROZEN, 0)
+
+    def test_without_steps_there_is_no_motion_to_remember(self, reference, readings):
+        memory = examine(Memory(), readings(), reference, LIMITS).memory
+        assert memory.motion is None
+        assert memory.floats() == (*memory.field, *memory.sun)
 
     def test_darkness_is_not_frozen(self, reference, readings):
         memory = Memory()

@@ -1,0 +1,135 @@
+"""For how long a quantised reading may stand still: until what it measures has certainly moved further."""
+
+from functools import cache
+from math import hypot, sqrt
+
+import numpy as np
+import pytest
+
+from fsw.core.algebra.quaternion import from_small_rotation, multiply, normalise, rotate
+from fsw.core.algebra.vector import scale, sub
+from fsw.core.estimation import mekf
+from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.fdir.evidence import SIGMAS
+from fsw.core.fdir.sensors.standstill import NO_MOTION, NOT_MOVED, Moved, Steps, frozen, moved_on
+
+STEPS = Steps(field_t=2e-7, sun=4e-3, tick_s=0.5)
+OMEGA = (0.002, -0.003, 0.001)
+Q_BODY_FROM_ECI = normalise((0.6, -0.4, 0.5, 0.3))
+BOTH = (True, True)
+
+
+class Models:
+    """Field and Sun at the start; the field changes along the orbit."""
+
+    b_eci_t, sun_eci, b_rate_eci_tps = (1.7e-5, -2.3e-5, 3.1e-5), (0.6, -0.48, 0.64), (3e-8, 5e-8, -2e-8)
+
+
+@cache
+def tuning(sigma_radps):
+    return mekf_config(
+        ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95)),
+        STEPS.tick_s,
+        {},
+        magnetometer_sigma_t=2e-7,
+        sun_sigma_rad=0.01,
+        attitude_sigma_rad=0.02,
+        rate_sigma_radps=sigma_radps,
+        torque_noise_nm_rts=1e-9,
+        gate_nis=16.0,
+    )
+
+
+def estimated(q=Q_BODY_FROM_ECI, sigma_radps=1e-9):
+    return mekf.start(q, OMEGA, tuning(sigma_radps))
+
+
+class At:
+    """The models so many seconds on."""
+
+    def __init__(self, time_s):
+        self.b_eci_t = tuple(np.add(Models.b_eci_t, scale(time_s, Models.b_rate_eci_tps)))
+        self.sun_eci, self.b_rate_eci_tps = Models.sun_eci, Models.b_rate_eci_tps
+
+
+def attitude(time_s):
+    """Of a satellite that turns with OMEGA, from the eci axes."""
+    return multiply(Q_BODY_FROM_ECI, from_small_rotation(scale(time_s, OMEGA)))
+
+
+def after(ticks, motion=NO_MOTION, still=BOTH, steps=STEPS, **estimate):
+    for tick in range(ticks):
+        time_s = (tick + 0.5) * steps.tick_s
+        motion = moved_on(motion, still, estimated(attitude(time_s), **estimate), At(time_s), steps)
+    return motion
+
+
+def test_the_motion_is_the_difference_of_what_is_measured_at_both_ends():
+    """Of the rotation and of the field's own change."""
+    ticks = 40
+    field, sun = after(ticks)
+    time_s = ticks * STEPS.tick_s
+    q = attitude(time_s)
+    of_field = sub(rotate(q, At(time_s).b_eci_t), rotate(Q_BODY_FROM_ECI, Models.b_eci_t))
+    of_sun = sub(rotate(q, Models.sun_eci), rotate(Q_BODY_FROM_ECI, Models.sun_eci))
+    np.testing.assert_allclose(field.by_body, of_field, atol=0.02 * np.linalg.norm(of_field))
+    np.testing.assert_allclose(sun.by_body, of_sun, atol=0.02 * np.linalg.norm(of_sun))
+
+
+def test_its_error_is_the_rate_s_for_all_the_time():
+    field, sun = after(8, sigma_radps=3e-4)
+    sigma_rad = sqrt(3.0) * 3e-4 * 8 * STEPS.tick_s
+    strengths = [np.linalg.norm(At((tick + 0.5) * STEPS.tick_s).b_eci_t) for tick in range(8)]
+    assert field.sigma == pytest.approx(sigma_rad * np.mean(strengths))
+    assert sun.sigma == pytest.approx(sigma_rad)
+
+
+def test_a_reading_that_changes_begins_anew():
+    field, sun = moved_on(after(5), (False, True), estimated(), Models, STEPS)
+    assert field is NOT_MOVED
+    assert sun != NOT_MOVED
+    field, sun = moved_on(after(5), (True, False), estimated(), Models, STEPS)
+    assert field != NOT_MOVED
+    assert sun is NOT_MOVED
+
+
+def test_what_is_not_known_counts_as_rest():
+    motion = after(5)
+    assert moved_on(motion, BOTH, None, Models, STEPS) == motion
+
+
+@pytest.mark.parametrize("step", [0.1, 3e-7])
+def test_a_step_hides_its_length_on_each_axis_and_the_rate_s_error_some_more(step):
+    limit = sqrt(3.0) * step + SIGMAS * 0.2 * step
+    assert not Moved((0.99 * limit, 0.0, 0.0), 0.2 * step).beyond(step)
+    assert Moved((0.0, -1.01 * limit, 0.0), 0.2 * step).beyond(step)
+
+
+def test_what_rounds_to_the_same_never_looks_frozen():
+    random = np.random.default_rng(5)
+    for _ in range(1000):
+        cell = random.integers(-9, 9, 3)
+        a, b = (STEPS.sun * (cell + random.uniform(-0.5, 0.5, 3)) for _ in range(2))
+        assert not Moved(tuple(b - a)).beyond(STEPS.sun)
+
+
+def test_only_what_stands_still_and_should_not_is_frozen():
+    far, near = (Moved((part, 0.0, 0.0)) for part in (1.0, 1e-12))
+    assert frozen((far, far), BOTH, STEPS) == (True, True)
+    assert frozen((far, near), BOTH, STEPS) == (True, False)
+    assert frozen((near, far), BOTH, STEPS) == (False, True)
+    assert frozen((far, far), (False, False), STEPS) == (False, False)
+
+
+def test_a_continuous_reading_never_stands_still():
+    of_field, of_sun = STEPS._replace(sun=0.0), STEPS._replace(field_t=0.0)
+    assert frozen(NO_MOTION, BOTH, of_field) == (False, True)
+    assert frozen(NO_MOTION, BOTH, of_sun) == (True, False)
+    assert after(3, steps=of_field)[1] is NOT_MOVED
+    assert after(3, steps=of_sun)[0] is NOT_MOVED
+
+
+def test_a_rate_that_is_hardly_known_shows_nothing():
+    known, unknown = after(400, sigma_radps=1e-6), after(400, sigma_radps=hypot(*OMEGA))
+    assert frozen(known, BOTH, STEPS) == (True, True)
+    assert frozen(unknown, BOTH, STEPS) == (False, False)
