@@ -15,11 +15,12 @@ from fsw.core.estimation.start.motions import Disturbed, Leg, flown, in_body
 from fsw.core.estimation.start.search import begun, worked
 from fsw.core.orbit.earth import MU_M3PS2
 
-CONFIG = cell_filter(
-    torque_body_nm=Prior((3e-8,) * 3, (0.0,) * 3),
-    dipole_body_am2=Prior((0.01,) * 3, (0.0,) * 3),
-    inertia_error_kgm2=Prior((0.03, 0.05, 0.04, 0.01, 0.01, 0.01), (0.0,) * 6),
-)
+MOVING_PRIORS = {
+    "torque_body_nm": Prior((3e-8,) * 3, (0.0,) * 3),
+    "dipole_body_am2": Prior((0.01,) * 3, (0.0,) * 3),
+    "inertia_error_kgm2": Prior((0.03, 0.05, 0.04, 0.01, 0.01, 0.01), (0.0,) * 6),
+}
+CONFIG = cell_filter(**MOVING_PRIORS)
 EXCESS = np.array((0.05, -0.06, 0.04, -0.05, 0.06, 0.03))
 BIAS_T = np.array((2e-7, -3e-7, 2.5e-7))
 

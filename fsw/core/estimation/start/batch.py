@@ -16,6 +16,8 @@ SPACING_S = 20.0
 SHORT_S, LEAST_S, MOST_S = 100.0, 400.0, 1200.0
 """The motion is searched for after the first if three cells are lit all the time, otherwise after the second,
 and over the third at most."""
+MOST = round(MOST_S / SPACING_S)
+"""The same in samples."""
 AGAIN_S = 100.0
 """Time until it is searched for again."""
 GAP_S = 60.0
@@ -84,7 +86,7 @@ def kept(batch: SampleBatch, sample: BatchSample) -> SampleBatch:
         sample = sample._replace(since_s=batch.since_s, m_body_am2=mean)
     samples = (*batch.samples, sample)
     if batch.search is None:  # a search counts the samples from the first
-        samples = samples[-round(MOST_S / SPACING_S) :]
+        samples = samples[-MOST:]
     return SampleBatch(samples, searched_s=batch.searched_s, search=batch.search)
 
 

@@ -1,12 +1,17 @@
 """The equations of motions and samples, and what follows from them: a step that improves, an estimate.
 
-Numbers of a motion: attitude, rate, residual dipole, torque, inertia, bias of the field, excess of each of c
-cells, k = 18 + 3 + c. With z the samples, h(x) what the motion x should show, H its derivative, R and P the
-covariances of samples and priors,
+Numbers of a motion: attitude, rate, residual dipole, torque, inertia, bias of the field, excess and gain of
+each of c cells, light of the Earth, k = 18 + 3 + 2 c + 1. With z the samples, h(x) what the motion x should
+show, H its derivative, R and P the covariances of samples and priors,
 
     N = H^T R^-1 H + P^-1,  g = H^T R^-1 (h(x) - z) + P^-1 x,
 
-and the least-squares step is N dx = -g. H is by differences, as the motion is known only by its equation.
+and the least-squares step is N dx = -g. H is by differences where the motion, which is known only by its
+equation, depends on the number.
+
+What the cells are wrong by makes the attitude wrong, and is still there after the start. So the filter begins
+with what the samples tell of it, and with the covariance of it and the attitude: if it took them for
+independent, the next tick would count the same errors once more, as if they were new ones.
 """
 
 from typing import Any, NamedTuple
@@ -17,7 +22,14 @@ from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation import mekf
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf import Estimate
-from fsw.core.estimation.start.batch_model import MOVING, BatchModel, Motions, measured
+from fsw.core.estimation.start.batch_model import (
+    MOVING,
+    BatchModel,
+    Motions,
+    Shown,
+    constant_slopes,
+    measured,
+)
 from fsw.core.estimation.start.batch_sample import BatchSample
 from fsw.core.estimation.start.motions import turned_by
 
@@ -55,28 +67,28 @@ def at_priors(motions: Motions, model: BatchModel, going: int) -> Equations:
 
 
 def add_sample(
-    equations: Equations, motions: Motions, seen: Matrix, sample: BatchSample, model: BatchModel
+    equations: Equations, motions: Motions, seen: Shown, sample: BatchSample, model: BatchModel
 ) -> Equations:
     """The equations with one more sample.
 
     Args:
         equations: before.
         motions: n of them.
-        seen: what they should show, followed by what the varied ones should, (n or 19 n, 3 + c).
+        seen: what they should show, followed by what the varied ones should, n or 19 n.
         sample: what was measured.
         model: what the table says.
     """
     count = len(motions.q)
     values, weights = measured(sample, model)
-    here = seen[:count]
-    left = (here + motions.numbers[:, MOVING - 3 :] - values) * weights
+    here = seen.values[:count]
+    left = (here - values) * weights
     costs = equations.costs + 0.5 * (left * left).sum(axis=1)
     numbers = equations.measured + np.count_nonzero(weights)
-    if len(seen) == count:
+    if len(seen.values) == count:
         return equations._replace(costs=costs, measured=numbers)
-    there = seen[count:].reshape(MOVING, count, -1)
+    there = seen.values[count:].reshape(MOVING, count, -1)
     moving = ((there - here) / model.differences[:, None, None]).transpose(1, 2, 0) * weights[:, None]
-    constant = np.broadcast_to(np.diag(weights), (count, weights.size, weights.size))
+    constant = constant_slopes(seen, count) * weights[:, None]
     slopes = np.concatenate((moving, constant), axis=2)
     across = slopes.transpose(0, 2, 1)
     normal = equations.normal + across @ slopes
@@ -141,23 +153,37 @@ def _with_parameters(begun: Estimate, numbers: Matrix, left: Matrix, model: Batc
     """The estimate with the parameters that were found, and the covariance that is left of all."""
     config = model.config
     covariance, parameters = config.initial_covariance.copy(), begun.parameters
-    parts, places = config.layout, list(range(6))
-    kept = list(range(6))
-    for name, place, first in (
-        ("dipole_body_am2", parts.dipole, 6),
-        ("torque_body_nm", parts.torque, 9),
-        ("inertia_error_kgm2", parts.inertia, 12),
-        ("mag_bias_t", parts.mag_bias, MOVING),
-    ):
+    places, kept = list(range(6)), list(range(6))
+    for name, place, own in _found(model):
         if place is not None:
-            own = range(first, first + place.stop - place.start)
-            kept, places = [*kept, *own], [*places, *range(place.start, place.stop)]
-            value: dict[str, Any] = {name: tuple(numbers[[number - 3 for number in own]].tolist())}
+            after = list(getattr(parameters, name))
+            after[: len(own)] = numbers[[number - 3 for number in own]].tolist()
+            value: dict[str, Any] = {name: tuple(after)}
             parameters = parameters._replace(**value)
+            kept, places = [*kept, *own], [*places, *range(place.start, place.start + len(own))]
     covariance[np.ix_(places, places)] = left[np.ix_(kept, kept)]
-    if parts.sun_turn is not None:
-        covariance[0:3, 0:3] += config.initial_covariance[parts.sun_turn, parts.sun_turn]
+    if (turn := config.layout.sun_turn) is not None:
+        covariance[0:3, 0:3] += config.initial_covariance[turn, turn]
+    if (excess := config.layout.cells) is not None:
+        now = range(excess.start, excess.start + len(model.normals))
+        covariance[now, now] += model.excess_varying**2
     return begun._replace(parameters=parameters, covariance=0.5 * (covariance + covariance.T))
+
+
+def _found(model: BatchModel) -> tuple[tuple[str, slice | None, range], ...]:
+    """Names and places of the parameters that are found, and the numbers of a motion that they are."""
+    parts, cells = model.config.layout, len(model.normals)
+    excess = MOVING + 3
+    gain, light = excess + cells, excess + 2 * cells
+    return (
+        ("dipole_body_am2", parts.dipole, range(6, 9)),
+        ("torque_body_nm", parts.torque, range(9, 12)),
+        ("inertia_error_kgm2", parts.inertia, range(12, MOVING)),
+        ("mag_bias_t", parts.mag_bias, range(MOVING, excess)),
+        ("cell_excess", parts.cells, range(excess, gain)),
+        ("cell_gain", parts.cell_gain, range(gain, light)),
+        ("earth_light", parts.earth_light, range(light, light + 1)),
+    )
 
 
 def _difference(q: Matrix, others: Matrix) -> Matrix:

@@ -1,7 +1,8 @@
 """A batch of samples as arrays: what a motion should have shown, and the motions from which to search.
 
-A motion has 18 + 3 + c numbers: attitude, rate, residual dipole, torque and the error of the inertia move the
-satellite; bias of the field and excess of each of c cells show in the samples.
+A motion has k = 18 + 3 + 2 c + 1 numbers: attitude, rate, residual dipole, torque and the error of the
+inertia move the satellite; bias of the field, excess and gain of each of c cells and light of the Earth show
+in the samples. What a cell is wrong by has the same parts as in the filter, which goes on with them.
 """
 
 from math import cos, hypot, pi, radians, sin, sqrt
@@ -29,18 +30,18 @@ TURN_T = 5e-7
 """What misalignment and scale error of the magnetometer do to the field, besides its bias."""
 VARYING = 0.3
 """Fraction of bias and excess that varies over a batch."""
-LEAST_SIGMAS = {"dipole": 1e-8, "torque": 1e-13, "inertia": 1e-9}
-"""For what the table takes as certain, A m^2, N m and kg m^2."""
+LEAST_SIGMAS = {"dipole": 1e-8, "torque": 1e-13, "inertia": 1e-9, "cells": 1e-6}
+"""For what the table takes as certain, A m^2, N m, kg m^2, and parts of full sunlight."""
 
 
 class Motions(NamedTuple):
-    """Attitudes (n, 4), and rate, dipole, torque, inertia, bias and excess, (n, 15 + 3 + c), of motions."""
+    """Attitudes (n, 4), and rate, dipole, torque, inertia, bias, excess, gains and light, (n, k - 3)."""
 
     q: Matrix
     numbers: Matrix
 
     def changed(self, step: Matrix) -> "Motions":
-        """The motions after a step of 18 + 3 + c numbers each, that of the attitude being a rotation."""
+        """The motions after a step of k numbers each, that of the attitude being a rotation."""
         return Motions(turned_by(self.q, step[:, 0:3]), self.numbers + step[:, 3:])
 
     def chosen(self, rows: list[int]) -> "Motions":
@@ -51,16 +52,31 @@ class Motions(NamedTuple):
 class BatchModel(NamedTuple):
     """What the table says of a batch: standard deviations of a field component, T, and of a current.
 
-    ``prior`` (18 + 3 + c): standard deviations, infinite for attitude and rate; ``differences`` (18): steps
-    for derivatives; ``normals`` (c, 3): of the cells, body axes.
+    ``excess_varying``: standard deviation of what the excess of a cell has in one tick beyond its mean.
+    ``prior`` (k): standard deviations, infinite for attitude and rate; ``differences`` (18): steps for
+    derivatives; ``normals`` (c, 3): of the cells, body axes; ``albedo``: of the table.
     """
 
     field_sigma_t: float
     current_sigma: float
+    excess_varying: float
     prior: Matrix
     differences: Matrix
     normals: Matrix
+    albedo: float
     config: MekfConfig
+
+
+class Shown(NamedTuple):
+    """What motions should show in a sample.
+
+    ``values`` (n, 3 + c): field and currents, with bias and errors of the cells; ``direct`` (n, c): light of
+    the Sun; ``of_earth`` (n, c): light of an Earth that reflects all that falls on it.
+    """
+
+    values: Matrix
+    direct: Matrix
+    of_earth: Matrix
 
 
 def model_of(config: MekfConfig, cells: CellSet) -> BatchModel:
@@ -72,13 +88,17 @@ def model_of(config: MekfConfig, cells: CellSet) -> BatchModel:
         *np.maximum(_sigmas(config, parts.torque, 3), LEAST_SIGMAS["torque"]).tolist(),
         *np.maximum(_sigmas(config, parts.inertia, 6), LEAST_SIGMAS["inertia"]).tolist(),
     )
-    shown = (bias_t,) * 3 + (cells.model_sigma,) * len(cells.normals_body)
+    count, varying = len(cells.normals_body), VARYING * cells.model_sigma
+    of_cells = (cells.excess_sigma,) * count + (cells.gain_sigma,) * count + (cells.light_sigma,)
+    shown = (bias_t,) * 3 + tuple([max(sigma, LEAST_SIGMAS["cells"]) for sigma in of_cells])
     return BatchModel(
         field_sigma_t=hypot(sqrt(float(config.field_noise[0, 0])), VARYING * bias_t),
-        current_sigma=hypot(cells.sigma, VARYING * cells.model_sigma),
+        current_sigma=hypot(cells.sigma, varying),
+        excess_varying=varying,
         prior=np.array((np.inf,) * 6 + moving + shown),
         differences=np.array((1e-3,) * 3 + (1e-5,) * 3 + tuple([0.1 * sigma for sigma in moving])),
         normals=np.array(cells.normals_body),
+        albedo=cells.albedo,
         config=config,
     )
 
@@ -157,10 +177,42 @@ def disturbances(motions: Motions) -> Disturbed:
     return Disturbed(numbers[:, 3:6], numbers[:, 6:9], numbers[:, 9:15])
 
 
-def expected(q: Matrix, sample: BatchSample, model: BatchModel) -> Matrix:
-    """Field and currents at one sample without bias and excess, (n, 3 + c)."""
+def expected(q: Matrix, numbers: Matrix, sample: BatchSample, model: BatchModel) -> Shown:
+    """Field and currents at one sample.
+
+    Args:
+        q: attitudes, (n, 4).
+        numbers: the others of each motion, (n, k - 3).
+        sample: what was modelled.
+        model: what the table says.
+    """
     down = scale(-1.0 / norm(sample.r_eci_m), sample.r_eci_m)
     b, s, e = all_in_body(q, np.array((sample.b_eci_t, sample.s_eci, down)))
-    sun, earth = model.normals.dot(s), model.normals.dot(e)
-    light = np.maximum(0.0, sun) + sample.earth * (0.5 + 0.5 * earth) ** 2
-    return np.vstack((b, light)).T
+    direct, view = np.maximum(0.0, model.normals.dot(s)).T, (0.5 + 0.5 * model.normals.dot(e)).T
+    of_earth = (sample.earth / model.albedo if sample.earth else 0.0) * view * view
+    bias, excess, gain, light = parts_shown(numbers, len(model.normals))
+    currents = (1.0 + gain) * direct + (model.albedo + light) * of_earth + excess
+    return Shown(np.hstack((b.T + bias, currents)), direct, of_earth)
+
+
+def parts_shown(numbers: Matrix, cells: int) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+    """Bias (n, 3), excess (n, c), gain (n, c) and light (n, 1) among the numbers of motions, (n, k - 3)."""
+    first = MOVING - 3
+    after_bias, after_excess = first + 3, first + 3 + cells
+    return (
+        numbers[:, first:after_bias],
+        numbers[:, after_bias:after_excess],
+        numbers[:, after_excess:-1],
+        numbers[:, -1:],
+    )
+
+
+def constant_slopes(shown: Shown, count: int) -> Matrix:
+    """Derivatives of the values of the first n motions by bias, excess, gains, light: (n, 3 + c, 4 + 2 c)."""
+    cells = shown.direct.shape[1]
+    slopes = np.zeros((count, 3 + cells, 4 + 2 * cells))
+    places = np.arange(3 + cells)
+    slopes[:, places, places] = 1.0
+    slopes[:, places[3:], places[3:] + cells] = shown.direct[:count]
+    slopes[:, 3:, -1] = shown.of_earth[:count]
+    return slopes

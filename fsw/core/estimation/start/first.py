@@ -1,6 +1,9 @@
 """The first estimate: from field and Sun in one tick, or from a batch of field and cells."""
 
+from math import sqrt
 from typing import NamedTuple
+
+import numpy as np
 
 from fsw.core.algebra.vector import ZERO, Vec3, norm
 from fsw.core.estimation import mekf
@@ -8,7 +11,7 @@ from fsw.core.estimation.cells.cell_set import CellSet, light
 from fsw.core.estimation.cells.coarse_sun import coarse_sun
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.start.batch import SampleBatch, due, kept, rest
+from fsw.core.estimation.start.batch import MOST, SampleBatch, due, kept, rest
 from fsw.core.estimation.start.batch_model import BatchModel, model_of
 from fsw.core.estimation.start.batch_sample import UNKNOWN, BatchSample
 from fsw.core.estimation.start.search import PIECES, at_end, begun, worked
@@ -77,6 +80,25 @@ def from_batch(
     return _searched(batch, sample is not None, reference, model)
 
 
+def linear(estimate: Estimate, b_eci_t: Vec3, config: MekfConfig) -> bool:
+    """Whether the attitude is known so well that the equations of the filter, which are linear, hold.
+
+    An error theta of the attitude moves the field by |b| theta and, to second order, by |b| theta^2 / 2. The
+    filter leaves the latter out. While the field turns it appears to be evidence of the rotation about the
+    field, which is known least, and the filter becomes sure of a wrong one. Here |b| theta^2 / 2 is to be
+    less than the noise of a field sample, theta being the standard deviation about the worst axis.
+
+    Args:
+        estimate: by least squares over a batch, which are not bound to this.
+        b_eci_t: field, T.
+        config: the filter.
+
+    Source: second-order terms as in Jazwinski 1970, chapter 9.
+    """
+    variance = float(np.linalg.eigvalsh(estimate.covariance[0:3, 0:3])[-1])
+    return 0.5 * variance * norm(b_eci_t) <= sqrt(float(config.field_noise[0, 0]))
+
+
 def _sample(
     field: Vec3 | None,
     currents: tuple[float | None, ...],
@@ -98,7 +120,10 @@ def _sample(
 def _searched(
     batch: SampleBatch, measured: bool, reference: Reference, model: BatchModel
 ) -> tuple[SampleBatch, Estimate | None]:
-    """The batch after a tick's pieces of the search; an estimate begins only in a tick with a sample."""
+    """The batch after a tick's pieces of the search; an estimate begins only in a tick with a sample.
+
+    One that is not ``linear`` is left for a search over more samples, where there can be more.
+    """
     search = batch.search
     since = rest(batch, reference.b_eci_t, reference.sun_eci, reference.r_eci_m)
     for _ in range(PIECES):
@@ -106,6 +131,7 @@ def _searched(
             break
         after = worked(search, batch.samples, since, model)
         if isinstance(after, Estimate):
-            return batch._replace(search=None), after
+            begins = search.searched >= MOST or linear(after, reference.b_eci_t, model.config)
+            return batch._replace(search=None), after if begins else None
         search = after
     return batch._replace(search=search), None

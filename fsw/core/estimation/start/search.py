@@ -1,10 +1,11 @@
 """The search for the motion behind a batch of samples, a few pieces in each tick.
 
 The unknowns are attitude and rate at the first sample and, with their priors, residual dipole, torque,
-inertia, the bias of the field and the excess of each cell, taken as constant over the batch. The starts are
-rotations about the first field, with the rates that the field's own motion leaves open; the best of them are
-improved by the Levenberg-Marquardt method. The motion is found if no other that ends ``APART`` or more away
-comes within ``LEAD`` nats of it. It is then carried on through the samples that have come meanwhile.
+inertia, the bias of the field, excess and gain of each cell and the light of the Earth, taken as constant
+over the batch. The starts are rotations about the first field, with the rates that the field's own motion
+leaves open; the best of them are improved by the Levenberg-Marquardt method. The motion is found if no other
+that ends ``APART`` or more away comes within ``LEAD`` nats of it. It is then carried on through the samples
+that have come meanwhile.
 
 All motions go through the samples side by side. A piece is one leg of all, from one sample to the next, or
 the work at the end. So the work of a tick does not grow with the number of samples.
@@ -148,23 +149,28 @@ def _passing(
     """A search with the motions at the first sample, which is counted."""
     going = motions if stage is Stage.SURVEY else varied(motions, model)
     equations = at_priors(motions, model, len(going.q))
-    equations = add_sample(equations, motions, expected(going.q, first, model), first, model)
+    equations = add_sample(equations, motions, expected(*going, first, model), first, model)
     return MotionSearch(count, stage, 0, steps, motions, going.q, going.numbers[:, 0:3], equations, best)
 
 
 def _leg_on(search: MotionSearch, samples: tuple[BatchSample, ...], model: BatchModel) -> MotionSearch:
     """The search with the motions at the next sample, which is counted."""
     before, after = samples[search.at], samples[search.at + 1]
-    q, omega = _flown(search, before, after, model)
-    seen = expected(q, after, model)
+    going = _going(search, model)
+    q, omega = _flown(search, going, before, after, model)
+    seen = expected(q, going.numbers, after, model)
     equations = add_sample(search.equations, search.motions, seen, after, model)
     return search._replace(at=search.at + 1, q=q, omega=omega, equations=equations)
 
 
+def _going(search: MotionSearch, model: BatchModel) -> Motions:
+    """The motions that go through the samples, as they began."""
+    return search.motions if search.stage is Stage.SURVEY else varied(search.motions, model)
+
+
 def _flown(
-    search: MotionSearch, before: BatchSample, after: BatchSample, model: BatchModel
+    search: MotionSearch, going: Motions, before: BatchSample, after: BatchSample, model: BatchModel
 ) -> tuple[Matrix, Matrix]:
-    going = search.motions if search.stage is Stage.SURVEY else varied(search.motions, model)
     return flown(search.q, search.omega, leg(before, after), disturbances(going), model.config.rotor)
 
 
@@ -236,6 +242,6 @@ def _estimate(
     """The estimate at this tick."""
     q, omega = search.q, search.omega
     if rest is not None:
-        q, omega = _flown(search, samples[-1], rest, model)
+        q, omega = _flown(search, _going(search, model), samples[-1], rest, model)
     estimate, cost = estimate_of(search.motions, search.equations, q, omega, model)
     return estimate if _fits(cost, search.equations) else None

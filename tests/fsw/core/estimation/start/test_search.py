@@ -6,19 +6,22 @@ from math import inf
 
 import numpy as np
 import pytest
-from batch_samples import BIAS_T, CONFIG, STARTS, flight
-from cell_samples import CELLS, REFERENCE
+from batch_samples import BIAS_T, CONFIG, EXCESS, MOVING_PRIORS, STARTS, flight
+from cell_samples import CELLS, REFERENCE, cell_filter
 from scipy.optimize import least_squares
 
 from fsw.core.algebra.quaternion import conjugate, multiply
 from fsw.core.algebra.vector import norm
-from fsw.core.estimation.mekf import Estimate, healthy
+from fsw.core.estimation.cells.cell_set import light
+from fsw.core.estimation.cells.update import update_cells
+from fsw.core.estimation.mekf import Estimate, healthy, start
+from fsw.core.estimation.start import first as first_module
 from fsw.core.estimation.start import search as search_module
 from fsw.core.estimation.start.batch import EMPTY, SPACING_S, waited
 from fsw.core.estimation.start.batch_model import Motions, disturbances, expected, leg, measured, model_of
 from fsw.core.estimation.start.batch_sample import UNKNOWN
-from fsw.core.estimation.start.first import StartLimits, from_batch
-from fsw.core.estimation.start.motions import flown
+from fsw.core.estimation.start.first import StartLimits, from_batch, linear
+from fsw.core.estimation.start.motions import flown, in_body
 from fsw.core.estimation.start.search import IMPROVED, PIECES, MotionSearch, Stage, begun, worked
 from sim.faults.node_kinds import count_doubles, flip
 
@@ -95,7 +98,65 @@ def test_what_it_finds_of_the_parameters_goes_into_the_filter_with_what_is_left(
         ).min()
         > 0.0
     )
-    assert estimate.parameters.cell_excess == (0.0,) * 6
+    assert np.abs(estimate.covariance[0:3, parts.cells]).max() > 0.0
+    assert np.abs(estimate.covariance[0:3, parts.cell_gain]).max() > 0.0
+    assert np.abs(estimate.covariance[parts.cells, parts.earth_light]).max() > 0.0
+
+
+def test_what_it_finds_of_the_cells_is_nearer_to_the_truth_than_the_table():
+    samples, q, _ = flight(*STARTS[0], 25)
+    known = fitted(samples).parameters
+    direct = np.maximum(0.0, np.array(CELLS.normals_body) @ in_body(q[None], np.array(REFERENCE.sun_eci))[0])
+    lit = direct > 0.2
+    beyond = np.array(known.cell_excess) + np.array(known.cell_gain) * direct
+    assert np.linalg.norm((beyond - EXCESS)[lit]) < np.linalg.norm(EXCESS[lit])
+
+
+def test_fewer_cells_than_there_may_be_leave_the_others_as_they_were():
+    few = replace(CELLS, normals_body=CELLS.normals_body[:5], full_sun=CELLS.full_sun[:5], shades=((),) * 5)
+    samples, _, _ = flight(*STARTS[0], 25)
+    samples = tuple([sample._replace(currents=sample.currents[:5]) for sample in samples])
+    search = begun(samples, model := model_of(cell_filter(few, **MOVING_PRIORS), few))
+    while isinstance(search, MotionSearch):
+        search = worked(search, samples, None, model)
+    assert len(search.parameters.cell_excess) == len(search.parameters.cell_gain) == 6
+    assert search.parameters.cell_excess[5] == search.parameters.cell_gain[5] == 0.0
+    assert all(search.parameters.cell_excess[:5])
+
+
+@pytest.mark.parametrize(("q", "omega"), STARTS)
+def test_the_errors_of_the_cells_are_not_counted_once_more(q, omega):
+    """The last sample again, which the attitude rests on already, makes it little surer."""
+    samples, _, _ = flight(q, omega, 25)
+    last, estimate = samples[-1], fitted(samples)
+    seen = light(last.r_eci_m, last.s_eci, CELLS.albedo)
+    after, used = update_cells(estimate, last.currents, seen, CONFIG)
+    assert len(used.taken) >= 2
+    before, now = (np.linalg.eigvalsh(one.covariance[0:3, 0:3])[-1] for one in (estimate, after))
+    assert now > 0.8**2 * before
+
+
+class TestLinear:
+    """At half the square of the angle times the field equal to the noise of a sample, 2e-7 T."""
+
+    FIELD_T = (0.0, 0.0, 4e-5)
+
+    @pytest.mark.parametrize(("sigma_rad", "holds"), [(0.0995, True), (0.1005, False)])
+    def test_the_second_order_term_is_to_be_below_the_noise_of_the_field(self, sigma_rad, holds):
+        assert linear(self.estimate(np.diag((0.01**2, sigma_rad**2, 0.02**2))), self.FIELD_T, CONFIG) is holds
+
+    def test_about_the_worst_axis(self):
+        axes = np.linalg.qr(np.arange(9.0).reshape(3, 3) + np.eye(3))[0]
+        turned = axes @ np.diag((0.01**2, 0.1005**2, 0.02**2)) @ axes.T
+        assert turned.diagonal().max() < 0.0995**2
+        assert not linear(self.estimate(turned), self.FIELD_T, CONFIG)
+
+    @staticmethod
+    def estimate(attitude):
+        begun_at = start(tuple(STARTS[0][0]), (0.0, 0.0, 0.0), CONFIG)
+        covariance = begun_at.covariance.copy()
+        covariance[0:3, 0:3] = attitude
+        return begun_at._replace(covariance=covariance)
 
 
 @pytest.mark.parametrize("bad", [float("nan"), 1e300])
@@ -115,7 +176,7 @@ def left_over(numbers, q, samples):
             after = leg(samples[number - 1], sample)
             q, omega = flown(q, omega, after, disturbances(motions), CONFIG.rotor)
         values, weights = measured(sample, MODEL)
-        parts.append((expected(q, sample, MODEL) + motions.numbers[:, 15:] - values) * weights)
+        parts.append((expected(q, motions.numbers, sample, MODEL).values - values) * weights)
     return np.hstack((*parts, motions.numbers[:, 3:] / MODEL.prior[6:])), q[0], omega[0]
 
 
@@ -214,6 +275,26 @@ class TestByTicks:
         begins = [one != other for one, other in zip(passes[1:], passes, strict=False)]
         assert all(by_tick[1:][begins] <= PIECES)
         assert {one[0] for one in passes if one} == set(Stage)
+
+    def test_an_estimate_too_uncertain_for_the_filter_is_left_for_more_samples(self, samples, monkeypatch):
+        asked = []
+
+        def only_the_second(estimate, b_eci_t, config):
+            asked.append(estimate)
+            return len(asked) > 1
+
+        monkeypatch.setattr(first_module, "linear", only_the_second)
+        whole = flight(*STARTS[1], 40, unused=(0, 1, 3), driven_am2=MOVED_AM2)[0]
+        batch, estimate = started(whole)
+        assert estimate is asked[1]
+        assert len(batch.samples) > len(samples)
+
+    def test_of_as_many_samples_as_there_can_be_it_is_taken(self, monkeypatch):
+        monkeypatch.setattr(first_module, "linear", lambda *_: False)
+        monkeypatch.setattr(first_module, "MOST", 21)
+        batch, estimate = started(flight(*STARTS[1], 40, unused=(0, 1, 3), driven_am2=MOVED_AM2)[0])
+        assert estimate is not None
+        assert len(batch.samples) < 30
 
     def test_a_gap_ends_it(self, batches):
         batch = next(one for one in batches if one.search)
