@@ -4,7 +4,6 @@ With it, a trace of what unmodelled deviations would do to errors and innovation
 """
 
 import struct
-from itertools import chain
 from math import nan
 from typing import NamedTuple
 
@@ -119,7 +118,7 @@ class Trace(NamedTuple):
     def packed(self) -> bytes:
         """For the checksum of the state."""
         shape = "<q" + "q2d" * len(self.causes)
-        causes = struct.pack(shape, self.measured, *chain.from_iterable(self.causes))
+        causes = struct.pack(shape, self.measured, *[number for cause in self.causes for number in cause])
         return causes + self.effect.tobytes() + self.sums.tobytes()
 
 
