@@ -193,5 +193,5 @@ def test_with_crossed_cells_the_first_attitude_is_not_valid_for_long_once_two_ce
     for seed in (407, 418):
         order = cells._order(seed, cells.crossed(), cells.contradicted_figures, orbits=0.35)
         figures = fly_order(order).figures
-        assert figures["wrong_10deg_s"] > 600.0
+        assert figures["wrong_10deg_s"] > 300.0, "or nothing is shown: it is wrong and valid for minutes"
         assert figures["contradicted_s"] <= 60.0
