@@ -16,11 +16,13 @@ pytestmark = pytest.mark.long
 OPTIONS = ("--seed", "7", "--orbits", "0.05")
 
 
-@pytest.mark.parametrize("first", ["plant", "fsw"])
-def test_either_may_start_first(first, port, start, wait_for, sil_run, tmp_path):
+@pytest.mark.parametrize(
+    ("first", "plant_command"), [("plant", ("sim.plant",)), ("fsw", ("torquer", "plant"))]
+)
+def test_either_may_start_first(first, plant_command, port, start, wait_for, sil_run, tmp_path):
     run = tmp_path / "run"
     words = {
-        "plant": ("torquer", "plant", "microsat", "--bus", f"loop:{port}", *OPTIONS, "--out", run),
+        "plant": (*plant_command, "microsat", "--bus", f"loop:{port}", *OPTIONS, "--out", run),
         "fsw": ("torquer", "fsw", "microsat", "--bus", f"loop:{port}"),
     }
     second = {"plant": "fsw", "fsw": "plant"}[first]
