@@ -137,7 +137,7 @@ def dead_man(board: BoardUnderTest) -> None:
 
 
 def dead_man_in_a_pulse(board: BoardUnderTest) -> None:
-    """The same while a coil is on."""
+    """No SYNC while a coil is on: off, COIL_EVENT, a full lockout; meanwhile no request is accepted."""
     board.wait_until_free()
     board.expect_accepted()
     _stop_sync(board)
