@@ -18,12 +18,23 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
 EXAMPLES = Path(__file__).parents[1] / "examples"
 """Their tests, which a user copies with them, fly for many seconds and carry no mark of ours."""
 
+LONG = "pytest.mark.long"
+"""It stands in the very file that has long tests: see ``test_house.py``."""
+
 
 def pytest_configure(config):
     """Who does not say which tests to run gets those that are not long; who names a file gets all of it."""
     chosen = any(config.getoption(name, None) for name in ("markexpr", "keyword", "lf", "ff"))
     if config.args_source is pytest.Config.ArgsSource.TESTPATHS and not chosen:
         config.option.markexpr = "not long"
+
+
+def pytest_ignore_collect(collection_path, config):
+    """Who wants the long tests alone need not import files that have none, three of four."""
+    if config.option.markexpr != "long" or not collection_path.name.startswith("test_"):
+        return None
+    has_long = collection_path.is_relative_to(EXAMPLES) or LONG in collection_path.read_text(encoding="utf-8")
+    return None if has_long else True
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -66,6 +66,13 @@ def test_every_test_is_of_a_module_or_says_what_it_specifies(path):
     assert any(module.exists() for module in modules) or ast.get_docstring(ast.parse(path.read_text()))
 
 
+def test_the_mark_of_long_tests_stands_in_their_own_file():
+    """Of a file without it ``pytest -m long`` imports nothing."""
+    files = set((ROOT / "tests").rglob("*.py")) - {ROOT / "tests" / "conftest.py"}
+    marking = [relative(path) for path in files if "mark.long" in path.read_text(encoding="utf-8")]
+    assert [path for path in marking if not Path(path).name.startswith("test_")] == []
+
+
 # --- the flight loop is one screen at one level
 
 STEP = ROOT / "fsw" / "core" / "step.py"
