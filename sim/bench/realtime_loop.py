@@ -151,7 +151,7 @@ class RealtimeLoop:
             if frame is None:
                 continue
             self._received.append(frame)
-            if frame.can_id == TickDone.ID and TickDone.decode(frame.data).tick == tick:
+            if _answers(frame, tick):
                 self.measured.latency.add(time.monotonic() - sent_s)
                 self._answered = len(self._received)
             elif self._source.receive(frame) and waits:
@@ -187,6 +187,11 @@ class RealtimeLoop:
 
     def _time_us(self, tick: int) -> int:
         return self._epoch_us + tick * 1_000_000 // self._tick_hz
+
+
+def _answers(frame: Frame, tick: int) -> bool:
+    """Whether it is the answer of the flight software to the SYNC of a tick; a broken frame is none."""
+    return frame.can_id == TickDone.ID and intact(frame) and TickDone.decode(frame.data).tick == tick
 
 
 def is_boot(frame: Frame, node: str) -> bool:

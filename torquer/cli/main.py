@@ -5,6 +5,7 @@ is a defect of this program: it stays a traceback (exit code 1), which shows whe
 """
 
 import errno
+import os
 import sys
 from importlib import import_module
 from io import TextIOWrapper
@@ -103,6 +104,7 @@ class Commands(click.Group):
 
     def main(self, *args: Any, **kwargs: Any) -> Any:  # noqa: ANN401  (as in click)
         """Run a command line and exit."""
+        _open_closed_streams()
         if isinstance(sys.stdout, TextIOWrapper):
             sys.stdout.reconfigure(errors="backslashreplace")  # a path need not be valid text
         try:
@@ -116,6 +118,16 @@ class Commands(click.Group):
         except click.Abort:
             code = 130
         sys.exit(code)
+
+
+def _open_closed_streams() -> None:
+    """Open the null device for each standard stream that the caller has closed, the lowest number first.
+
+    Python has None in its place, and the next file that is opened would get its number.
+    """
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115  (until the process ends)
 
 
 def _of_the_system(error: OSError) -> tuple[str, int]:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from fsw.input.error_text import error_text
 from sim.commissioning.calibrate.body import BodyFit
 from sim.commissioning.calibrate.cells import CellFit
 from sim.commissioning.calibrate.magnetometer import MagnetometerFit
@@ -20,7 +21,8 @@ def as_toml(found: RecordedCalibration, ratios: Array) -> str:
     """The file; ``ratios``: the moments of inertia that were declared."""
     recorded, fit = found.around.recorded, found.magnetometer
     lines = [
-        f"# From {recorded.name}: {len(recorded.utc_unix_s)} rows in {found.around.t_s[-1]:.0f} s, elements "
+        f"# From {error_text(recorded.name)}: {len(recorded.utc_unix_s)} rows in "
+        f"{found.around.t_s[-1]:.0f} s, elements "
         f"{found.around.elements.age_days(recorded.middle_unix_s):.2f} days old.",
         "",
         "[calibration.magnetometer]",

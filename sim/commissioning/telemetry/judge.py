@@ -227,14 +227,20 @@ def rms(values: Array) -> float:
     return float(np.sqrt(np.mean(np.square(values)))) if len(values) else float("nan")
 
 
+def mean_gyro(gyro_degps: Array) -> Array | None:
+    """The mean by axis of gyro samples, (n, 3), deg/s; None where an axis has none."""
+    if not np.isfinite(gyro_degps).any(axis=0).all():
+        return None
+    mean: Array = np.nanmean(gyro_degps, axis=0)
+    return mean
+
+
 def figures(judged: Judged) -> dict[str, Any]:
     """The figures of the motion that is believed most, for the JSON document."""
     motion, around = judged.best, judged.around
     rows = motion.followed.rows[motion.settled :]
     rates = motion.followed.rate_degps[motion.settled :].mean(axis=0)
-    gyro = (
-        None if around.recorded.gyro_degps is None else np.nanmean(around.recorded.gyro_degps[rows], axis=0)
-    )
+    gyro = None if around.recorded.gyro_degps is None else mean_gyro(around.recorded.gyro_degps[rows])
     azimuths = motion.held_back(judged.verdict.by)
     return {
         "converged": judged.verdict.converged,

@@ -48,3 +48,12 @@ def test_help_lists_all_commands_and_loads_no_numerics(words):
     )
     assert [line[:-1] for line in text[begin:end] if line.endswith(":")] == list(GROUPS)
     assert {"numpy", "matplotlib"}.isdisjoint(modules)
+
+
+@pytest.mark.parametrize("stream", ["stdin", "stdout", "stderr"])
+def test_a_standard_stream_that_is_closed_is_no_error(stream, monkeypatch):
+    monkeypatch.setattr(sys, stream, None)
+    with pytest.raises(SystemExit) as ended:
+        main(["scenarios", "--json"], prog_name="torquer")
+    assert ended.value.code == 0
+    assert not getattr(sys, stream).isatty()

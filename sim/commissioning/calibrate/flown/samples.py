@@ -48,7 +48,7 @@ class Samples:
     def free(self, within: int) -> NDArray[np.bool_]:
         """Ticks with a field sample, and no coil driven within so many ticks, as was reported."""
         driven = (self.level != 0) | ~self.reported
-        near = np.convolve(driven, np.ones(2 * within + 1), mode="same") > 0.0
+        near = np.convolve(driven, np.ones(2 * within + 1))[within : within + len(driven)] > 0.0
         return ~near & whole(self.field_nt)
 
 

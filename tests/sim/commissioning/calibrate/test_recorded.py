@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -61,6 +62,15 @@ def test_the_file_says_what_was_found(calibrated, tmp_path):
     bounds = tomllib.loads(path.read_text())["uncertainty"]
     assert bounds["magnetometer_bias_nt"] >= 3.0 * calibrated.magnetometer.sigma[:3].max() * 0.99
     assert 0.0 < bounds["magnetometer_scale_percent"] <= 10.0
+
+
+def test_the_file_can_be_read_whatever_the_name_of_the_pass(tmp_path):
+    around = made_up(40).along(tmp_path)
+    named = replace(around, recorded=replace(around.recorded, name="a\nb\x01"))
+    found = calibrate_pass(named, np.ones(3), NOISE)
+    path = tmp_path / "c.toml"
+    path.write_text(as_toml(found, np.ones(3)))
+    np.testing.assert_allclose(read_calibration(path).offset_nt, found.magnetometer.offset_nt, atol=0.1)
 
 
 def test_the_page_shows_residuals_and_verdicts(calibrated):

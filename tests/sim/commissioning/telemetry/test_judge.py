@@ -13,7 +13,7 @@ from sim.commissioning.recorded.element_sets import nearest_elements
 from sim.commissioning.recorded.recorded_pass import read_pass
 from sim.commissioning.telemetry.follow import Noise
 from sim.commissioning.telemetry.held_back import NO_AZIMUTHS
-from sim.commissioning.telemetry.judge import figures, judge, told_apart
+from sim.commissioning.telemetry.judge import figures, judge, mean_gyro, told_apart
 
 KNOWN = read_calibration(DATA / "calibration.toml")
 
@@ -133,3 +133,10 @@ def test_a_rate_is_right_without_a_calibration_of_the_body(sunlit):
     sphere = KNOWN._replace(inertia=np.eye(3))
     found = judge(along(recorded, nearest_elements(TLE, recorded.middle_unix_s)), sphere, Noise())
     assert found.best.followed.rate_degps[-50:, 1].mean() == pytest.approx(23.9, abs=0.2)
+
+
+def test_a_gyro_axis_without_a_sample_has_no_mean():
+    samples = np.array([[1.0, nan, 3.0], [3.0, 4.0, nan]])
+    np.testing.assert_allclose(mean_gyro(samples), [2.0, 4.0, 3.0])
+    assert mean_gyro(samples[:1]) is None
+    assert mean_gyro(samples[:0]) is None

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fsw.wire.candump_line import format_line, format_time
-from fsw.wire.messages import MagField, Sync
+from fsw.wire.messages import CoilStatus, MagField, Sync
 from sim.commissioning.calibrate.flown.samples import read_samples
 from sim.errors import HarnessError
 
@@ -76,3 +76,15 @@ def test_a_recording_that_paused_is_filled(log):
     """Some hours, as the stamps say; and less than one where the flight had no pace, and they say nothing."""
     assert len(read_samples(log(sync(0, 1), sync(20_000, 1)), 1)) == 20_001
     assert len(read_samples(log(sync(0, 1), sync(3_000, 1, EPOCH_UNIX_S + 0.5)), 1)) == 3_001
+
+
+@pytest.mark.parametrize("ticks", [1, 2, 7, 20])
+def test_ticks_near_a_pulse_are_not_free_in_a_log_of_any_length(log, ticks):
+    def lines(tick):
+        status = CoilStatus(0 if tick else 2, 0, 0, 0, 0, 0, tick & 0xF).encode()
+        frames = (MagField(1, 20_000.0, 0.0, 0.0, tick & 0xF).encode(), status)
+        stamp = format_time((EPOCH_UNIX_S + tick) * 1_000_000)
+        return [*(format_line(stamp, "can0", frame) for frame in frames), sync(tick, 1)]
+
+    samples = read_samples(log(*(line for tick in range(ticks) for line in lines(tick))), 1)
+    assert samples.free(3).tolist() == [tick > 3 for tick in range(ticks)]
