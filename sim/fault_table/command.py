@@ -13,8 +13,8 @@ from sim.fault_table.row import CheckVerdict, RowResult
 from sim.fault_table.rows.table import ROWS, choose_rows
 from sim.junit import prepare_junit, write_junit
 from sim.progress import progress
-from sim.record.destination import check_file, check_folder
 from sim.record.run_dir import replace_file
+from sim.result_files import check_results
 from sim.validate.registry import find_repository
 
 PAGE, JUNIT, HTML, JSON = "faults.md", "faults.xml", "faults.html", "faults.json"
@@ -64,11 +64,9 @@ def faults(
     rows = choose_rows(names, slow)
     earlier = {} if keep is None else earlier_rows.read(keep, {row.name for row in rows})
     page = _docs_page({*earlier, *(row.name for row in rows)}) if write_docs else None
-    for file in filter(None, (page, keep)):
-        check_file(file)
+    beside = {f"{name} of --out": out / name for name in (JUNIT, HTML, JSON)} if out is not None else {}
+    check_results({"the page": page, **beside, "--keep": keep, "--junit": junit}, {})
     prepare_junit(junit)
-    if out is not None:
-        check_folder(out, (JUNIT, HTML, JSON))
     bar = sys.stderr.isatty()  # then the rows are printed after it
     to_fly = [
         row for row in rows if row.name not in earlier or not is_whole(earlier[row.name], phases, seeds)

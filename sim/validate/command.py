@@ -12,7 +12,7 @@ from sim.console import answer, counted, say, warn
 from sim.errors import HarnessError
 from sim.junit import prepare_junit, write_junit
 from sim.progress import progress
-from sim.record.destination import check_file
+from sim.result_files import Files, check_results
 from sim.validate.flight_data import claims
 from sim.validate.flight_rows import FlightRows, keep_flight, with_known
 from sim.validate.outcomes import read_record
@@ -24,6 +24,7 @@ from sim.validate.running.kept_results import keep_result, with_known_results
 from sim.validate.running.results import ResultFiles
 
 PAGE = "validation.md"
+DATA_SUFFIXES = (".csv", ".txt")
 
 
 def validate(
@@ -72,8 +73,8 @@ def validate(
     studies = choose_studies(there_are, only, quick)
     whole = folder is None and flight_data is None and not only and not quick and satellites is None
     results = _results(out, whole, record, there_are)
-    for file in filter(None, (results.page, results.figures, keep)):
-        check_file(file)
+    written = {"--out": results.page, "the outcomes": results.figures, "--keep": keep, "--junit": junit}
+    check_results(written, _data_files(folder or flight_data))
     prepare_junit(junit)
     rows = FlightRows(keep) if keep is not None else None
     if rows is not None:
@@ -119,6 +120,12 @@ def _studies(folder: Path | None, flight_data: Path | None, satellites: int | No
     if flight_data is not None:
         return claims.studies(flight_data)
     return reference.studies(folder) if folder is not None else all_studies(satellites)
+
+
+def _data_files(folder: Path | None) -> Files:
+    """Tables and element sets in the user's folder, by name."""
+    files = [] if folder is None or not folder.is_dir() else list(folder.iterdir())
+    return {f"{file.name} of the data": file for file in files if file.suffix in DATA_SUFFIXES}
 
 
 def _check_record(folder: Path | None, satellites: int | None) -> None:

@@ -3,6 +3,7 @@
 from os import PathLike
 from pathlib import Path
 
+from sim.errors import HarnessError
 from sim.progress import shown
 from sim.replay import command
 from sim.replay.command import ReplayReport
@@ -39,8 +40,11 @@ def replay(
         progress: show progress on stderr.
 
     Raises:
-        InputError: there is no such log or no scenario of it, or the bus cannot be used.
+        InputError: there is no such log or no scenario of it, the bus cannot be used, or both ``plant`` and
+            ``onto`` are asked for.
     """
+    if plant and onto is not None:
+        raise HarnessError(f"plant, and onto {onto}: a replay is one or the other")
     path = Path(path_text(run_or_log, "run_or_log"))
     of_log = None if scenario is None else path_text(scenario, "scenario")
     named = None if law is None else path_text(law, "law")

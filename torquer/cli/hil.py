@@ -22,6 +22,9 @@ EXAMPLES = examples(
     "torquer hil microsat --bus socketcan:can0 --conformance coil --arm",
 )
 
+BUDGET = click.FloatRange(0.0)
+"""What nothing measured can be below would be broken in any run."""
+
 
 @click.command(epilog=EXAMPLES)
 @scenario_argument("microsat")
@@ -39,12 +42,26 @@ EXAMPLES = examples(
 @click.option(
     "--stimulus", default="plant", show_default=True, help="What sensors see: plant, RUN, LOG or FILE.toml."
 )
-@click.option("--jitter-ms", default=10.0, show_default=True, help="Budget of SYNC's jitter, p99.")
-@click.option("--latency-ms", type=float, help="Budget of SYNC to TICK_DONE, p99. Default: half a tick.")
-@click.option("--slips", default=0, show_default=True, help="Budget of ticks without answer or sample.")
-@click.option("--load-percent", default=50.0, show_default=True, help="Budget of the bus load, mean.")
 @click.option(
-    "--memory-percent", default=2.0, show_default=True, help="Budget of each process' growth once warm."
+    "--jitter-ms", default=10.0, show_default=True, type=BUDGET, help="Budget of SYNC's jitter, p99."
+)
+@click.option("--latency-ms", type=BUDGET, help="Budget of SYNC to TICK_DONE, p99. Default: half a tick.")
+@click.option(
+    "--slips",
+    default=0,
+    show_default=True,
+    type=click.IntRange(0),
+    help="Budget of ticks without answer or sample.",
+)
+@click.option(
+    "--load-percent", default=50.0, show_default=True, type=BUDGET, help="Budget of the bus load, mean."
+)
+@click.option(
+    "--memory-percent",
+    default=2.0,
+    show_default=True,
+    type=BUDGET,
+    help="Budget of each process' growth once warm.",
 )
 @click.option(
     "--warm-s",

@@ -11,10 +11,10 @@ from sim.commissioning.calibrate.page import calibration_page
 from sim.commissioning.calibrate.recorded import LEAST_ROWS, RecordedCalibration, calibrate_pass
 from sim.commissioning.recorded.along import placed
 from sim.commissioning.recorded.recorded_pass import read_pass
-from sim.commissioning.recorded.result_files import check_results, write_result
 from sim.commissioning.telemetry.follow import Noise
 from sim.console import answer, say
 from sim.errors import HarnessError
+from sim.result_files import check_results, write_result
 
 PARAMETERS = (9, 12)
 

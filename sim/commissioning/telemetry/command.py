@@ -7,12 +7,12 @@ from typing import Any
 from sim.commissioning.recorded.along import placed
 from sim.commissioning.recorded.calibration import UNCALIBRATED, PassCalibration, read_calibration
 from sim.commissioning.recorded.recorded_pass import read_pass
-from sim.commissioning.recorded.result_files import check_results, write_result
 from sim.commissioning.telemetry.follow import Noise
 from sim.commissioning.telemetry.judge import Judged, figures, judge
 from sim.commissioning.telemetry.page import telemetry_page
 from sim.console import answer, say
 from sim.errors import HarnessError
+from sim.result_files import check_results, write_result
 
 
 def telemetry(path: Path, tle: Path, calibration: Path | None, page: Path | None, start_s: float) -> int:

@@ -127,6 +127,10 @@ def test_the_list_names_every_row(capsys):
         (("--phases", "0"), "--phases"),
         (("--row", "none", "--write-docs"), "--write-docs: the page is of all rows"),
         (("--row", "none", "--keep", "Makefile"), "--keep Makefile: not the faults.json of a campaign"),
+        (
+            ("--row", "none", "--junit", "new", "--keep", "new"),
+            "--junit new and --keep new are the same file",
+        ),
     ],
 )
 def test_a_user_error_is_one_sentence(arguments, said, capsys):

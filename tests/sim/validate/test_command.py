@@ -73,6 +73,31 @@ class TestCommand:
         assert result.stderr.startswith("torquer: ")
         assert result.stderr.count("\n") == 1
 
+    @pytest.mark.parametrize(
+        ("words", "says"),
+        [
+            (("--junit", "page.md"), "--junit page.md and --out page.md are the same file"),
+            (("--keep", "page.md"), "--keep page.md and --out page.md are the same file"),
+            (("--record", "--keep", "page.json"), "--keep page.json and the outcomes page.json are the same"),
+        ],
+    )
+    def test_each_result_is_a_file_of_its_own(self, words, says, tmp_path, monkeypatch, study):
+        monkeypatch.setattr(command, "all_studies", lambda satellites: [study("a", [1.0])])
+        monkeypatch.chdir(tmp_path)
+        result = self.call("--out", "page.md", *words)
+        assert (result.exit_code, result.stdout, result.stderr.count("\n")) == (2, "", 1)
+        assert says in result.stderr
+        assert list(tmp_path.iterdir()) == []
+
+    def test_no_result_takes_the_place_of_the_data(self, folder):
+        folder.copy("eclipse.csv", rows=4)
+        data = folder.path / "eclipse.csv"
+        before = data.read_bytes()
+        result = self.call("--reference", folder.path, "--out", data)
+        assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
+        assert f"--out {data} and eclipse.csv of the data {data} are the same file" in result.stderr
+        assert data.read_bytes() == before
+
     def test_only_a_whole_validation_writes_the_page_by_itself(self, tmp_path, monkeypatch, study):
         parts = [study("a", [1.0]), study("b", [2.0], has_flights=True)]
         monkeypatch.setattr(command, "all_studies", lambda satellites: parts)

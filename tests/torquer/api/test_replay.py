@@ -21,6 +21,11 @@ def test_through_the_plant(flown, command):
     assert command("replay", flown.path, "--plant").stdout == f"{report}\n"
 
 
+def test_through_the_plant_or_onto_a_bus(flown):
+    with pytest.raises(torquer.InputError, match="plant, and onto loop: a replay is one or the other"):
+        torquer.replay(flown.path, plant=True, onto="loop")
+
+
 def test_it_tells_the_first_tick_that_differs(copy, command):
     lines = copy.log.read_text().splitlines(keepends=True)
     place = next(place for place, line in enumerate(lines) if f" {NavRate.ID:03X}#" in line)

@@ -92,6 +92,16 @@ def test_a_number_that_is_not_finite_is_refused(words, says, capsys):
     assert run(capsys, *words) == (2, "", f"torquer: {says}: is not a finite number\n")
 
 
+@pytest.mark.parametrize(
+    "option", ["--jitter-ms", "--latency-ms", "--slips", "--load-percent", "--memory-percent"]
+)
+def test_a_budget_that_no_bench_could_keep_is_refused(option, capsys):
+    code, out, err = run(capsys, "hil", f"{option}=-1")
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert f"{option}" in err
+    assert "-1" in err
+
+
 def test_a_folder_that_is_gone_is_one_sentence(tmp_path, monkeypatch, capsys):
     gone = tmp_path / "gone"
     gone.mkdir()

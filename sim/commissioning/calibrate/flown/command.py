@@ -11,10 +11,10 @@ from sim.commissioning.calibrate.flown.run_fit import RunCalibration, calibrated
 from sim.commissioning.calibrate.flown.samples import read_samples
 from sim.commissioning.calibrate.flown.tables import tables
 from sim.commissioning.calibrate.flown.verdicts import sentences, turn_rad, turn_sigma_rad, untold
-from sim.commissioning.recorded.result_files import check_results, write_result
 from sim.console import answer, say, warn
 from sim.errors import HarnessError
 from sim.record import run_dir
+from sim.result_files import check_results, write_result
 from sim.scenario.schema import flight_table
 
 

@@ -4,8 +4,8 @@ import os
 
 import pytest
 
-from sim.commissioning.recorded.result_files import check_results, write_result
 from sim.errors import HarnessError
+from sim.result_files import check_results, write_result
 
 
 @pytest.fixture
