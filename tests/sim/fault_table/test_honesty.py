@@ -87,20 +87,23 @@ class TestHonesty:
         assert never_wrong_for_long(row, record, bounds)[0] is holds
 
     @pytest.mark.parametrize(("wrong", "holds"), [(720, True), (721, False)])
-    def test_nor_in_the_first_ten_minutes_of_some(self, bounds, wrong, holds):
+    @pytest.mark.parametrize("tick_hz", [1, 4])
+    def test_nor_in_the_first_ten_minutes_of_some(self, bounds, wrong, holds, tick_hz):
         row = FaultRow("planted", "", "none", unseen=Unseen.AT_FIRST)
-        assert never_wrong_for_long(row, flown(*[30.0] * wrong), bounds)[0] is holds
+        record = flown(*[30.0] * (wrong * tick_hz), tick_hz=tick_hz)
+        assert never_wrong_for_long(row, record, bounds)[0] is holds
 
     @pytest.mark.parametrize(
         ("deg", "wrong_s", "holds"), [(14.0, 3000, True), (16.0, 121, False), (14.0, 3121, False)]
     )
-    def test_less_of_cells_in_the_orbit_after_each_start(self, bounds, deg, wrong_s, holds):
+    @pytest.mark.parametrize("tick_hz", [1, 4])
+    def test_less_of_cells_in_the_orbit_after_each_start(self, bounds, deg, wrong_s, holds, tick_hz):
         """Of an orbit of 3000 s, and of one start long after the first."""
         row, orbit = FaultRow("planted", "", "none", unseen=Unseen.SETTLING), replace(bounds, orbit_s=3000.0)
-        record = flown(*[0.2] * 5000, *[deg] * wrong_s)
+        record = flown(*[0.2] * (5000 * tick_hz), *[deg] * (wrong_s * tick_hz), tick_hz=tick_hz)
         record.events = [
             ReportedEvent(10, Event.FILTER_STARTED, 0),
-            ReportedEvent(5000, Event.FILTER_STARTED, 1),
+            ReportedEvent(5000 * tick_hz, Event.FILTER_STARTED, 1),
         ]
         assert never_wrong_for_long(row, record, orbit)[0] is holds
 

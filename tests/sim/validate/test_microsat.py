@@ -151,3 +151,7 @@ class TestConsistency:
         outcomes = study.conclude(flights)
         assert [outcome.verdict.value for outcome in outcomes] == verdicts
         assert outcomes[0].claim.high == pytest.approx(chi2.ppf(0.975, 600) / 100)
+
+    def test_is_that_of_the_last_tick(self, monkeypatch, scenario):
+        monkeypatch.setattr(microsat, "nees", lambda truth, estimates: np.array([9.0, 5.0, 3.5]))
+        assert microsat.consistency_figures(scenario, {}, None) == {"nees": 3.5}

@@ -79,6 +79,15 @@ class TestPropagation:
         assert ours.parameters == satellite.parameters
         assert sum(c * c for c in ours.q_body_from_eci) == pytest.approx(1.0, abs=1e-14)
 
+    @pytest.mark.parametrize("tick_s", [1.0, 0.25])
+    def test_what_innovations_were_on_the_mean_is_forgotten_over_a_minute(self, satellite, tick_s):
+        lag = (0.7, -0.4, 0.3, -0.9, 0.5, 0.2)
+        estimate = satellite.estimate()._replace(lag=lag)
+        after = predict(
+            estimate, satellite.e1_eci, satellite.b_eci_t, 0.0, ZERO, satellite.config(tick_s=tick_s)
+        )
+        assert after.lag == pytest.approx([(1.0 - tick_s / 60.0) * mean for mean in lag])
+
     def test_an_hour_without_measurement_keeps_the_covariance_sound(self, satellite):
         config, estimate = satellite.config(), start(satellite.q, SLOW, satellite.config())
         for _ in range(3600):

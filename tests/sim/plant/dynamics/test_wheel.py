@@ -124,6 +124,15 @@ def test_at_its_limit_the_motor_can_only_slow_it_down(sign):
     assert unit.relative_nms(ZERO) == pytest.approx(sign * 0.88)
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_beyond_its_limit_as_when_the_body_turns_against_it_nothing_stops_it_at_once(sign):
+    unit, turning = SpinningWheel(wheel(momentum_nms=sign * 0.9), ZERO), tuple(-sign * 3.0 * a for a in AXIS)
+    beyond = unit.relative_nms(turning)
+    assert abs(beyond) == pytest.approx(0.912)
+    assert unit.advance(sign * 0.02, turning, 1.0).reaction_nm == pytest.approx(ZERO, abs=1e-15)
+    assert unit.relative_nms(turning) == pytest.approx(beyond)
+
+
 def test_the_inertia_without_the_wheel_is_that_of_the_rest():
     rest = np.array(wheel().rest_of(INERTIA))
     assert rest == pytest.approx(np.array(INERTIA) - 4e-3 * np.outer(AXIS, AXIS), rel=1e-14)

@@ -23,8 +23,9 @@ class TestLight:
     def test_is_none_of_the_earth_s_where_its_albedo_is_left_out_or_the_sun_has_set_below(self):
         assert light(REFERENCE.r_eci_m, REFERENCE.sun_eci, 0.0).earth == 0.0
         low = (*unit((0.05, 1.0, 0.0)),)
-        set_below = light(scale(7.0e6, low), unit((-0.1, 0.05, 1.0)), 0.3)
-        assert set_below.earth >= 0.0
+        set_below = light(scale(7.0e6, low), unit((-0.1, -0.05, 1.0)), 0.3)
+        assert np.dot(low, set_below.s_eci) < -0.01
+        assert set_below.earth == 0.0
 
     @pytest.mark.parametrize(("off_m", "there"), [(-1000.0, False), (1000.0, True)])
     def test_there_is_none_near_the_edge_of_the_shadow(self, off_m, there):

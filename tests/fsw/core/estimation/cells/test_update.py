@@ -199,6 +199,8 @@ class TestExcess:
         after = faded(estimate, CONFIG)
         assert after.parameters.cell_excess == pytest.approx([keep * one for one in EXCESS])
         np.testing.assert_allclose(after.covariance.diagonal()[place], EXCESS_SIGMA**2, rtol=1e-12)
+        of_light = 1.0 / (1.0 + ORBIT_RADPS / CORRELATION_RAD)  # however fast the satellite turns
+        assert after.parameters.earth_light == pytest.approx((of_light * LIGHT,))
         for _ in range(2000):
             after = faded(after, CONFIG)
         assert np.abs(after.parameters.cell_excess).max() < 1e-6

@@ -1,8 +1,12 @@
 """The batch of samples: what is kept, what is driven in between, and when the motion is looked for."""
 
-import pytest
+from dataclasses import replace
+from math import inf
 
-from fsw.core.algebra.vector import ZERO
+import pytest
+from cell_samples import REFERENCE, cell_filter
+
+from fsw.core.algebra.vector import ZERO, scale
 from fsw.core.estimation.start.batch import (
     AGAIN_S,
     EMPTY,
@@ -16,7 +20,8 @@ from fsw.core.estimation.start.batch import (
     rest,
     waited,
 )
-from fsw.core.estimation.start.batch_sample import BatchSample
+from fsw.core.estimation.start.batch_sample import UNKNOWN, BatchSample
+from fsw.core.estimation.start.first import StartLimits, from_batch
 
 SUN = (0.6, -0.48, 0.64)
 
@@ -130,3 +135,26 @@ def test_every_number_of_a_batch_counts():
     batch = filled(60.0, SUN)
     assert len(batch.floats()) == 5 + 4 * (1 + 3 + 15 + 2 + 3)
     assert batch.integers() == (4,)
+
+
+class TestSample:
+    """What a tick gives the batch: a field as strong as modelled, cells, and whether the Sun is there."""
+
+    CURRENTS = (0.5, None, 0.2, 0.0, 0.1, 0.3)
+
+    def taken(self, field, reference=REFERENCE):
+        limits = StartLimits(3e-6, inf, 0.0)
+        return from_batch(EMPTY, field, self.CURRENTS, reference, limits, cell_filter())[0].samples
+
+    @pytest.mark.parametrize(("part", "count"), [(0.9, 0), (0.95, 1), (1.05, 1), (1.1, 0)])
+    def test_of_a_field_that_is_neither_too_weak_nor_too_strong(self, part, count):
+        assert len(self.taken(scale(part, REFERENCE.b_eci_t))) == count
+
+    def test_in_sunlight_and_in_the_shadow(self):
+        (lit,) = self.taken(REFERENCE.b_eci_t)
+        behind = replace(REFERENCE, r_eci_m=scale(-7.0e6, REFERENCE.sun_eci), radius_m=7.0e6)
+        (dark,) = self.taken(REFERENCE.b_eci_t, behind)
+        assert lit.lit == 1.0
+        assert lit.earth > 0.1
+        assert (dark.lit, dark.earth, dark.coarse) == (0.0, 0.0, None)
+        assert lit.currents == dark.currents == (0.5, UNKNOWN, 0.2, 0.0, 0.1, 0.3)
