@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fsw.core.state import FlightState
 from fsw.table.config import flight_config
 from fsw.wire.messages import Mode
 from sim.faults.section import forge_answers
 from sim.record import run_dir
 from sim.record.estimates import EstimateRecorder, Estimates
 from sim.record.run_record import RunRecord
-from sim.record.truth import COLUMNS, Histories, read_truth
+from sim.record.truth import COLUMNS, OF_WHEEL, Histories, read_truth
 from sim.replay.log_replay import replay
 from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad
 from sim.report.figures.histories import FlightHistories
@@ -56,8 +57,8 @@ def truth(path: "Path", scenario: Scenario, record: RunRecord) -> "xr.Dataset":
     histories = read_truth(path / run_dir.TRUTH)
     variables = [
         _Variable(name, _dimensions(name, width), unit, meaning, histories[name])
-        for name, width, unit, meaning in COLUMNS
-        if name != "t_s"
+        for name, width, unit, meaning in (*COLUMNS, OF_WHEEL)
+        if name != "t_s" and name in histories
     ]
     sources = {
         name.partition("/")[2]: torque for name, torque in histories.items() if name.startswith(TORQUES)
@@ -83,8 +84,15 @@ def estimate(path: "Path", scenario: Scenario, record: RunRecord) -> "xr.Dataset
     histories = read_truth(path / run_dir.TRUTH)
     recorder = EstimateRecorder(len(histories["t_s"]))
     config = flight_config(flight_table(scenario))
-    result = replay(run_dir.bus_log(path), config, recorder.take, forge_answers(scenario.fault))
-    variables = _estimated(recorder.estimates(), histories)
+    last_tick = -1
+
+    def on_tick(state: FlightState) -> None:
+        nonlocal last_tick
+        recorder.take(state)
+        last_tick = state.tick
+
+    result = replay(run_dir.bus_log(path), config, on_tick, forge_answers(scenario.fault))
+    variables = _estimated(recorder.estimates(), histories, last_tick)
     dataset = _dataset(variables, histories, scenario, record)
     dataset["mode"].attrs |= {
         "flag_values": [mode.value for mode in Mode],
@@ -93,8 +101,10 @@ def estimate(path: "Path", scenario: Scenario, record: RunRecord) -> "xr.Dataset
     return dataset.assign_attrs(replay="bit-exact" if result.bit_exact else str(result.first_bit_difference))
 
 
-def _estimated(found: Estimates, histories: Histories) -> list[_Variable]:
+def _estimated(found: Estimates, histories: Histories, last_tick: int) -> list[_Variable]:
+    """The variables; a tick after the last one that the log holds has no mode."""
     both = FlightHistories(histories, found)
+    mode = np.where(np.arange(len(found.mode)) <= last_tick, found.mode, np.nan)
     sigma = np.sqrt(np.diagonal(found.covariance, axis1=1, axis2=2))
     rate, turn = found.omega_body_radps, found.q_body_from_orbit
     return [
@@ -110,7 +120,7 @@ def _estimated(found: Estimates, histories: Histories) -> list[_Variable]:
         ),
         _Variable("rate_error_degps", _TIME, "deg/s", "error of the inertial rate", both.rate_error_degps),
         _Variable("valid", _TIME, "1", "whether the attitude is called valid", found.valid),
-        _Variable("mode", _TIME, "1", "mode of the flight software", found.mode),
+        _Variable("mode", _TIME, "1", "mode of the flight software", mode),
     ]
 
 

@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 import torquer
+from fsw.wire.messages import TickDone
 
 SUFFIXES = {
     "T": "_t",
     "A m^2": "_am2",
     "N m": "_nm",
+    "N m s": "_nms",
     "m": "_m",
     "rad": "_rad",
     "rad/s": "_radps",
@@ -63,6 +65,24 @@ def test_histories_of_a_cut_run_are_as_long_as_they_are_whole(copy):
     with h5py.File(copy.path / "truth.h5", "r+") as file:
         file["r_eci_m"][100:] = np.nan
     assert copy.truth.sizes["time"] == copy.estimate.sizes["time"] == 100
+
+
+def test_after_the_end_of_a_cut_log_no_mode_is_known(copy):
+    lines = copy.log.read_text().splitlines(keepends=True)
+    last = next(place for place, line in enumerate(lines) if f" {TickDone.ID:03X}#64" in line)  # tick 100
+    copy.log.write_text("".join(lines[: last + 1]))
+    estimate = copy.estimate
+    assert estimate.sizes["time"] == copy.truth.sizes["time"] == 302
+    assert not estimate.mode[:101].isnull().any()
+    assert estimate.mode[101:].isnull().all()
+
+
+def test_truth_has_the_momentum_of_a_driven_wheel(tmp_path):
+    run = torquer.fly("microsat-wheel", orbits=0.005, out=tmp_path / "run")
+    momentum_nms = run.truth.wheel_nms
+    with h5py.File(run.path / "truth.h5") as file:
+        assert np.array_equal(momentum_nms, file["wheel_nms"])
+    assert momentum_nms.attrs["units"] == "N m s"
 
 
 def test_pulses_are_those_of_the_audit(flown):
