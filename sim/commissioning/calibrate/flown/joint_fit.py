@@ -8,6 +8,9 @@ sample that do not depend on the attitude. Without the Sun only |b_body| counts,
 open. Each sample's two residuals are weighted by their common covariance; what is known beforehand of M and o
 counts as measured.
 
+The noise n of a reading is in M n: with weights of their own the squares would be least with an M too small,
+so those of M are taken, by which what is least are the squares of n itself.
+
 Source: Merayo et al. 2000, Scalar calibration of vector magnetometers, for the first; Alonso, Shuster 2002,
 TWOSTEP, for the start; the second is the dot-product constraint of Lerner, Shuster 1981.
 """
@@ -21,6 +24,9 @@ from scipy.optimize import least_squares
 from sim.commissioning.calibrate.flown.samples import whole
 
 Array = NDArray[np.float64]
+
+LEAST_REST = 1e-3
+"""Of the variance of the second residual, what is left without the first where field and Sun are parallel."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,18 +92,13 @@ def joint_fit(observed: FreeSamples, prior: FitPrior) -> FieldFit:
     lit = whole(observed.sun)
 
     def errors(x: Array) -> Array:
-        first, second = _whitened(observed, x)[0].T
+        first, second = _whitened(observed, x).T
         return np.concatenate([first, second[lit], (x - centre) / sigma])
 
-    def slopes(x: Array) -> Array:
-        _, first, second = _whitened(observed, x)
-        return np.vstack([first, second[lit], np.diag(1.0 / sigma)])
-
     start = np.concatenate([prior.matrix.ravel(), _first_offset(observed, prior)])
-    found = least_squares(errors, start, slopes, x_scale="jac")
-    slope = slopes(found.x)
-    covariance: Array = np.asarray(np.linalg.inv(slope.T @ slope), float)
-    first, second = _whitened(observed, found.x)[0].T
+    found = least_squares(errors, start, "3-point", x_scale="jac")
+    covariance: Array = np.asarray(np.linalg.inv(found.jac.T @ found.jac), float)
+    first, second = _whitened(observed, found.x).T
     residual = np.column_stack([first, np.where(lit, second, np.nan)])
     matrix, offset = found.x[:9].reshape(3, 3), found.x[9:]
     return FieldFit(
@@ -137,28 +138,29 @@ def _first_offset(observed: FreeSamples, prior: FitPrior) -> Array:
     return found[:3]
 
 
-def _whitened(observed: FreeSamples, x: Array) -> tuple[Array, Array, Array]:
-    """By sample both residuals, (n, 2), and their slopes, (n, 12) each; in the dark the first alone counts.
+def _whitened(observed: FreeSamples, x: Array) -> Array:
+    """By sample both residuals, (n, 2); in the dark the first alone counts.
 
-    The noise of a reading is in both: their covariance sigma^2 [[1, c], [c, 1 + q^2]] is taken out by its
-    Cholesky factor.
+    The noise of a reading is in both. With u the direction of b_body, s that of the Sun, q the noise of the
+    Sun's direction times the field across it, in parts of sigma, their covariance is
+
+        sigma^2 [[|M^T u|^2, (M^T u) . (M^T s)], [(M^T u) . (M^T s), |M^T s|^2 + q^2]],
+
+    which is taken out by its Cholesky factor.
     """
     matrix, offset = x[:9].reshape(3, 3), x[9:]
-    moved = observed.field_nt - offset
-    body = moved @ matrix.T
+    body = (observed.field_nt - offset) @ matrix.T
     size = np.maximum(np.linalg.norm(body, axis=1), 1.0)
     b, s = observed.b_eci_nt, observed.sun_eci
     strength = np.linalg.norm(b, axis=1)
     along = np.sum(b * s, axis=1)
     sun = np.where(whole(observed.sun)[:, None], observed.sun, 0.0)
-    unit = body / size[:, None]
-    by_first = np.hstack([(unit[:, :, None] * moved[:, None, :]).reshape(-1, 9), -unit @ matrix])
-    by_second = np.hstack([(sun[:, :, None] * moved[:, None, :]).reshape(-1, 9), -sun @ matrix])
+    of_strength, of_angle = body @ matrix / size[:, None], sun @ matrix
     sigma = observed.field_sigma_nt
-    c = np.clip(along / strength, -0.999, 0.999)
-    across = strength * np.sqrt(1.0 - c * c) * observed.sun_sigma_rad / sigma
-    rest = np.sqrt(1.0 + across**2 - c * c)
-    first = (size - strength) / sigma
-    second = ((np.sum(sun * body, axis=1) - along) / sigma - c * first) / rest
-    slope = by_first / sigma
-    return np.column_stack([first, second]), slope, (by_second / sigma - c[:, None] * slope) / rest[:, None]
+    across = np.sqrt(np.maximum(strength**2 - along**2, 0.0)) * observed.sun_sigma_rad / sigma
+    own = np.linalg.norm(of_strength, axis=1)
+    shared = np.sum(of_strength * of_angle, axis=1) / own
+    rest = np.sqrt(np.maximum(np.sum(of_angle**2, axis=1) + across**2 - shared**2, LEAST_REST))
+    first = (size - strength) / sigma / own
+    second = ((np.sum(sun * body, axis=1) - along) / sigma - shared * first) / rest
+    return np.column_stack([first, second])

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from sim.commissioning.calibrate.flown.joint_fit import FreeSamples
 from sim.commissioning.calibrate.flown.samples import Samples
@@ -32,6 +33,24 @@ def observed():
         return FreeSamples(
             field, seen if sun else np.full((n, 3), np.nan), b, s, max(noise_nt, 1.0), max(sun_noise, 1e-6)
         )
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def observed_slowly():
+    """Makes samples of a body that turns by 1 rad while the field turns by half as much, seen by seed."""
+
+    def make(noise_nt, sun_noise, seed, n=800):
+        draw = np.random.default_rng(seed)
+        steps = np.arange(n) / n
+        b = Rotation.from_rotvec(np.outer(0.5 * steps, [0.6, 0.0, 0.8])).apply([25000.0, 15000.0, -20000.0])
+        s = np.tile([0.6, -0.48, 0.64], (n, 1))
+        turn = Rotation.from_rotvec(np.outer(steps, [0.48, -0.6, 0.64]))
+        body, seen = turn.apply(b), turn.apply(s)
+        seen = seen + np.cross(seen, sun_noise * draw.normal(size=(n, 3)))
+        field = body @ np.linalg.inv(MATRIX).T + OFFSET + noise_nt * draw.normal(size=(n, 3))
+        return FreeSamples(field, seen, b, s, noise_nt, sun_noise)
 
     return make
 

@@ -27,6 +27,18 @@ def test_errors_are_as_large_as_it_says(observed, truth):
     assert np.mean(np.abs(off) < 3.0) > 0.98
 
 
+def test_the_noise_of_a_body_that_hardly_turns_is_not_taken_for_a_small_scale_and_an_offset(
+    observed_slowly, truth
+):
+    """Offsets of 12 draws, in standard deviations, and the squares that are left."""
+    prior = FitPrior(np.eye(3), 0.05, 60000.0)
+    found = [joint_fit(observed_slowly(200.0, 0.0087, seed), prior) for seed in range(12)]
+    off = [(one.offset_nt - truth[1]) / np.sqrt(one.covariance.diagonal()[9:]) for one in found]
+    assert np.sqrt(np.mean(np.square(off))) < 1.3
+    assert np.abs(np.mean(off, axis=0)).max() < 3.0 / np.sqrt(12.0)
+    assert np.mean([one.chi2 / one.numbers for one in found]) == pytest.approx(1.0, abs=0.03)
+
+
 def test_without_the_sun_the_turn_stays_as_unknown_as_before(observed, truth):
     """|b| is blind to a turn; offset and scale it tells."""
     found = joint_fit(observed(noise_nt=50.0, sun=False), NEAR)
