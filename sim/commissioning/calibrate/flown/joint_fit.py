@@ -98,7 +98,7 @@ def joint_fit(observed: FreeSamples, prior: FitPrior) -> FieldFit:
     start = np.concatenate([prior.matrix.ravel(), _first_offset(observed, prior)])
     found = least_squares(errors, start, "3-point", x_scale="jac")
     slopes = np.asarray(found.jac, np.float64)
-    covariance = np.linalg.inv(slopes.T @ slopes)
+    covariance: Array = np.asarray(np.linalg.inv(slopes.T @ slopes), np.float64)
     first, second = _whitened(observed, found.x).T
     residual = np.column_stack([first, np.where(lit, second, np.nan)])
     matrix, offset = found.x[:9].reshape(3, 3), found.x[9:]
