@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+OF_EVERY_FLIGHT = {"scenario", "seed", "sim_seconds", "limits_ok"}
+"""Keys of a summary, without which nothing has failed in it because nothing is in it."""
+
 
 @dataclass(frozen=True)
 class Run:
@@ -70,9 +73,9 @@ class Run:
             raise HarnessError(f"{self.path} has no {path.name}: torquer report {self.path} makes it")
         try:
             summary = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, RecursionError) as error:
             raise HarnessError(f"{path}: cannot be read ({error})") from None
-        if not isinstance(summary, dict):
+        if not isinstance(summary, dict) or not summary.keys() >= OF_EVERY_FLIGHT:
             raise HarnessError(f"{path}: no summary of a flight")
         return summary
 

@@ -121,7 +121,7 @@ def test_the_failures_of_the_summary_are_those_of_the_run(copy):
     assert not run.ok
 
 
-@pytest.mark.parametrize("content", ["", "[1]", "{"])
+@pytest.mark.parametrize("content", ["", "[1]", "{", "{}", "[" * 100_000])
 def test_a_damaged_summary_is_wrong_input(content, copy):
     (copy.path / "summary.json").write_text(content)
     with pytest.raises(torquer.InputError, match=r"summary\.json"):
