@@ -12,9 +12,10 @@ Figures = Mapping[str, Mapping[str, str]]
 _HEAD = """# The methods of the papers
 
 Written by `tools/write_seeds.py` from `sim/methods`; do not edit. Every method of the review [O19]
-(Ovchinnikov, Roldugin 2019), of the paper on the choice of gains [O15] (Ovchinnikov, Penkov, Roldugin 2015)
-and of the one on PoSAT-1 [T] (Tavares et al., ConSat): section and number in the review's list of references,
-where it is, what the text or its cited author claims, and what `torquer validate` has last measured of it.
+(Ovchinnikov, Roldugin 2019), of the paper on the choice of gains [O15] (Ovchinnikov, Roldugin, Ivanov,
+Penkov 2015) and of the one on PoSAT-1 [T] (Tavares et al., ConSat): section and number in the review's list
+of references, where it is, what the text or its cited author claims, and what `torquer validate` has last
+measured of it.
 [laws.md](laws.md) has the equations of the laws, [validation.md](validation.md) the claims.
 
 *flown*: a law of the flight software, or an effect of the plant. *ground*: computed on the ground. *passed

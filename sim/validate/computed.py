@@ -21,7 +21,7 @@ from sim.plant.plant import Plant
 from sim.plant.rotation import Mat3, from_vector
 from sim.validate.controlled_plant import ControlledPlant
 
-THEORY = "Ovchinnikov, Penkov, Roldugin 2015, eq. 3 and 4"
+THEORY = "Ovchinnikov, Roldugin, Ivanov, Penkov 2015, eq. 3 and 4"
 
 KNOWN_BEST: dict[str, tuple[float, Gains]] = {
     "1U": (-0.522, Gains(6.2385e4, 9.1252)),

@@ -22,7 +22,7 @@ from sim.statistics.settling import settled_tick
 from sim.validate.reference.comparison import Array
 
 SCENARIO = "microsat"
-SOURCE = "50 kg satellite with PoSAT-1's actuation limits; laws of Ovchinnikov, Penkov, Roldugin 2015"
+SOURCE = "50 kg satellite with PoSAT-1's actuation limits; laws of Ovchinnikov, Roldugin, Ivanov, Penkov 2015"
 FILTER = "Lefferts, Markley, Shuster 1982; bounds: Bar-Shalom, Li, Kirubarajan 2001, section 5.4"
 
 POINTING_RUNS, STARTS_WITHIN_DEG = 10, 60.0

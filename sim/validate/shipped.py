@@ -1,7 +1,7 @@
 """Claims on shipped scenarios with the filter in the loop: as they ship, and with what really disturbs them.
 
-The examples after Ovchinnikov, Penkov and Roldugin (2015) have small torques and dipoles. A satellite of
-their size meets more: drag at 550 km and light at 700 to 800 km with arms of a tenth of its size, and a
+The examples after Ovchinnikov, Roldugin, Ivanov and Penkov (2015) have small torques and dipoles. A satellite
+of their size meets more: drag at 550 km and light at 700 to 800 km with arms of a tenth of its size, and a
 residual dipole as satellites of that size have. The onboard table declares twice as much.
 """
 

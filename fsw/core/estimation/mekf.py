@@ -14,7 +14,8 @@ body axes:
 
 The parameters are constants or slow random walks. What no sample can show keeps its prior (``unobservable``).
 
-Source: Lefferts, Markley, Shuster 1982; dynamics: Ovchinnikov, Penkov, Roldugin 2015; priors: Schmidt 1966.
+Source: Lefferts, Markley, Shuster 1982; dynamics: Ovchinnikov, Roldugin, Ivanov, Penkov 2015; priors:
+Schmidt 1966.
 """
 
 from math import inf, isfinite, sqrt

@@ -10,7 +10,7 @@ Mat3 = tuple[Vec3, Vec3, Vec3]
 MU_M3PS2 = 3.986004418e14
 EARTH_RADIUS_KM = 6378.137
 DIPOLE_TM3 = 7.812e15
-"""The Earth's magnetic moment, mu_e, as in Ovchinnikov, Penkov, Roldugin 2015."""
+"""The Earth's magnetic moment, mu_e, as in Ovchinnikov, Roldugin, Ivanov, Penkov 2015."""
 
 
 @dataclass(frozen=True, slots=True)

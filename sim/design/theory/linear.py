@@ -14,8 +14,8 @@ The factor 2 comes from S = 2 theta. Where J is not diagonal, or h not along axi
 on the nominal attitude (``resting_torque``): it is then no equilibrium, and the linearisation is about it
 nonetheless.
 
-Source: Ovchinnikov, Penkov, Roldugin 2015, eq. 4, derived again: for principal axes it is their equation with
-B0^2 in all three rows and the kinematics psi' = w1, phi' = w2, theta' = w3.
+Source: Ovchinnikov, Roldugin, Ivanov, Penkov 2015, eq. 4, derived again: for principal axes it is their
+equation with B0^2 in all three rows and the kinematics psi' = w1, phi' = w2, theta' = w3.
 """
 
 from collections.abc import Callable

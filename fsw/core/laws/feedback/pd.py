@@ -34,7 +34,7 @@ def pd_dipole(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, k_w: fl
     Returns:
         Dipole in body axes, A m^2.
 
-    Source: Ovchinnikov, Penkov, Roldugin 2015, eq. 3.
+    Source: Ovchinnikov, Roldugin, Ivanov, Penkov 2015, eq. 3.
     """
     w1, w2, w3 = omega_body_orbit_radps
     s1, s2, s3 = error
