@@ -209,6 +209,20 @@ def test_bursts_shut_both_directions_together_for_no_longer_than_they_say():
     assert lengths == {True: {1, 2, 3, 4, 5}, False: {1, 2, 3, 4, 5}}
 
 
+def test_with_jitter_a_frame_is_late_by_none_to_as_many_ticks_as_it_says():
+    late = fault("delay", ticks=3.0, jitter=1.0)
+    late_by = {
+        tick - frame.can_id for tick in range(400) for frame in late.to_boards(tick, [Frame(tick, b"")])
+    }
+    assert late_by == {0, 1, 2, 3}
+
+
+def test_an_unknown_identifier_is_none_of_the_contract():
+    come = [f for seed in range(100) for f in fault("unknown_id", seed, part=1.0).to_boards(0, FRAMES)]
+    assert not {frame.can_id for frame in come} & set(CLASSES)
+    assert [frame.data for frame in come] == [frame.data for frame in FRAMES] * 100
+
+
 def test_a_delay_keeps_the_directions_apart():
     late = fault("delay", ticks=1.0)
     inward, outward = FRAMES[:1], FRAMES[2:]
