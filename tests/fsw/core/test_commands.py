@@ -285,11 +285,9 @@ class TestAcknowledgement:
         assert after.setpoint.spin_radps == -0.02
 
     def test_a_repeated_one_is_not_carried_out_again_but_answered(self, state, config):
-        repeated = NOTHING._replace(repeated=(TcMode(Mode.SAFE, 4),))
-        assert command(state, repeated, False, config) == (
-            state,
-            [TcAck(TcAckResult.REPEATED, TcMode.ID, 4, TICK)],
-        )
+        repeated = NOTHING._replace(repeated=(TcMode(Mode.SAFE, 4), TcClear(9)))
+        acks = [TcAck(TcAckResult.REPEATED, *sent, TICK) for sent in ((TcMode.ID, 4), (TcClear.ID, 9))]
+        assert command(state, repeated, False, config) == (state, acks)
 
     def test_no_telecommand_no_answer(self, state, config):
         assert command(state, NOTHING, True, config) == (state, [])

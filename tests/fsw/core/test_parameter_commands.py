@@ -1,4 +1,4 @@
-"""Parameters of the filter by telecommand: loaded, frozen, thawed."""
+"""Parameters of the filter by telecommand: loaded, frozen, thawed; and what a clear leaves of the state."""
 
 import pytest
 
@@ -6,9 +6,12 @@ from fsw.core.estimation.parameters import NOTHING as AS_THE_TABLE
 from fsw.core.estimation.parameters import component_places, with_component
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.sensors.credibility import credible
+from fsw.core.modes import ModeState
 from fsw.wire.messages import (
     Component,
+    Mode,
     TcAckResult,
+    TcClear,
     TcFreeze,
     TcParameter,
 )
@@ -30,6 +33,26 @@ EVERYTHING = {
 
 
 OF_CELLS = [one for one in Component if one.name.startswith("CELL_") or one is Component.EARTH_LIGHT]
+
+
+NO_BODY = [
+    (
+        TcParameter(Component.INERTIA_XX, -2, -70),
+        TcParameter(Component.INERTIA_YY, -2, -100, counter=1),
+        TcParameter(Component.INERTIA_XY, -2, 55, counter=2),
+    ),
+    (
+        TcParameter(Component.INERTIA_YY, -2, -128),
+        TcParameter(Component.INERTIA_ZZ, -2, -135, counter=1),
+        TcParameter(Component.INERTIA_YZ, -2, 60, counter=2),
+    ),
+    (
+        TcParameter(Component.INERTIA_ZZ, -2, -130),
+        TcParameter(Component.INERTIA_XX, -2, -70, counter=1),
+        TcParameter(Component.INERTIA_XZ, -2, -55, counter=2),
+    ),
+]
+"""Two moments and a product that together are the inertia of no body."""
 
 
 @pytest.fixture(scope="module")
@@ -96,22 +119,29 @@ class TestParameter:
             off = after.estimator.estimate._replace(parameters=strange)
             assert not credible(off, config.fdir.sensors.credibility)
 
-    @pytest.mark.parametrize(
-        "sent",
-        [
-            [TcParameter(Component.INERTIA_XX, -2, -103)],
-            [TcParameter(Component.INERTIA_XY, -2, 150)],
-            [
-                TcParameter(Component.INERTIA_YY, -2, -140),
-                TcParameter(Component.INERTIA_XY, -2, 90, counter=1),
-            ],
-        ],
-        ids=["a moment below zero", "a product too large", "both together"],
-    )
-    def test_of_an_inertia_that_no_body_has_is_refused(self, refused, estimating, sent):
+    @pytest.mark.parametrize("sent", NO_BODY, ids=["products of x and y", "of y and z", "of x and z"])
+    @pytest.mark.parametrize("started", [True, False])
+    def test_of_an_inertia_that_no_body_has_is_refused(self, obey, refused, estimating, sent, started):
+        """Each number by itself could be a body's."""
         config, state = estimating
-        for start in (state, state._replace(estimator=state.estimator._replace(estimate=None))):
-            refused(TcAckResult.OUT_OF_RANGE, *sent, start=start, config=config)
+        start = state if started else state._replace(estimator=state.estimator._replace(estimate=None))
+        for one in sent:
+            assert obey(start, one, config=config)[1] == [TcAckResult.ACCEPTED]
+        assert obey(start, *sent[:-1], config=config)[1] == [TcAckResult.ACCEPTED] * 2
+        refused(TcAckResult.OUT_OF_RANGE, *sent, start=start, config=config)
+
+    @pytest.mark.parametrize("of_the_estimate", [True, False])
+    def test_neither_the_estimate_nor_the_start_may_have_one(
+        self, obey, refused, estimating, of_the_estimate
+    ):
+        """A product that the moments of one allow is too large for the smaller ones of the other."""
+        config, state = estimating
+        *moments, product = NO_BODY[0]
+        small = obey(state, *moments, config=config)[0].estimator
+        mixed = state.estimator._replace(first=small.first)
+        if of_the_estimate:
+            mixed = small._replace(first=state.estimator.first)
+        refused(TcAckResult.OUT_OF_RANGE, product, start=state._replace(estimator=mixed), config=config)
 
     def test_that_the_filter_does_not_carry(self, refused, config):
         known = component_places(config.estimator.mekf.layout)
@@ -132,6 +162,23 @@ class TestParameter:
     def test_a_satellite_without_cells_has_no_excess_of_them(self, refused, estimating, parameter):
         config, state = estimating
         refused(TcAckResult.NOT_ALLOWED, TcParameter(parameter, -3, 1), start=state, config=config)
+
+
+class TestClear:
+    def test_the_filter_goes_on_without_the_trace_by_which_units_are_judged(self, obey, estimating):
+        config, state = estimating
+        estimator = state.estimator
+        traced = estimator._replace(estimate=estimator.estimate._replace(trace=object()))
+        after, results = obey(state._replace(estimator=traced), TcClear(), config=config)
+        assert results == [TcAckResult.ACCEPTED]
+        assert after.estimator.estimate.trace is None
+        assert after.estimator.estimate.parameters == estimator.estimate.parameters
+
+    @pytest.mark.parametrize("held", [True, False])
+    def test_a_commanded_safe_stays_commanded(self, obey, state, held):
+        safe = state._replace(modes=ModeState(Mode.SAFE, 7, trips=2, held=held))
+        after, _ = obey(safe, TcClear())
+        assert after.modes == ModeState(Mode.SAFE, 7, trips=0, held=held)
 
 
 class TestFreeze:

@@ -9,7 +9,9 @@ from fsw.core.algebra.vector import norm
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.events import Event
 from fsw.core.fdir.coils.health import CoilHealth
+from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.fdir import Health
+from fsw.core.fdir.sensors.health import SensorHealth, Watch
 from fsw.core.gate.second_sender import SIGNS, SecondSenderWatch
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
@@ -74,6 +76,15 @@ def test_a_coil_that_was_not_requested_trips(supervised):
     stuck, strange = CoilHealth(stuck=True), CoilHealth(faults=(4, 1, 2), strange_ticks=1)
     assert supervised(health=Health(coils=stuck)).violated is Monitor.COIL_AS_COMMANDED
     assert supervised(health=Health(coils=strange)).violated is None
+
+
+@pytest.mark.parametrize(("law", "leaves"), [("bdot", False), ("phasing", True)])
+def test_without_field_and_attitude_only_a_law_without_feedback_leaves_safe(world, supervised, law, leaves):
+    blind = Health(SensorHealth(field=Watch(SensorFault.FROZEN)))
+    setpoint = world.state.setpoint._replace(law=law)
+    modes = supervised(UNKNOWN, Mode.SAFE, health=blind, setpoint=setpoint).modes
+    assert max(modes.held_since) == (TICK if leaves else -1)
+    assert max(supervised(WELL, Mode.SAFE, health=blind, setpoint=setpoint).modes.held_since) == TICK
 
 
 def test_an_orbit_that_is_not_known_trips(supervised):

@@ -162,8 +162,30 @@ class TestWhatItSays:
             (DipoleBoardState.READY, 2, 120),
         ]
 
+    @pytest.mark.parametrize("m", [(STEP, 0.0, 0.0), (0.0, -STEP, 0.0), (0.0, 0.0, -1.0)])
+    @pytest.mark.parametrize("tick_hz", [1, 7])
+    def test_a_heartbeat_after_a_minute_of_ticks_tells_of_a_single_driven_coil(self, read, m, tick_hz):
+        board, beats = DipoleDriver(tick_hz), []
+        for tick in range(60 * tick_hz + 1):
+            beats += of(CoilHeartbeat, read(board.begin_tick(tick, 0.0)))
+            board.receive(CoilDipole(*m).encode())
+        assert [(beat.tick, beat.state) for beat in beats] == [(60 * tick_hz, DipoleBoardState.ON)]
+
 
 class TestRefusals:
+    def test_each_names_the_tick_in_which_it_came(self, board, read):
+        board.begin_tick(298, 0.0)
+        board.receive(CoilFire(1, 2, 77, 0, 3000).encode())
+        (refused,) = of(CoilRefused, read(board.begin_tick(301, 0.0)))
+        assert (refused.coil, refused.tick) == (2, 298 & 0xFF)
+
+    @pytest.mark.parametrize("length", range(7))
+    def test_a_pulse_cut_short_is_named_if_coil_and_number_are_left_of_it(self, step, length):
+        fire = CoilFire(-3, 2, 200, 0, 3000).encode()
+        step(fire._replace(data=fire.data[:length]))
+        told = [(m.coil, m.seq, m.reason) for m in of(CoilRefused, step()[0])]
+        assert told == ([(2, 200, Reason.MALFORMED)] if length >= 3 else [])
+
     def test_a_pulse_is_refused_whatever_it_asks_and_the_dipole_is_driven(self, step):
         fires = [CoilFire(level, coil, 9 + level, 0, 3000) for level in (-3, 0, 1) for coil in (0, 2)]
         _, drive = step(*fires, CoilDipole(*ASKED))

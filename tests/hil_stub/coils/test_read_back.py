@@ -219,6 +219,18 @@ def test_the_first_tick_of_a_pulse_is_judged_as_soon_as_the_current_has_settled(
     assert rig.events == [(5005, OPEN, 0)], "100 ms are five ticks"
 
 
+def test_a_coil_without_current_is_no_fault_of_the_board(read, rig_with):
+    """It is obeyed as before: its heartbeat says that it drives."""
+    rig = Rig(read)
+    rig.board = CoilDriver(CoilLimits(1, backoff_ms=0), ReadBack(NOMINAL_A))
+    rig.run_to(58)
+    rig.step(rig_with(CoilLimits(1), 58).fire().encode())
+    rig.step(physics=lambda nominal_a: 0.0)
+    said = rig.step(physics=lambda nominal_a: 0.0)
+    assert rig.events == [(59, OPEN, 0)]
+    assert [m.state for m in said if isinstance(m, CoilHeartbeat)] == [BoardState.ON]
+
+
 @pytest.mark.parametrize(
     ("current_a", "argument"),
     [(1e9, 2**31 - 1), (inf, 2**31 - 1), (-1e9, -(2**31)), (-inf, -(2**31)), (nan, -(2**31)), (1e6, 10**9)],

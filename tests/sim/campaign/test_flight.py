@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from fsw.input.schema import merge
+from fsw.wire.messages import Mode
 from sim.campaign.claim import ClaimVerdict
-from sim.campaign.flight import FlightResult, Order, fly_order
+from sim.campaign.flight import FlightResult, Order, fly_order, record_scenario
 from sim.campaign.study import (
     Figure,
     Group,
@@ -21,6 +22,7 @@ from sim.campaign.study import (
 )
 from sim.record import run_dir
 from sim.report.conclude import conclude
+from sim.scenario.schema import load
 
 OVERRIDES = {
     "body": {"inertia_kgm2": [[1.02, 0.03, -0.02], [0.03, 1.85, 0.05], [-0.02, 0.05, 1.95]]},
@@ -60,6 +62,29 @@ def test_its_audit_sees_what_the_board_drove(flown, fly_run):
     )
     assert fast.summary["min_gap_s"]["any"] < 100.0
     assert run_dir.read_run(fly_run())["ticks"] == flown.summary["ticks"]
+
+
+def test_it_is_judged_by_the_limits_of_its_own_scenario():
+    quick = {"coils": {"backoff_s": 20.0, "pulse_s": 1.0}}
+    record = record_scenario(load("microsat", merge(OVERRIDES, quick)), 5, ORBITS / 4)
+    assert (record.audit.limits.pulse_us, record.audit.limits.backoff_us) == (1_000_000, 20_000_000)
+    assert record.summary()["min_gap_s"]["any"] < 100.0
+    assert record.summary()["limits_ok"] is True
+
+
+def test_its_telecommands_are_sent_and_its_events_have_their_time_in_the_flight():
+    sent = [{"at_s": 40.0, "message": "TC_MODE", "mode": "SAFE"}]
+    summary = record_scenario(load("microsat", {**OVERRIDES, "telecommand": sent}), 5, ORBITS / 5).summary()
+    changes = [(event["t_s"], event["argument"]) for event in summary["events"] if event["event"] == 1]
+    assert changes[-1] in ((40.0, Mode.SAFE), (41.0, Mode.SAFE))
+    assert summary["mode_final"] == "SAFE"
+
+
+def test_statuses_that_break_on_their_way_are_not_held_against_the_board():
+    broken = [{"kind": "corruption", "at_s": 5.0, "parameters": {"part": 0.5}}]
+    record = record_scenario(load("microsat", {**OVERRIDES, "fault": broken}), 5, ORBITS / 5)
+    assert record.tally.refused == 0
+    assert record.summary()["limits_ok"] is True
 
 
 def test_further_figures_are_taken_from_its_histories(flown):

@@ -1,5 +1,7 @@
 """What is scored of a flight agrees with its summary, and with rotations written out."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -8,7 +10,7 @@ from sim.campaign.definition.campaign import StatisticsSection
 from sim.campaign.flight import record_scenario
 from sim.campaign.scoring import score
 from sim.report.figures.attitude_arrays import angle_rad, axis1_errors, rotation_vectors
-from sim.scenario.schema import load
+from sim.scenario.schema import load, orbit_period_s
 
 ORBITS = 0.1
 
@@ -65,3 +67,32 @@ def test_a_boom_is_judged_by_its_axis_alone():
     axis1 = flight.summary()["axis1_deg"]
     assert found.figures["ape_deg_rms"] == pytest.approx(axis1["rms_last_orbit"])
     assert found.figures["ape_deg_rms"] != pytest.approx(flight.summary()["pointing_deg"]["rms_last_orbit"])
+
+
+def turns_of(generator, ticks):
+    """Attitudes, scalar first, and their rotation vectors in degrees, all of them small."""
+    turn = Rotation.from_rotvec(generator.normal([0.02, -0.05, 0.03], 0.02, (ticks, 3)))
+    return turn.as_quat(canonical=True, scalar_first=True), np.degrees(turn.as_rotvec())
+
+
+def test_window_and_last_orbits_are_times_at_any_tick_rate():
+    scenario = load("microsat", {"time": {"tick_hz": 2}})
+    per_orbit = round(2.0 * orbit_period_s(scenario))
+    last, window = round(0.05 * per_orbit), 2 * 30
+    q, error_deg = turns_of(np.random.default_rng(3), per_orbit // 10)
+    record = SimpleNamespace(
+        scenario=scenario,
+        truth={"t_s": 0.5 * np.arange(len(q)), "q_body_from_orbit": q},
+        estimates=SimpleNamespace(q_body_from_orbit=np.tile([1.0, 0.0, 0.0, 0.0], (len(q), 1))),
+    )
+    found = score(record, StatisticsSection(last_orbits=0.05, window_s=30.0))
+    counted = error_deg[-last:]
+    windows = [counted[first : first + window] for first in range(0, last - window + 1, window)]
+    windows += [counted[-window:]] if last % window else []
+    means = [np.linalg.norm(rows.mean(axis=0)) for rows in windows]
+    assert found.figures["mpe_deg_max"] == pytest.approx(max(means))
+    assert found.figures["ape_deg_max"] == pytest.approx(np.linalg.norm(counted, axis=1).max())
+    assert found.figures["ake_deg_rms"] == pytest.approx(np.sqrt(np.mean(np.sum(counted**2, axis=1))))
+    assert len(found.error_deg) == 6
+    sixth = np.sum(error_deg[: len(q) // 6] ** 2, axis=1)
+    assert found.error_deg[0] == pytest.approx(np.sqrt(np.mean(sixth)), rel=1e-6)

@@ -1,11 +1,23 @@
 """Faults of the bus: frames are altered, added and lost."""
 
+from itertools import groupby
 from random import Random
 
 import pytest
 
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
-from fsw.wire.messages import CoilFire, MagField, PlantEnd, SunCells, SunVector, Sync, TickDone, intact
+from fsw.wire.messages import (
+    CLASSES,
+    SENDERS,
+    CoilFire,
+    MagField,
+    PlantEnd,
+    SunCells,
+    SunVector,
+    Sync,
+    TickDone,
+    intact,
+)
 from sim.faults import kinds
 from sim.faults.kinds import KINDS, make
 
@@ -141,3 +153,129 @@ class TestForged:
 
     def test_an_answer_names_the_tick(self):
         assert [TickDone.decode(f.data).tick for f in fault("done_forged").strangers(77)] == [77]
+
+
+def test_duplicates_follow_their_frame_as_often_as_they_are_to():
+    doubling = fault("duplicates", part=0.2)
+    come = [doubling.from_boards(tick, list(FRAMES)) for tick in range(1500)]
+    assert sum(map(len, come)) / 4500 == pytest.approx(1.2, abs=0.02)
+    for frames in come:
+        assert [
+            frame for frame, before in zip(frames, [None, *frames], strict=False) if frame != before
+        ] == FRAMES
+
+
+def test_every_order_comes():
+    reordering = fault("reordering")
+    orders = {tuple(reordering.to_boards(tick, list(FRAMES))) for tick in range(200)}
+    assert len(orders) == 6
+    assert all(sorted(order) == sorted(FRAMES) for order in orders)
+
+
+def test_corruption_reaches_every_bit_of_the_data_and_no_identifier():
+    frame = FRAMES[0]
+    whole, flipped = int.from_bytes(frame.data, "little"), 0
+    for seed in range(400):
+        (broken,) = fault("corruption", seed, part=1.0).to_boards(0, [frame])
+        flipped |= int.from_bytes(broken.data, "little") ^ whole
+        assert broken.can_id == frame.can_id
+    assert flipped == (1 << 8 * len(frame.data)) - 1
+
+
+@pytest.mark.parametrize("kind", ["loss", "corruption", "wrong_length", "unknown_id", "rtr", "duplicates"])
+def test_both_directions_are_tampered_with_alike(kind):
+    assert fault(kind, part=1.0).to_boards(0, list(FRAMES)) == fault(kind, part=1.0).from_boards(
+        0, list(FRAMES)
+    )
+
+
+@pytest.mark.parametrize("kind", ["rtr", "extended_id", "error_frames"])
+def test_a_flag_leaves_the_identifier_and_only_a_remote_frame_has_no_data(kind):
+    for frame, flagged in zip(FRAMES, fault(kind, part=1.0).from_boards(0, list(FRAMES)), strict=True):
+        assert flagged.can_id & 0x7FF == frame.can_id
+        assert flagged.data == (b"" if kind == "rtr" else frame.data)
+
+
+def test_bursts_shut_both_directions_together_for_no_longer_than_they_say():
+    bursts, opened = fault("bursts", ticks=5.0), []
+    for tick in range(500):
+        inward, outward = bursts.from_boards(tick, list(FRAMES)), bursts.to_boards(tick, list(FRAMES))
+        assert inward == outward
+        assert inward in ([], FRAMES)
+        opened.append(bool(inward))
+    stretches = [(is_open, len(list(ticks))) for is_open, ticks in groupby(opened)][:-1]
+    lengths = {state: {n for one, n in stretches if one is state} for state in (True, False)}
+    assert not opened[0]
+    assert lengths == {True: {1, 2, 3, 4, 5}, False: {1, 2, 3, 4, 5}}
+
+
+def test_with_jitter_a_frame_is_late_by_none_to_as_many_ticks_as_it_says():
+    late = fault("delay", ticks=3.0, jitter=1.0)
+    late_by = {
+        tick - frame.can_id for tick in range(400) for frame in late.to_boards(tick, [Frame(tick, b"")])
+    }
+    assert late_by == {0, 1, 2, 3}
+
+
+def test_an_unknown_identifier_is_none_of_the_contract():
+    come = [f for seed in range(100) for f in fault("unknown_id", seed, part=1.0).to_boards(0, FRAMES)]
+    assert not {frame.can_id for frame in come} & set(CLASSES)
+    assert [frame.data for frame in come] == [frame.data for frame in FRAMES] * 100
+
+
+def test_a_delay_keeps_the_directions_apart():
+    late = fault("delay", ticks=1.0)
+    inward, outward = FRAMES[:1], FRAMES[2:]
+    assert late.from_boards(0, inward) == late.to_boards(0, outward) == []
+    assert late.from_boards(1, []) == inward
+    assert late.to_boards(1, []) == outward
+
+
+def test_a_full_queue_loses_all_to_none():
+    full = fault("queue_full")
+    assert {len(full.to_boards(tick, list(FRAMES))) for tick in range(100)} == {0, 1, 2, 3}
+    assert full.from_boards(0, list(FRAMES)) == FRAMES
+
+
+def test_where_the_link_is_down_nothing_passes():
+    down, sync = fault("link_down"), Sync(3, 7).encode()
+    assert down.from_boards(3, list(FRAMES)) == down.to_boards(3, list(FRAMES)) == down.sync(3, sync) == []
+
+
+@pytest.mark.parametrize("as_fsw", [0.0, 1.0])
+def test_a_stranger_uses_the_identifiers_of_the_flight_software_only_where_it_may(as_fsw):
+    noise = fault("random_frames", frames=400.0, as_fsw=as_fsw)
+    come = [frame for tick in range(20) for frame in noise.strangers(tick)]
+    assert len(come) == 8000
+    senders = {SENDERS.get(frame.can_id) for frame in come}
+    assert ("FSW" in senders) is bool(as_fsw)
+    assert {"COIL", "MAG", "GROUND"} < senders
+    assert {flag for flag in (ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG) for f in come if f.can_id & flag} == {
+        ERROR_FLAG,
+        EXTENDED_FLAG,
+        REMOTE_FLAG,
+    }
+
+
+def test_a_babbling_node_sends_as_much_as_it_says_ahead_of_all_others():
+    frames = fault("flood", frames=70.0).strangers(4)
+    assert len(frames) == 70
+    assert all(frame.can_id < min(CLASSES) for frame in frames)
+
+
+def test_forged_requests_answer_their_tick_some_within_the_limits_and_some_not():
+    forger = fault("second_sender", frames=2.0)
+    asked = [(tick, CoilFire.decode(f.data)) for tick in range(600) for f in forger.strangers(tick)]
+    assert [tick for tick, _ in asked] == [tick for tick in range(600) for _ in range(2)]
+    assert all(request.tick == tick & 0xFF for tick, request in asked)
+    assert {request.coil for _, request in asked} == {0, 1, 2}
+    assert {request.level for _, request in asked} == {-3, -2, -1, 1, 2, 3}
+    assert {request.duration_ms <= 3000 for _, request in asked} == {True, False}
+
+
+@pytest.mark.parametrize(("kind", "usual"), [("sync_forged", 1), ("done_forged", 1)])
+@pytest.mark.parametrize("part", [0.0, 0.25, 1.0])
+def test_forged_frames_come_as_often_as_they_are_to(kind, usual, part):
+    forger = fault(kind, part=part)
+    come = sum(len(forger.strangers(tick)) for tick in range(2000))
+    assert come / 2000 == pytest.approx(usual * part, abs=0.03)

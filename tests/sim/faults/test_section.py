@@ -8,7 +8,7 @@ from fsw.input.schema import TableError
 from fsw.wire.messages import MagField
 from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.faults.kinds import KINDS, make
-from sim.faults.section import make_plant
+from sim.faults.section import break_frames, forge_answers, make_plant
 from sim.plant.plant import Plant
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import load
@@ -144,3 +144,52 @@ def test_a_fault_without_an_end_stays():
         counts.append(len(plant.begin_tick()))
         plant.end_tick()
     assert counts[1] - 1 == counts[2] == counts[4]
+
+
+@pytest.mark.parametrize(
+    ("tick_hz", "at_s", "lasts_s", "ticks"),
+    [
+        (1, 2.3, 2.0, [3, 4]),
+        (1, 3.0, 0.2, [3]),
+        (4, 1.0, 0.5, [4, 5]),
+        (4, 1.1, 0.75, [5, 6, 7]),
+    ],
+)
+def test_it_begins_with_the_first_tick_at_its_time_and_lasts_in_seconds(tick_hz, at_s, lasts_s, ticks):
+    timed = {"kind": "sun_board_dead", "at_s": at_s, "lasts_s": lasts_s}
+    chosen = load("microsat", {"time": {"tick_hz": tick_hz}, "fault": [timed]})
+    plant = make_plant(plant_config(chosen, 1), chosen.fault)
+    active = []
+    for tick in range(10):
+        plant.begin_tick()
+        active += [tick] if plant.active else []
+        plant.end_tick()
+    assert active == ticks
+
+
+def test_each_fault_of_each_seed_has_random_numbers_of_its_own():
+    chosen = load("microsat", {"fault": [{"kind": "random_frames", "at_s": 0.0}] * 2})
+    heard = {}
+    for seed in (1, 2, 1):
+        plant = make_plant(plant_config(chosen, seed), chosen.fault)
+        plant.begin_tick()
+        drawn = tuple(fault.rng.random() for fault in plant.active)
+        assert heard.setdefault(seed, drawn) == drawn
+    assert len({number for drawn in heard.values() for number in drawn}) == 4
+
+
+@pytest.mark.parametrize(
+    ("kind", "breaks", "forges"),
+    [
+        ("loss", False, False),
+        ("corruption", True, False),
+        ("wrong_length", True, False),
+        ("random_frames", True, True),
+        ("second_sender", False, True),
+        ("done_forged", False, True),
+        ("sync_forged", False, False),
+    ],
+)
+def test_what_a_fault_may_do_to_statuses_and_in_the_place_of_fsw(kind, breaks, forges):
+    chosen = load("microsat", {"fault": [{"kind": "mag_frozen", "at_s": 1.0}, {"kind": kind, "at_s": 1.0}]})
+    assert (break_frames(chosen.fault), forge_answers(chosen.fault)) == (breaks, forges)

@@ -89,6 +89,39 @@ def test_rows_that_have_not_been_written_are_missed(tmp_path):
         growing.rows(0, BLOCK_ROWS + 1)
 
 
+def test_rows_that_one_history_lacks_are_missed(tmp_path):
+    """Between two datasets of a flush."""
+    write(tmp_path / "truth.h5", 100, 60)
+    with h5py.File(tmp_path / "truth.h5", "r+") as file:
+        file["r_eci_m"][50:60] = np.nan
+    growing = GrowingTruth(tmp_path / "truth.h5", 100)
+    assert_rows(growing.rows(0, 50), 50)
+    with pytest.raises(RowsMissingError, match="rows 40 to 50"):
+        growing.rows(40, 51)
+
+
+@pytest.mark.parametrize("rows", [1, BLOCK_ROWS + 3])
+def test_the_momentum_of_a_driven_wheel_has_a_history_of_its_own(tmp_path, rows):
+    path = tmp_path / "truth.h5"
+    with TruthFile(path, rows + 5, SOURCES, wheel=True) as truth:
+        for tick in range(rows):
+            truth.append(row(tick)._replace(wheel_nms=-0.25 * tick - 1.0))
+    histories = read_truth(path)
+    assert_rows(histories, rows)
+    assert histories["wheel_nms"].tolist() == [-0.25 * tick - 1.0 for tick in range(rows)]
+    with h5py.File(path) as file:
+        assert file["wheel_nms"].attrs["unit"] == "N m s"
+
+
+@pytest.mark.parametrize("value", [2e15, -2e15])
+def test_a_magnitude_that_no_history_has_is_refused(tmp_path, value):
+    write(tmp_path / "truth.h5", 5, 5)
+    with h5py.File(tmp_path / "truth.h5", "r+") as file:
+        file["r_eci_m"][3, 1] = value
+    with pytest.raises(HarnessError, match="r_eci_m holds a magnitude above 1e"):
+        read_truth(tmp_path / "truth.h5")
+
+
 READ = """
 import sys
 from pathlib import Path

@@ -101,6 +101,14 @@ class TestTwoStrange:
     def test_others_may_stand_between(self, count):
         assert count.answers(0, FAR, 77, 1, 2, 3) == [1, 2, 3]
 
+    def test_of_many_in_doubt_the_latest_are_remembered(self, count):
+        assert count.answers(*[FAR + 7 * i for i in range(3 * MOST_DOUBTED)]) == []
+        assert count.answers(20, 21) == [21]
+
+    def test_and_the_oldest_are_forgotten(self, count):
+        assert count.answers(*[FAR + 7 * i for i in range(1 + MOST_DOUBTED)]) == []
+        assert count.answers(FAR, FAR) == [FAR]
+
     def test_a_plant_that_has_started_anew_is_followed_from_its_second_sync(self, count):
         assert count.answers(*range(100)) == list(range(1, 100))
 

@@ -80,6 +80,14 @@ def test_telecommands_of_all_kinds_stay_in_their_order():
     assert readings == NOTHING._replace(field=FIELD, coil=COIL, telecommands=sent)
 
 
+def test_each_of_several_that_are_repeated_is_told():
+    sent = (TELECOMMAND_OF[TcSpin.ID], TELECOMMAND_OF[TcLaw.ID])
+    _, known = admitted(*sent)
+    readings, state = admitted(sent[1], FIELD, sent[0], sent[1], state=known)
+    assert (readings.telecommands, readings.repeated) == ((), (sent[1], sent[0], sent[1]))
+    assert state.rejected == 3
+
+
 def test_where_a_telecommand_stands_among_the_boards_messages_does_not_count():
     one = (TELECOMMAND_OF[TcSpin.ID], TELECOMMAND_OF[TcLaw.ID])
     orders = [(*one, FIELD, COIL), (one[0], FIELD, one[1], COIL), (FIELD, COIL, *one)]

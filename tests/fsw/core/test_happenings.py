@@ -1,0 +1,57 @@
+"""What is told of the first ticks, of an orbit without a position, and of a second sender."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from fsw.core import telemetry
+from fsw.core.estimation.estimator import Used
+from fsw.core.events import Event, Happening
+from fsw.core.gate.readings import NOTHING
+from fsw.core.gate.second_sender import SIGNS, SecondSenderWatch
+from fsw.core.rates import RateGroup, RateTable
+from fsw.core.step import boot
+from fsw.wire.messages import CoilFire, NavQuality, NavRate, PlantEnd
+
+EVERY = RateGroup(1)
+RATES = RateTable(attitude=EVERY, quality=EVERY, parameter=EVERY, heartbeat=EVERY)
+LEAP_TICKS = 60
+
+
+@pytest.fixture(scope="module")
+def state(make_world):
+    return boot(make_world().config)
+
+
+def told(before, after, readings=NOTHING):
+    return telemetry.happenings(before, after, readings, None, LEAP_TICKS)
+
+
+@pytest.mark.parametrize(("tick", "events"), [(-1, []), (0, [Happening(Event.FALSE_END, 7)])])
+def test_an_end_is_false_from_the_second_tick_on(state, tick, events):
+    ended = NOTHING._replace(end=PlantEnd(7, counter=3))
+    assert told(state._replace(tick=tick), state._replace(tick=tick + 1), ended) == events
+
+
+@pytest.mark.parametrize(("tick", "events"), [(-1, []), (0, [Happening(Event.PLANT_RESTARTED, 0)])])
+def test_so_is_a_restart(state, tick, events):
+    assert told(state._replace(tick=tick), state._replace(tick=10**9)) == events
+
+
+def test_a_second_sender_is_told_once_with_the_identifier_that_named_it(state):
+    suspected = state._replace(second_sender=SecondSenderWatch(SIGNS - 1, 8, NavRate.ID), tick=8)
+    named = state._replace(second_sender=SecondSenderWatch(SIGNS, 9, CoilFire.ID), tick=9)
+    assert told(suspected, named) == [Happening(Event.SECOND_SENDER, CoilFire.ID)]
+    assert told(named, named._replace(tick=10)) == []
+    assert told(named, state._replace(tick=10)) == []
+
+
+@pytest.mark.parametrize(
+    ("reference", "eclipse"),
+    [(None, 1), (SimpleNamespace(lit=False), 1), (SimpleNamespace(lit=True), 0)],
+)
+def test_where_the_orbit_has_no_position_no_light_is_claimed(state, reference, eclipse):
+    used = Used(field=True, sun=False, blanked=False)
+    messages = telemetry.navigation_messages(state, used, reference, RATES)
+    (quality,) = [message for message in messages if isinstance(message, NavQuality)]
+    assert quality.eclipse == eclipse
