@@ -197,6 +197,17 @@ def test_what_was_shown_of_pulses_while_something_else_misled_the_filter_proves_
     assert (judged(after)[1] is None) == (0 not in kept)
 
 
+@pytest.mark.parametrize(("unexplained", "kept"), [(20.0, (1, 0)), (50.0, (1,))], ids=["chance", "more"])
+def test_soon_after_a_pulse_chance_may_leave_more_for_each_sample(unexplained, kept):
+    """Of twelve numbers noise leaves 20 now and then, and 50 hardly ever."""
+    estimate, _ = fly([0], [1.0], ticks=PULSE_S + 2)
+    assert estimate.trace.measured == 12
+    sums = estimate.trace.sums.copy()
+    sums[-1, -1] += unexplained - left(estimate)
+    after = traced(estimate._replace(trace=estimate.trace._replace(sums=sums)), Pulse(1, 3))
+    assert after.trace.numbers == kept
+
+
 def test_pulses_that_no_fault_of_a_coil_explains_prove_nothing_later():
     contradictory, _ = fly([0, 1, 0, 1], [0.2, 0.2, 1.6, 1.6])
     after, isolated = judged(contradictory)
