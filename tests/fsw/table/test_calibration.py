@@ -130,3 +130,5 @@ def test_a_continuous_driver_has_no_own_field_in_a_sample_but_axes():
         flight_table({"coils": coils, "calibration": {"coils": {"matrix": SWAPPED}}}, "table.toml")
     ).coils.dipoles
     assert np.array(dipoles.body_from_coils) @ np.array(dipoles.coils_from_body) == pytest.approx(np.eye(3))
+    commanded_along_1 = np.array(SWAPPED) @ (0.0, -1.0, 0.0)
+    assert np.array(dipoles.body_from_coils)[:, 0] == pytest.approx(commanded_along_1)

@@ -1,5 +1,7 @@
 """The view of the coil driver: lockout of each coil, what it drove, and whether that was requested."""
 
+from dataclasses import replace
+
 import pytest
 
 from fsw.core.actuation.actuator import LOCKOUT_UNKNOWN, MOST_IDLE_TICKS, CoilView, unexpected, update_view
@@ -100,6 +102,15 @@ def test_a_refusal_is_counted_with_or_without_a_status(said, coils):
 def test_the_driven_dipole_is_that_of_the_status(coil, level, dipole_am2, coils):
     view = update_view(CoilView(), NOTHING._replace(coil=status(coil, level=level)), TICK, coils)
     assert view.driven_am2 == dipole_am2
+
+
+def test_of_a_coil_out_of_square_it_is_the_true_one(coils):
+    """Whether the board says so, or the request is taken as driven."""
+    axes = ((0.98, 0.05, -0.02), (0.01, 1.03, 0.04), (-0.03, 0.02, 0.97))
+    turned = coils._replace(pulses=replace(coils.pulses, coil_axes=axes))
+    said = update_view(CoilView(), NOTHING._replace(coil=status(2, level=-2)), TICK, turned)
+    assert said.driven_am2 == pytest.approx((0.06, -0.04, -1.94))
+    assert update_view(FIRED, NOTHING, TICK + 1, turned).driven_am2 == pytest.approx((-0.08, -8.24, -0.32))
 
 
 @pytest.mark.parametrize(

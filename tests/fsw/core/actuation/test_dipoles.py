@@ -105,6 +105,31 @@ class TestDriven:
         assert view.asked.reported
 
 
+class TestCoilsOutOfSquare:
+    """The columns of the matrix are their dipoles per unit nominal one."""
+
+    TRUE = ((0.98, 0.01, -0.03), (0.05, 1.03, 0.02), (-0.02, 0.04, 0.97))
+    COILS = replace(CONFIG, body_from_coils=TRUE, coils_from_body=inverse(TRUE))
+
+    def test_what_the_board_says_is_driven_by_the_true_ones(self):
+        driven_am2 = dipole_am2(CoilDipoleStatus(0.5, -0.25, 0.125), self.COILS)
+        assert driven_am2 == pytest.approx(np.array(self.TRUE) @ (4.8, -2.4, 1.2), rel=1e-12)
+
+    def test_the_request_is_what_makes_them_give_the_dipole_wanted(self):
+        wanted_am2 = (1.0, -5.5, 4.0)
+        assert dipole_am2(saturate(wanted_am2, self.COILS), self.COILS) == pytest.approx(
+            wanted_am2, rel=1e-12
+        )
+
+    def test_what_does_not_fit_is_shortened_in_the_body_too(self):
+        wanted_am2 = np.array((30.0, -40.0, 20.0))
+        sent = saturate(tuple(wanted_am2), self.COILS)
+        driven_am2 = np.array(dipole_am2(sent, self.COILS))
+        assert max(map(abs, sent)) == MOST
+        assert np.dot(driven_am2, wanted_am2) > 0.0
+        assert np.cross(driven_am2, wanted_am2) == pytest.approx(ZERO, abs=1e-9)
+
+
 def history(demands, config=CONFIG, timing=TIMING, b=lambda tick: B_BODY_T, boot_tick=0):
     """What is sent in each tick from boot on, A m^2."""
     state, sent = pulses.boot(boot_tick, timing), []

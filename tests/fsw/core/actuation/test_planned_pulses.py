@@ -11,6 +11,7 @@ from actuator_samples import (
     CONFIG,
     TICK,
     ZERO,
+    make_config,
     ready,
     refusal,
     run,
@@ -77,6 +78,13 @@ class TestWaits:
     def test_or_of_the_board_if_longer(self):
         view = ALL_FREE._replace(lockout_ms=(0, 1, 2500))
         assert self.waits(ready(), view) == (0, 1, 3)
+
+    @pytest.mark.parametrize(("tick_hz", "ticks"), [(2, (0, 1, 5)), (10, (0, 1, 25)), (3, (0, 1, 8))])
+    def test_of_the_board_are_in_ticks_of_any_length(self, tick_hz, ticks):
+        """Rounded up: a coil that is asked too soon refuses."""
+        view = ALL_FREE._replace(lockout_ms=(0, 1, 2500))
+        config = make_config(tick_hz=tick_hz)
+        assert wait_ticks(ready(), view, BOARD_IS_THERE, TICK, config, (0, 0, 0)) == ticks
 
     def test_are_a_back_off_for_a_coil_of_which_the_board_has_not_spoken(self):
         view = ALL_FREE._replace(lockout_ms=(0, 0, -1))

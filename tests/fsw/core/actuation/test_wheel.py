@@ -53,6 +53,16 @@ def test_the_first_report_is_no_change():
     assert (view.change_nms, view.known) == (0.0, True)
 
 
+@pytest.mark.parametrize(
+    "readings", [NOTHING, reported(1e4), reported(104.0, valid=0)], ids=["lost", "beyond", "invalid"]
+)
+def test_a_change_counts_once_and_not_again_where_no_report_follows(readings):
+    moved = after(100.0, 103.0)
+    assert moved.change_nms > 0.0
+    view = seen(moved, readings, 2, WHEEL)
+    assert (view.change_nms, view.speed_radps, view.tick) == (0.0, 103.0, 1)
+
+
 def test_what_is_missed_is_taken_with_the_next_report():
     view = after(100.0, None, None)
     assert (view.change_nms, view.speed_radps, view.tick) == (0.0, 100.0, 0)
@@ -167,6 +177,13 @@ class TestRequest:
         assert asked(sign * 1e-3, sign * 600.0)[1].torque == 0.0
         assert asked(-sign * 1e-3, sign * 600.0)[1].torque * sign < -8e-4
         assert asked(sign * 1e-3, sign * 599.0)[1].torque * sign > 1e-3
+
+    @pytest.mark.parametrize("sign", [1.0, -1.0])
+    @pytest.mark.parametrize("slowing_nm", [0.0, 5e-5])
+    def test_nor_is_the_friction_of_a_full_wheel_made_up_for(self, sign, slowing_nm):
+        """It slows the wheel by more than is asked; the board refuses what would speed it up."""
+        assert friction_nm(600.0, WHEEL) > slowing_nm
+        assert asked(-sign * slowing_nm, sign * 600.0)[1].torque == 0.0
 
 
 def test_every_number_of_the_view_counts_in_the_checksum():

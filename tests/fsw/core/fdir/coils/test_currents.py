@@ -1,6 +1,7 @@
 """Which reading of the current a coil is judged by: one at which it is certainly on."""
 
 from dataclasses import replace
+from math import copysign
 
 import pytest
 
@@ -63,3 +64,17 @@ def test_a_sound_coil_whose_pulse_ends_just_before_the_tick_is_not_named(make_wo
     world.fly(450)
     assert world.state.coil.seq >= 3
     assert world.state.health.coils.faults == (0, 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("level", "part", "speaks_against"),
+    [(-3, 1.0, False), (-3, -1.0, True), (3, -1.0, True), (1, 1.0, False), (2, 1.0, False), (-2, 0.4, True)],
+)
+def test_it_is_judged_by_the_current_of_its_level_and_its_sign(make_world, level, part, speaks_against):
+    limits = make_world().config.fdir.coils
+    nominal_ma = copysign(limits.current_ma[abs(level) - 1], level)
+    view = CoilView(fired_tick=TICK, fired=Pulse(1, level))
+    said = NOTHING._replace(coil=CoilStatus(level, 1, 1000, round(part * nominal_ma), 0, 1))
+    before = CoilHealth(nats=(0.0, 1.0, 0.0))
+    after = judge_current(before, view, said, False, TICK + limits.pulses.pulse_ticks - 1, limits)
+    assert after.nats[1] == (1.0 + 0.5 * limits.weak.threshold if speaks_against else 0.0)

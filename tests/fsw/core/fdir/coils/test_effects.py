@@ -1,5 +1,6 @@
 """What the coils did, by the innovations of the filter: against one that knew, truth, and in doubt."""
 
+from dataclasses import replace
 from math import copysign, hypot, inf, isfinite, nan, sqrt
 
 import numpy as np
@@ -20,11 +21,13 @@ from pulse_samples import (
     left,
     traced,
 )
+from pulse_samples import PULSES as PULSES_1_HZ
 
 from fsw.core.algebra.quaternion import conjugate, rotate
 from fsw.core.algebra.vector import ZERO, scale
 from fsw.core.estimation import mekf
 from fsw.core.estimation.parameters import Prior
+from fsw.core.fdir.coils.effects import trace_pulse
 from fsw.core.fdir.coils.explanations import PULSES
 from fsw.core.laws.plan.pulse_model import Pulse
 
@@ -55,6 +58,25 @@ def test_a_pulse_proves_little_beside_a_torque_that_does_as_much_by_the_next(lev
     assert cause[:2] == (1, 1.0)
     weakest = traced(pushed, Pulse(1, 1), across).trace.causes[0]
     assert weakest.uncertain == pytest.approx(hypot(0.05, 1.0 if torque_nm else 0.0))
+
+
+def test_a_torque_acts_until_the_next_pulse_whatever_the_length_of_a_tick():
+    pushed = START._replace(parameters=START.parameters._replace(torque_body_nm=(0.0, 3e-6, 0.0)))
+    across = rotate(conjugate(START.q_body_from_eci), (0.0, 0.0, 3e-5))
+    short = replace(PULSES_1_HZ, pulse_ticks=30, backoff_ticks=1000, tick_s=0.1)
+    causes = [
+        trace_pulse(pushed, Pulse(1, 3), across, GRAVITY_PS2, pulses, CONFIG).trace.causes[0]
+        for pulses in (PULSES_1_HZ, short)
+    ]
+    assert causes[1].uncertain == pytest.approx(causes[0].uncertain)
+
+
+@pytest.mark.parametrize(("coil", "part"), [(0, 1.1), (1, 0.6), (2, 1.3)])
+def test_what_is_taken_for_its_effect_is_by_the_gain_that_the_filter_has_of_its_coil(coil, part):
+    errors = (0.1, 0.02, 0.03, 0.04, -0.4, 0.06, 0.07, 0.08, 0.3)
+    known = START._replace(parameters=START.parameters._replace(coil_error=errors))
+    cause = traced(known, Pulse(coil, 3)).trace.causes[0]
+    assert cause[:2] == (coil, pytest.approx(part))
 
 
 WITH_INERTIA = tuned(**QUIET, inertia_error_kgm2=Prior((0.06, 0.1, 0.08, 0.02, 0.02, 0.02), (0.0,) * 6))
@@ -173,6 +195,17 @@ def test_what_was_shown_of_pulses_while_something_else_misled_the_filter_proves_
     assert after.trace.measured == 0
     assert after.trace.numbers == kept
     assert (judged(after)[1] is None) == (0 not in kept)
+
+
+@pytest.mark.parametrize(("unexplained", "kept"), [(20.0, (1, 0)), (50.0, (1,))], ids=["chance", "more"])
+def test_soon_after_a_pulse_chance_may_leave_more_for_each_sample(unexplained, kept):
+    """Of twelve numbers noise leaves 20 now and then, and 50 hardly ever."""
+    estimate, _ = fly([0], [1.0], ticks=PULSE_S + 2)
+    assert estimate.trace.measured == 12
+    sums = estimate.trace.sums.copy()
+    sums[-1, -1] += unexplained - left(estimate)
+    after = traced(estimate._replace(trace=estimate.trace._replace(sums=sums)), Pulse(1, 3))
+    assert after.trace.numbers == kept
 
 
 def test_pulses_that_no_fault_of_a_coil_explains_prove_nothing_later():

@@ -167,6 +167,16 @@ def test_no_coil_does_more_the_other_way_than_a_reversed_one():
     assert weak(reversed_coil[0], (-2.6, -2.5, 0.01), (0.4, 0.4, 0.05)) == (0, -1.0), "if it may be noise"
 
 
+@pytest.mark.parametrize("lack", [-0.7, -2.6], ids=["weak", "beyond a reversed one"])
+def test_the_distance_is_that_of_what_is_left(lack):
+    """By numpy, from the part that the coil is taken to have."""
+    pulses = solution((1, 1, 0), (lack, lack + 0.1, 0.05), (0.4, 0.3, 0.1), 0.3)
+    one = next(found for found in of_pulses(pulses) if (found.coil, found.pulses) == (1, 2))
+    off = np.array([*(pulses.part[:2] - one.part), pulses.deviation[2]])
+    assert one.distance == pytest.approx(off @ np.linalg.solve(pulses.noise([0, 1, 2]), off))
+    assert (one.part == -1.0) is (lack < -2.0)
+
+
 def test_sound_pulses_are_best_explained_by_nothing_and_that_fits():
     likeliest = of_pulses(solution((0, 1, 2), (0.02, -0.03, 0.01), (0.05, 0.06, 0.04)))[-1]
     assert (likeliest.coil, likeliest.fits) == (-1, True)

@@ -100,6 +100,18 @@ def test_a_current_that_is_known_at_last_sets_the_estimate_right_and_leaves_the_
     assert left(stray.settle(estimate, 0, CONFIG)) > 2.0 * settled.trace.measured
 
 
+def test_what_a_weak_coil_did_is_set_right_and_the_current_is_traced_on():
+    weak, moving = fly([1, 0], [1.0, 0.3], ticks=60)
+    estimate, _ = fly_stray(AXES[1], ticks=15, start=weak, actual=moving)
+    after, solution = solve(estimate, CONFIG)
+    pulses = [place for place, number in enumerate(after.trace.numbers) if number < STRAY]
+    flows = [solution.causes.index(number) for number in stray.CAUSES]
+    assert after is not estimate
+    assert not after.trace.effect[:, pulses].any()
+    assert np.array_equal(after.trace.effect[:, flows], estimate.trace.effect[:, flows])
+    assert np.abs(after.trace.effect[3:6, flows]).max() > 1e-4
+
+
 def fly_followed(coil, ticks=90):
     """The estimate that takes into account what it knows of the current, and what it knew, tick by tick."""
     random = np.random.default_rng(7)
@@ -129,6 +141,26 @@ def test_what_is_known_of_the_parts_keeps_the_estimate_near_long_before_the_coil
     left_alone, other = fly_stray(AXES[coil], ticks=len(known))
     assert off < 0.1 * np.linalg.norm(error_state(left_alone, other)[:3])
     assert conducting(solve(estimate, CONFIG)[1]) == coil
+
+
+def test_of_a_current_that_was_followed_only_what_is_lacking_is_added_at_last():
+    estimate, _, known = fly_followed(1, ticks=60)
+    lacks = np.eye(3)[1] - known[-1]
+    assert 0.1 < np.abs(lacks).max() < 0.9
+    expected = estimate.trace.effect[:6, estimate.trace.numbers.index(STRAY) :][:, :3] @ lacks
+    added = error_state(estimate, stray.settle(estimate, 1, CONFIG))
+    assert added[:3] == pytest.approx(expected[:3], rel=1e-2, abs=1e-7)
+    assert added[3:] == pytest.approx(expected[3:], rel=1e-2, abs=1e-9)
+
+
+@pytest.mark.parametrize("coil", [0, 1, 2])
+def test_the_effect_of_a_tick_is_what_a_second_filter_shows_that_knew_of_it(coil):
+    unknowing = mekf.predict(START, E1_ECI, B_ECI_T, 3e-6, ZERO, CONFIG)
+    knowing = mekf.predict(START, E1_ECI, B_ECI_T, 3e-6, scale(LEVEL_AM2, AXES[coil]), CONFIG)
+    kicks = stray.kicks_radps(LEVEL_AM2, AXES, START, B_ECI_T, CONFIG)
+    effect = stray.trace(unknowing, ZERO, kicks, CONFIG.tick_s, begins=True).trace.effect[:6, coil]
+    shown, largest = error_state(unknowing, knowing), np.abs(effect).max()
+    assert shown == pytest.approx(effect, rel=1e-2, abs=1e-2 * largest)
 
 
 def test_to_follow_takes_nothing_from_what_the_trace_can_tell():
@@ -186,6 +218,26 @@ def test_one_is_named_though_its_own_effect_cannot_be_seen_if_it_is_no_other():
     """Along the field a coil turns nothing; its deviation stays at the prior, those of the others are 0."""
     assert named((0.0, 1.0, 0.01), (0.04, 0.04, 1.0)) == 1
     assert named((0.0, 0.0, 0.0), (0.04, 0.04, 1.0)) is None, "nor is it told from no current at all"
+
+
+def test_each_explanation_is_weighed_by_its_likelihood_alone():
+    """Not by the parts assumed before, from which the solution begins."""
+    random, named_coils = np.random.default_rng(29), []
+    for _ in range(200):
+        root, assumed = random.normal(size=(3, 3)) * random.uniform(1.0, 8.0), random.uniform(-0.2, 1.2, 3)
+        measured, explanations = root @ root.T, np.vstack([np.eye(3), np.zeros(3)]) - assumed
+        told = measured @ explanations[random.integers(4)] + root @ random.normal(size=3)
+        covariance = np.linalg.inv(measured + np.eye(3))
+        deviation = covariance @ told
+        distances = np.einsum("ki,ij,kj->k", explanations, measured, explanations) - 2.0 * explanations @ told
+        distances += told @ deviation
+        first, second = np.argsort(distances)[:2]
+        certain = distances[first] <= 16.0 <= distances[second] - distances[first]
+        expected = int(first) if certain and first < 3 else None
+        found = Solution(stray.CAUSES, assumed + deviation, deviation, covariance, np.zeros(3))
+        assert conducting(found) == expected
+        named_coils.append(expected)
+    assert {0, 1, 2, None} == set(named_coils)
 
 
 def test_pulses_before_it_do_not_name_a_coil():

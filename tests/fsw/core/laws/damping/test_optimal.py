@@ -27,6 +27,16 @@ vectors = st.tuples(component, component, component)
 fields = vectors.map(lambda v: tuple(4e-5 * c for c in v))
 
 
+def test_the_momentum_is_that_of_the_products_of_inertia_too(bench):
+    """Within a wide band, beside the spin that is wanted: m = -m0 b x J (omega - spin) / (|b| h0)."""
+    orbit, own = bench.Orbit(), {"least_momentum": MomentumGains(1e3)}
+    inputs = bench.inputs_at(orbit, 100, 1.0, np.eye(3), np.array(TUMBLE), FieldSample())
+    settings = bench.config(bench.Body(INERTIA, most_am2=2.0), 1.0, own)
+    m = least_momentum(inputs, (), bench.setpoint(spin_radps=0.01), settings).m_body_am2
+    left, b = INERTIA @ np.subtract(TUMBLE, (0.01, 0.0, 0.0)), np.array(inputs.b_body_t)
+    assert m == pytest.approx(-2.0 * np.cross(b, left) / np.linalg.norm(b), rel=1e-9)
+
+
 class TestDipole:
     def test_by_hand(self):
         """b x v = (1, 2, -2) x (3, 0, 1) = (2, -7, -6) e-5, |b| v0 = 3e-5 * 2."""

@@ -6,8 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fsw.core.algebra.quaternion import conjugate, multiply, normalise
-from fsw.core.laws.feedback.pd import pd_far
+from fsw.core.laws.feedback.pd import far_error, pd_dipole, pd_far
 from fsw.core.laws.feedback.two_step import FIRST, FREE, SECOND, TwoStepGains, first_turn, two_step
+from fsw.core.laws.predictive.predictive import free_change
 
 SPHERE = np.diag([1.6, 1.6, 1.6])
 K_W, K_A = 6.2694e6, 1614.9
@@ -112,6 +113,24 @@ def test_a_turn_is_done_though_the_body_is_turned_about_the_field(asked):
 
 def test_a_small_turn_about_the_field_is_left(asked):
     assert asked(normalise((0.99, 0.1, 0.0, 0.05))).memory[0] == FREE
+
+
+@pytest.mark.parametrize("stage", [FREE, FIRST, SECOND])
+def test_in_both_turns_what_would_bend_the_path_is_taken_off(bench, turned, stage):
+    """The torque across the field is that of the PD law to the end of the turn, less J f while it turns."""
+    orbit, inertia = bench.Orbit(), np.array([[1.02, 0.13, -0.09], [0.13, 1.85, 0.21], [-0.09, 0.21, 1.95]])
+    settings = bench.config(bench.Body(inertia), 1.0, {"two_step": TwoStepGains(begin_deg=170.0)})
+    c = turned((1, -2, 3), 30.0) @ orbit.c_orbit_from_eci(700.0)
+    inputs = bench.inputs_at(orbit, 700, 1.0, c, np.array([4e-3, 2e-3, -1e-3]), None)
+    goal = normalise((0.9, 0.2, -0.3, 0.1))
+    m = two_step(inputs, (stage, *goal), bench.setpoint(k_w=K_W, k_a=K_A), settings).m_body_am2
+    attitude, b = inputs.attitude, np.array(inputs.b_body_t)
+    q = attitude.q_body_from_orbit
+    off = far_error(multiply(conjugate(goal), q) if stage == FIRST else q)
+    plain = np.cross(pd_dipole(inputs.b_body_t, attitude.omega_body_orbit_radps, off, K_W, K_A), b)
+    bending = inertia @ free_change(inputs, inputs.reference, settings) if stage != FREE else np.zeros(3)
+    assert np.linalg.norm(bending) > 1e-6 or stage == FREE
+    assert np.cross(m, b) - plain == pytest.approx(b * (b @ bending) / (b @ b) - bending, rel=1e-6, abs=1e-12)
 
 
 @pytest.mark.parametrize("changed", [{"begin_deg": 2.0}, {"done_deg": 0.0}, {"done_degps": 0.0}])

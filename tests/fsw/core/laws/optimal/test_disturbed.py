@@ -173,3 +173,15 @@ def test_of_a_turned_body_the_answer_to_what_is_learned_is_in_its_axes(asked, ta
     more = np.subtract(*(asked(one, tick=200).m_body_am2 for one in (full, empty)))
     step = int(bench.Orbit().rate_radps * 2000.0 * STEPS / (2.0 * np.pi)) % STEPS
     assert more == pytest.approx(turned_15 @ table.gains[step, :, 9:] @ learned, rel=1e-3)
+
+
+def test_what_is_learned_is_expected_to_turn_the_body_in_its_axes(asked, bench, turned_15):
+    """Beside the same memory without it: J times the change is the torque of orbital axes, turned."""
+    memory, learned = asked().memory, 1e-7 * np.random.default_rng(4).standard_normal(15)
+    full, empty = (asked((*memory[:10], *own), tick=200) for own in (learned, np.zeros(15)))
+    orbit = bench.Orbit()
+    b_body_t = turned_15 @ orbit.c_orbit_from_eci(2000.0) @ orbit.b_eci_t(2000.0)
+    coils = np.cross(np.subtract(full.m_body_am2, empty.m_body_am2), b_body_t)
+    torque = turned_15 @ (functions(orbit.rate_radps * 2000.0) @ learned.reshape(5, 3))
+    change = np.subtract(full.memory[4:7], empty.memory[4:7])
+    assert INERTIA @ change - coils == pytest.approx(torque, rel=1e-5)

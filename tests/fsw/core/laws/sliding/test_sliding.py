@@ -13,6 +13,9 @@ from fsw.core.laws.sliding.sliding import SlidingGains, SlidingIntegralGains, lo
 from fsw.core.laws.table import LAWS
 
 INERTIA = np.diag([1.02, 1.85, 1.95])
+UNEVEN = np.array([[1.02, 0.13, -0.09], [0.13, 1.85, 0.21], [-0.09, 0.21, 1.95]])
+"""The same with products of inertia."""
+TICK_S = 0.5
 MOMENT = 4.82 / 3.0
 MOST_AM2 = 5.0
 TORQUE = (1e-7, 1e-7, 1e-7)
@@ -52,7 +55,7 @@ def inputs(bench, turned):
 @pytest.fixture
 def asked(bench):
     def ask(name, inputs, memory=(), own=None, most_am2=MOST_AM2):
-        settings = bench.config(bench.Body(INERTIA, most_am2=most_am2), 1.0, {name: own or OWN[name]()})
+        settings = bench.config(bench.Body(UNEVEN, most_am2=most_am2), TICK_S, {name: own or OWN[name]()})
         return LAWS[name].point(inputs, memory, bench.setpoint(), settings)
 
     return ask
@@ -78,13 +81,13 @@ def test_both_integrals_grow_by_what_they_are_of(inputs, asked):
     memory = np.array(asked("sliding_integral", inputs, tuple(held), gains).memory)
     q0, *vector = inputs.attitude.q_body_from_orbit
     vector = np.copysign(1.0, q0) * np.array(vector)
-    mean = held[:3] + gains.integral * w0**2 * MOMENT * vector
-    momentum = INERTIA @ inputs.attitude.omega_body_orbit_radps
+    mean = held[:3] + gains.integral * w0**2 * MOMENT * TICK_S * vector
+    momentum = UNEVEN @ inputs.attitude.omega_body_orbit_radps
     s = momentum + gains.slope * w0 * MOMENT * vector + mean + held[3:]
     b = np.array(inputs.b_body_t)
     lost = b * (b @ (-gains.reach * w0 * s)) / (b @ b)
     assert memory[:3] == pytest.approx(mean, rel=1e-9)
-    assert memory[3:] - held[3:] == pytest.approx(gains.lost * lost, rel=1e-6)
+    assert memory[3:] - held[3:] == pytest.approx(gains.lost * TICK_S * lost, rel=1e-6)
     assert np.linalg.norm(lost) > 1e-9
 
 
@@ -117,7 +120,7 @@ def test_the_torque_asked_for_is_parallel_to_the_surface(bench, inputs, asked):
     m = np.array(asked("sliding", inputs).m_body_am2)
     w0, own = inputs.reference.orbit_rate_radps, SlidingGains()
     omega, q = inputs.attitude.omega_body_orbit_radps, inputs.attitude.q_body_from_orbit
-    s = INERTIA @ omega + own.slope * w0 * MOMENT * np.array(q[1:]) * np.sign(q[0])
+    s = UNEVEN @ omega + own.slope * w0 * MOMENT * np.array(q[1:]) * np.sign(q[0])
     unit = np.array(inputs.b_body_t) / np.linalg.norm(inputs.b_body_t)
     wanted = -own.reach * w0 * s
     assert np.cross(m, inputs.b_body_t) == pytest.approx(wanted - unit * (unit @ wanted), rel=1e-9)

@@ -11,6 +11,9 @@ from fsw.core.laws.sliding.super_twisting import (
     twisting,
 )
 
+INERTIA = np.array([[1.02, 0.13, -0.09], [0.13, 1.85, 0.21], [-0.09, 0.21, 1.95]])
+MOMENT, TICK_S = 4.82 / 3.0, 0.5
+
 
 def test_the_surface_bends_with_the_power_and_the_sign():
     s = terminal_surface((1e-3, 0.0, -2e-3), (0.04, -0.25, 0.0), 0.01, 0.5, 0.1)
@@ -53,25 +56,28 @@ def asked(bench, turned):
 
     def ask(memory=(), most_am2=5.0, **changed):
         own = {"sliding_twisting": SuperTwistingGains(**changed)}
-        settings = bench.config(bench.Body(most_am2=most_am2), 1.0, own)
+        settings = bench.config(bench.Body(INERTIA, most_am2=most_am2), TICK_S, own)
         return inputs, sliding_twisting(inputs, memory, bench.setpoint(), settings)
 
     return ask
 
 
-def test_the_torque_opposes_what_of_the_surface_is_normal_to_the_field(asked):
-    inputs, demand = asked()
+def test_torque_and_integral_are_those_of_the_equations(asked):
+    """-1.5 L^(1/2) r / |r|^(1/2) + v less its part along the field, and v' = -1.1 L r / |r| - leak v."""
+    v = np.array([2e-9, -5e-9, 4e-9])
+    inputs, demand = asked(tuple(v))
     w0, q = inputs.reference.orbit_rate_radps, np.array(inputs.attitude.q_body_from_orbit)
-    inertia = np.diag([1.02, 1.85, 1.95])
     qv = q[1:] * np.sign(q[0])
-    k = 0.15 * w0 * np.trace(inertia) / 3.0
-    s = inertia @ inputs.attitude.omega_body_orbit_radps + k * (np.abs(qv) ** 0.8 * np.sign(qv) + 0.5 * qv)
+    k = 0.15 * w0 * MOMENT
+    s = INERTIA @ inputs.attitude.omega_body_orbit_radps + k * (np.abs(qv) ** 0.8 * np.sign(qv) + 0.5 * qv)
     n = np.array(inputs.b_body_t) / np.linalg.norm(inputs.b_body_t)
-    across = s - n * (n @ s)
+    r, level = (s - n * (n @ s)) / MOMENT, 0.03 * w0**3
+    size = np.linalg.norm(r)
+    wanted = MOMENT * (v - 1.5 * np.sqrt(level / size) * r)
     torque = np.cross(demand.m_body_am2, inputs.b_body_t)
-    assert torque / np.linalg.norm(torque) == pytest.approx(-across / np.linalg.norm(across), rel=1e-9)
-    held = np.array(demand.memory)
-    assert held / np.linalg.norm(held) == pytest.approx(-across / np.linalg.norm(across), rel=1e-9)
+    assert torque == pytest.approx(wanted - n * (n @ wanted), rel=1e-9)
+    change = -1.1 * level * r / size - 0.3 * w0 * v
+    assert np.array(demand.memory) - v == pytest.approx(TICK_S * change, rel=1e-6, abs=0.0)
 
 
 def test_the_integral_is_limited_to_what_the_coils_can_hold(asked):
@@ -79,7 +85,7 @@ def test_the_integral_is_limited_to_what_the_coils_can_hold(asked):
     for _ in range(200):
         inputs, demand = asked(memory, most_am2, level=1.0, leak=0.0)
         memory = demand.memory
-    limit = most_am2 * np.linalg.norm(inputs.b_body_t) / (4.82 / 3.0)
+    limit = most_am2 * np.linalg.norm(inputs.b_body_t) / MOMENT
     assert np.linalg.norm(memory) == pytest.approx(limit, rel=1e-6)
 
 

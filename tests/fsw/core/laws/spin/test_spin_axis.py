@@ -83,6 +83,23 @@ class TestTorques:
         np.testing.assert_allclose(torque, normal, rtol=1e-9, atol=1e-14)
 
 
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_of_any_body_the_three_terms_are_of_its_momentum_about_its_own_axis(bench, turned, axis):
+    """Products of inertia, a wheel across the axis, and another spin than the one wanted."""
+    inertia = np.array([[1.02, 0.13, -0.09], [0.13, 1.85, 0.21], [-0.09, 0.21, 1.95]])
+    orbit, wheel, omega = bench.Orbit(), np.array([0.01, -0.02, 0.03]), np.array([0.02, -0.03, 0.05])
+    c_body_from_eci = turned((1, -2, 3), 40.0) @ orbit.c_orbit_from_eci(700.0)
+    inputs = bench.inputs_at(orbit, 700, 1.0, c_body_from_eci, omega, FieldSample())
+    gains = ThreeTermGains(axis + 1.0, *TARGET, k_h=1e6, k_spin=2e6)
+    settings = bench.config(bench.Body(inertia, tuple(wheel.tolist())), 1.0, {"three_term": gains})
+    m = three_term(inputs, (), bench.setpoint(k_w=3e6, spin_radps=0.06), settings).m_body_am2
+    e, h = np.eye(3)[axis], inertia @ omega + wheel
+    size = e @ (0.06 * inertia @ e + wheel)
+    target = c_body_from_eci @ TARGET / np.linalg.norm(TARGET)
+    wanted = 2e6 * (size - h[axis]) * e + 1e6 * (size * target - h) - 3e6 * (omega - omega[axis] * e)
+    assert m == pytest.approx(np.cross(inputs.b_body_t, wanted), rel=1e-9)
+
+
 class TestFlights:
     def test_reorientation_turns_the_momentum_and_keeps_its_size(self, spinning):
         run = spinning(reorientation, (0.05, 0.0, 0.0), orbits=2, most_am2=5.0)

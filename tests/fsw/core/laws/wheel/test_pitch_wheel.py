@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fsw.core.laws.interface import Wheel
+from fsw.core.laws.interface import FieldSample, Wheel
 from fsw.core.laws.wheel.pitch_wheel import (
     PitchWheelGains,
     momentum_dipole,
@@ -42,6 +42,17 @@ def flown(bench, turned, first=((1, -2, 3), 15.0), orbits=2.0, begin_nms=0.05, k
         omega_body=(0.0, 0.0, orbit.rate_radps),
         seconds=orbits * orbit.period_s,
     )
+
+
+def test_the_wheel_turns_the_body_against_its_moment_about_axis_3(bench, turned):
+    orbit, gains = bench.Orbit(500.0, 80.0), PitchWheelGains(pitch_rad=0.1, damping=0.8)
+    inertia = np.array([[1.02, 0.13, -0.09], [0.13, 0.65, 0.21], [-0.09, 0.21, 1.95]])
+    settings = bench.config(bench.Body(inertia, driven=WHEEL), 4.0, {"pitch_wheel": gains})
+    c = turned((0, 0, 1), 20.0) @ orbit.c_orbit_from_eci(400.0)
+    inputs = bench.inputs_at(orbit, 100, 4.0, c, (0.0, 0.0, orbit.rate_radps + 1e-3), FieldSample())
+    demand = pitch_wheel(inputs._replace(wheel_nms=0.05), (), bench.setpoint(), settings)
+    on_body_nm = 1.95 * (0.02**2 * np.sin(0.1 - np.radians(20.0)) - 2.0 * 0.8 * 0.02 * 1e-3)
+    assert demand.wheel_torque_nm == pytest.approx(-on_body_nm, rel=1e-9)
 
 
 def pitches_deg(flight):
@@ -89,8 +100,9 @@ def test_a_pitch_of_its_own_is_held(bench, turned):
     assert pitches_deg(flight)[-1] == pytest.approx(np.degrees(0.35), abs=0.3)
 
 
-def test_a_wheel_along_another_axis_is_not_driven(bench, turned):
-    wheel = Wheel((0.0, 1.0, 0.0), 2e-4, 2e-3, 0.12, 0.0, 0.0, tick_s=4.0, stale_ticks=10)
+@pytest.mark.parametrize("axis", [(0.0, 1.0, 0.0), (0.0, 0.0, -1.0)])
+def test_a_wheel_along_another_axis_is_not_driven(bench, turned, axis):
+    wheel = Wheel(axis, 2e-4, 2e-3, 0.12, 0.0, 0.0, tick_s=4.0, stale_ticks=10)
     flight = flown(bench, turned, wheel=wheel, orbits=0.05)
     assert (flight.wheel_nms == 0.05).all()
     assert not flight.m_body.any()

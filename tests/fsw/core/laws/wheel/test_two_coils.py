@@ -1,5 +1,6 @@
 """Two coils and a wheel: any torque, by the matrix of the three; and what becomes of it over the poles."""
 
+from dataclasses import replace
 from math import radians
 
 import numpy as np
@@ -131,6 +132,24 @@ def test_over_the_poles_it_fails(bench, turned):
             assert left_deg.max() > 3.0
     assert efforts[60.0] == pytest.approx(2.0 * efforts[0.0], rel=0.1)
     assert efforts[90.0] > 0.9 * 8.0
+
+
+@pytest.mark.parametrize(("most_am2", "most_nm"), [(8.0, 2e-5), (0.5, 2e-3)])
+def test_beyond_what_motor_or_coils_give_the_torque_keeps_its_direction(bench, turned, most_am2, most_nm):
+    orbit, wheel = bench.Orbit(500.0, 51.6), replace(WHEEL, max_torque_nm=most_nm)
+    c = turned((1, -2, 3), 50.0) @ orbit.c_orbit_from_eci(100.0)
+    settings = bench.config(
+        bench.Body(np.array(J), most_am2=most_am2, driven=wheel), 1.0, {"two_coils": TwoCoilsGains()}
+    )
+    inputs = bench.inputs_at(orbit, 100, 1.0, c, np.zeros(3), FieldSample())._replace(wheel_nms=0.05)
+    wanted = compensated_torque(inputs, settings, 0.01, 1.0)
+    demand = two_coils(inputs, (), bench.setpoint(), settings)
+    m, wheel_nm = np.array(demand.m_body_am2), demand.wheel_torque_nm
+    given = np.cross(m, inputs.b_body_t) - wheel_nm * np.array(wheel.axis_body)
+    part = np.dot(given, wanted) / np.dot(wanted, wanted)
+    assert given == pytest.approx(part * np.array(wanted), rel=1e-9)
+    assert 0.0 < part < 0.5
+    assert max(np.linalg.norm(m) / most_am2, abs(wheel_nm) / most_nm) == pytest.approx(1.0)
 
 
 def test_far_away_all_coils_help(bench, turned):
