@@ -10,7 +10,15 @@ from torquer import InputError
 from torquer.api.run import Run
 from torquer.testing import ExpressionError, FlownScenario
 
-SUMMARY = {"limits_ok": True, "mode_final": "POINT", "pulses": {"total": 7}, "pointing_deg": {"final": 2.5}}
+SUMMARY = {
+    "scenario": "microsat",
+    "seed": 7,
+    "sim_seconds": 302.0,
+    "limits_ok": True,
+    "mode_final": "POINT",
+    "pulses": {"total": 7},
+    "pointing_deg": {"final": 2.5},
+}
 
 
 @pytest.fixture
