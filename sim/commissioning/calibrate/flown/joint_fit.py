@@ -25,6 +25,8 @@ from sim.commissioning.calibrate.flown.samples import whole
 
 Array = NDArray[np.float64]
 
+MOST_STEPS = 40
+"""Of a fit; one to samples that it can explain takes 5 to 16, one to a Sun that is none does not end."""
 LEAST_REST = 1e-3
 """Of the variance of the second residual, what is left without the first where field and Sun are parallel."""
 
@@ -96,7 +98,7 @@ def joint_fit(observed: FreeSamples, prior: FitPrior) -> FieldFit:
         return np.concatenate([first, second[lit], (x - centre) / sigma])
 
     start = np.concatenate([prior.matrix.ravel(), _first_offset(observed, prior)])
-    found = least_squares(errors, start, "3-point", x_scale="jac")
+    found = least_squares(errors, start, "3-point", x_scale="jac", max_nfev=MOST_STEPS)
     slopes = np.asarray(found.jac, np.float64)
     covariance: Array = np.asarray(np.linalg.inv(slopes.T @ slopes), np.float64)
     first, second = _whitened(observed, found.x).T
