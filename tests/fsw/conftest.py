@@ -13,6 +13,7 @@ from fsw.core.state import Inbox
 from fsw.core.step import boot, step
 from fsw.input.schema import merge
 from fsw.table.config import flight_config
+from fsw.table.table import load_flight_table
 from fsw.wire.messages import CLASSES, Sync
 from sim.plant.plant import Plant
 from sim.scenario.assemble import plant_config
@@ -72,6 +73,12 @@ class World:
     def fly(self, ticks, change=lambda inbox: inbox):
         """All messages of so many ticks, a list a tick."""
         return [self.step(change) for _ in range(ticks)]
+
+
+@pytest.fixture(scope="session")
+def config():
+    """The flight software by the onboard table that ships with it."""
+    return flight_config(load_flight_table(None))
 
 
 @pytest.fixture(scope="session")

@@ -7,8 +7,6 @@ import pytest
 from fsw import runner
 from fsw.bus.interface import BusClosed
 from fsw.node import FlightNode
-from fsw.table.config import flight_config
-from fsw.table.table import load_flight_table
 from fsw.wire.messages import CLASSES, FswBoot, MagField, PlantBoot, PlantEnd, Sync
 
 FIELD = MagField(1, 20000.0, -7000.0, 31000.0).encode()
@@ -38,11 +36,6 @@ class TimedScript:
 
     def close(self):
         pass
-
-
-@pytest.fixture(scope="module")
-def config():
-    return flight_config(load_flight_table(None))
 
 
 @pytest.fixture
