@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 OF_EVERY_FLIGHT = {"scenario", "seed", "sim_seconds", "limits_ok"}
-"""Keys of a summary, without which nothing has failed in it because nothing is in it."""
+"""Keys of every summary; in a document without them nothing has failed because nothing is told."""
 
 
 @dataclass(frozen=True)

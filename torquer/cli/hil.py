@@ -23,7 +23,7 @@ EXAMPLES = examples(
 )
 
 BUDGET = click.FloatRange(0.0)
-"""What nothing measured can be below would be broken in any run."""
+"""Below zero it would be broken in any run."""
 
 
 @click.command(epilog=EXAMPLES)

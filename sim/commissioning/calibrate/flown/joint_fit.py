@@ -8,11 +8,13 @@ sample that do not depend on the attitude. Without the Sun only |b_body| counts,
 open. Each sample's two residuals are weighted by their common covariance; what is known beforehand of M and o
 counts as measured.
 
-The noise n of a reading is in M n: with weights of their own the squares would be least with an M too small,
-so those of M are taken, by which what is least are the squares of n itself.
+The noise n of a reading is M n in b_body. With weights that do not depend on M the sum of squares would be
+least with an M too small. So each residual is divided by the noise that M gives it, which makes the squares
+of n itself least.
 
 Source: Merayo et al. 2000, Scalar calibration of vector magnetometers, for the first; Alonso, Shuster 2002,
-TWOSTEP, for the start; the second is the dot-product constraint of Lerner, Shuster 1981.
+TWOSTEP, for the start; the second is the dot-product constraint of Lerner, Shuster 1981; the weights are
+those of Sampson 1982, Fitting conic sections to very scattered data.
 """
 
 from dataclasses import dataclass
