@@ -29,6 +29,9 @@ from fsw.wire.messages import (
 )
 from sim.errors import HarnessError
 
+LATE_PART = 0.1
+"""Part of a tick by which this computer may be late; after a longer delay the ticks count on from there."""
+
 
 class NonconformanceError(Exception):
     """The board does not do what the specification demands; the message is one sentence."""
@@ -121,6 +124,8 @@ class BoardLink:
         self._boots = 0
         self.tick = 0
         """The tick whose SYNC comes next; the board is in it."""
+        self.put_off_s = 0.0
+        """By how much ticks came later than the rate says, in sum."""
         self.replies: list[TickReply] = []
         """All replies so far."""
 
@@ -156,9 +161,12 @@ class BoardLink:
         return self._listen(self.tick, at_s, seconds)
 
     def due_s(self) -> float:
-        """When the next SYNC is due, by the clock; if that is more than a tick ago, it is now."""
-        if self.clock() > self._due_s + self.period_s:
-            self._due_s = self.clock()
+        """When the next SYNC is due, by the clock; if that is too long ago, it is now.
+
+        So a tick in which this computer was busy does not take from the next one's time for an answer.
+        """
+        if self._late():
+            self._put_off(self.clock())
         return self._due_s
 
     def _listen(
@@ -167,14 +175,30 @@ class BoardLink:
         self._watch()
         self._due_s += seconds
         reply = TickReply(tick, at_s, due)
-        while (left_s := self._due_s - self.clock()) > 0.0:
-            frame = self._bus.receive(left_s)
-            if frame is not None:
-                self._take(frame, reply)
-            if early_s is not None and reply.only(self.kind.sample):
-                self._due_s = min(self._due_s, self.clock() + early_s)
+        self._receive(reply, early_s)
+        if self._late():  # this computer was busy, and perhaps the board's link with it
+            self._put_off(self.clock() + LATE_PART * self.period_s)
+            self._receive(reply)
         self.replies.append(reply)
         return reply
+
+    def _receive(self, reply: TickReply, early_s: float | None = None) -> None:
+        """Take what comes until the next SYNC is due, and what waits by then: it has come in time."""
+        while (left_s := self._due_s - self.clock()) > -self.period_s:  # a board that babbles has no end
+            frame = self._bus.receive(max(0.0, left_s))
+            if frame is not None:
+                self._take(frame, reply)
+            elif left_s <= 0.0:
+                return
+            if early_s is not None and reply.only(self.kind.sample):
+                self._due_s = min(self._due_s, self.clock() + early_s)
+
+    def _late(self) -> bool:
+        return self.clock() > self._due_s + LATE_PART * self.period_s
+
+    def _put_off(self, due_s: float) -> None:
+        self.put_off_s += due_s - self._due_s
+        self._due_s = due_s
 
     def _take(self, frame: Frame, reply: TickReply) -> None:
         sender = SENDERS.get(frame.can_id)

@@ -25,9 +25,9 @@ LIMITS = (
     "--tick-hz",
     "2",
     "--deadman-s",
-    "1.2",
+    "2.0",
 )
-BOARD = ("coil", "--pulse-s", "1.2", "--backoff-s", "3.9", "--tick-hz", "2", "--deadman-s", "1.2")
+BOARD = ("coil", "--pulse-s", "1.2", "--backoff-s", "3.9", "--tick-hz", "2", "--deadman-s", "2.0")
 SHORT = (*BOARD, "--backoff-s", "3.0")
 
 

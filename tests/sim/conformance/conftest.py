@@ -1,6 +1,7 @@
 """A board on a simulated bench: the same conversation as over a bus, in simulated time."""
 
 from collections import deque
+from itertools import cycle
 
 import pytest
 
@@ -60,9 +61,28 @@ class SlowBus(SimulatedBus):
         return super().receive(timeout_s)
 
 
+class BusyBus(SlowBus):
+    """As a slow one, on a computer that is busy for 0.45 s now and then while it waits for an answer."""
+
+    def __init__(self, bench):
+        self.busy_s = cycle([0.45] + 22 * [0.0])
+        super().__init__(bench)
+
+    def receive(self, timeout_s):
+        frame = super().receive(timeout_s)
+        if timeout_s > 0.0:
+            self.now_s += next(self.busy_s)
+        return frame
+
+
 @pytest.fixture
 def slow_bus():
     return SlowBus
+
+
+@pytest.fixture
+def busy_bus():
+    return BusyBus
 
 
 @pytest.fixture

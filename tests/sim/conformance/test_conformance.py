@@ -42,6 +42,13 @@ def test_a_board_has_a_whole_tick_for_its_answer(link_to, slow_bus, failures):
     assert failures(run_checks(link, BoardLimits(), armed=True)) == {}
 
 
+@pytest.mark.parametrize("hz", [1, 2])
+def test_a_computer_that_is_busy_for_a_tick_does_not_blame_the_board(link_to, busy_bus, failures, hz):
+    """An answer that waits is one of its tick, and the next tick has its whole time again."""
+    link = link_to(lambda: CoilBoard(CoilLimits(hz)), hz, bus=busy_bus)
+    assert failures(run_checks(link, BoardLimits(), armed=True)) == {}
+
+
 @pytest.mark.parametrize(("pulse_ms", "backoff_ms", "deadman_s"), [(2500, 7300, 5.0), (500, 1500, 0.5)])
 def test_it_conforms_with_other_limits(link_to, pulse_ms, backoff_ms, deadman_s, failures):
     limits = CoilLimits(10, pulse_ms, backoff_ms)
