@@ -1,7 +1,7 @@
 """What is known of a coil after the pulses that showed it: kept with them, forgotten with them."""
 
 import pytest
-from pulse_samples import CONFIG, EVERY, PULSES, REFERENCE, WEAK, fly
+from pulse_samples import B_ECI_T, CONFIG, EVERY, LEVEL_AM2, PULSE_S, PULSES, REFERENCE, START, WEAK, fly
 
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.estimation.estimator import EstimatorState
@@ -11,16 +11,17 @@ from fsw.core.fdir.coils.health import NONE_OLDER, CoilHealth, CoilHealthConfig
 from fsw.core.fdir.coils.torques import BelievedParts, judge_effect
 from fsw.core.fdir.coils.weak_test import Older, PartSum
 from fsw.core.fdir.faults import CoilFault
+from fsw.core.laws.plan.pulse_model import Pulse
 
 WEAK_COIL = BelievedParts(0.7, 0.7)
 HEALTH = CoilHealth(older=(Older(PartSum(2, 30.0, 9.0, 2.7)), Older(kept=1.0), Older()))
 LIMITS = CoilHealthConfig((40.0, 120.0, 400.0), WEAK, 1.0, 5, PULSES, CONFIG, 3000)
 
 
-def judged(estimate, believed=WEAK_COIL):
+def judged(estimate, believed=WEAK_COIL, health=HEALTH):
     """The health when the next pulse is due."""
     view, state = CoilView(fired_tick=1000 - EVERY), EstimatorState(estimate)
-    return judge_effect(HEALTH, view, REFERENCE, state, 1000, believed, False, LIMITS)
+    return judge_effect(health, view, REFERENCE, state, 1000, believed, False, LIMITS)
 
 
 @pytest.mark.parametrize(
@@ -68,3 +69,81 @@ def test_pulses_that_are_explained_leave_it(parts):
     health, state = judged(explained)
     assert state.estimate.trace is not None
     assert health == HEALTH
+
+
+ENDED = CoilView(fired_tick=1000 - PULSE_S, fired=Pulse(2, -3), driven_coil=2, driven_level=-3)
+"""A pulse of coil 2 that ends in this tick, driven as requested."""
+
+
+def ended(view=ENDED, estimate=START, health=HEALTH):
+    """Health and state of the estimator at the end of a pulse."""
+    return judge_effect(health, view, REFERENCE, EstimatorState(estimate), 1000, WEAK_COIL, False, LIMITS)
+
+
+def test_a_pulse_that_ends_is_traced_with_the_gravity_of_its_orbit(monkeypatch):
+    """3 mu/r^3 of a circular orbit is thrice the square of its angular rate: here 1.055 mrad/s."""
+    seen = []
+    trace_pulse = torques.effects.trace_pulse
+    monkeypatch.setattr(
+        torques.effects, "trace_pulse", lambda *words: (seen.append(words), trace_pulse(*words))[1]
+    )
+    _, state = ended()
+    assert state.estimate.trace.numbers == (2,)
+    (_, pulse, b_eci_t, gravity_ps2, *_) = seen[0]
+    assert (pulse, b_eci_t) == (Pulse(2, -3), B_ECI_T)
+    assert gravity_ps2 == pytest.approx(3.0 * 1.055e-3**2, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [{"driven_level": 3}, {"driven_level": -2}, {"driven_coil": 1}, {"driven_level": 0}],
+    ids=["reversed", "another level", "another coil", "not driven"],
+)
+def test_a_pulse_that_was_not_driven_as_requested_is_not_traced(changes):
+    _, state = ended(ENDED._replace(**changes))
+    assert state.estimate.trace is None
+
+
+def test_what_the_oldest_pulse_of_a_coil_has_shown_is_kept_with_that_coil():
+    """Coil 2 has three pulses, too weak ones; a fourth takes the place of the first."""
+    full, _ = fly([2, 0, 2, 1, 2], [0.5, 1.0, 0.5, 1.0, 0.5])
+    before = HEALTH._replace(older=NONE_OLDER)
+    health, state = ended(estimate=full, health=before)
+    assert state.estimate.trace.numbers.count(2) == 3
+    assert [older.parts.pulses for older in health.older] == [0, 0, 1]
+
+
+@pytest.mark.parametrize(
+    ("faults", "gain_nats", "named"),
+    [
+        ((0, 0, 0), [-1.0, 30.0, 0.0], True),
+        ((0, 0, 0), [0.5, 30.0, -1.0], False),
+        ((0, 0, 0), [-1.0, 30.0, 0.5], False),
+        ((CoilFault.OPEN, 0, 0), [9.0, 30.0, -1.0], True),
+        ((CoilFault.OPEN, 0, 0), [-1.0, 30.0, 0.5], False),
+        ((CoilFault.OPEN, 0, CoilFault.WEAK), [-1.0, 30.0, -1.0], False),
+    ],
+    ids=["sound", "first weak", "third weak", "an isolated one may be", "the other may not", "the last"],
+)
+def test_a_coil_is_named_only_while_the_others_that_are_left_seem_sound(
+    monkeypatch, faults, gain_nats, named
+):
+    """A wrong inertia makes all of them seem weak; and one coil is never isolated as the last."""
+    monkeypatch.setattr(torques.explanations, "weak_by_pulses", lambda *of_this_tick: (1, 0.1))
+    monkeypatch.setattr(torques.explanations, "by_gain", lambda *of_this_tick: gain_nats)
+    estimate, _ = fly([0, 1, 2, 0], [1.0] * 4)
+    health, _ = judged(estimate, health=HEALTH._replace(faults=faults))
+    assert health.faults == ((faults[0], CoilFault.OPEN, faults[2]) if named else faults)
+
+
+def test_a_stray_current_is_traced_from_its_first_tick_on_through_all_that_follow():
+    """A trace that began anew in each tick would only ever know the last one's kick."""
+    health, estimate = HEALTH._replace(stray_ma=400, strange_ticks=1), START
+    lengths = []
+    for tick in range(1000, 1004):
+        view, state = CoilView(fired_tick=tick - PULSE_S - 1), EstimatorState(estimate)
+        _, state = judge_effect(health, view, REFERENCE, state, tick, WEAK_COIL, False, LIMITS)
+        estimate, health = state.estimate, health._replace(strange_ticks=health.strange_ticks + 1)
+        first = torques.stray.kicks_radps(LEVEL_AM2, LIMITS.stray_axes, estimate, B_ECI_T, CONFIG)[0]
+        lengths.append(float(estimate.trace.effect[3, 0] / first[0]))
+    assert lengths == pytest.approx([1.0, 2.0, 3.0, 4.0], rel=1e-6)
