@@ -63,6 +63,7 @@ def compare(
 ) -> int:
     """Fly every applicable control law on SCENARIO, all else the same: table and picture."""
     from sim.compare import command
+    from sim.flight.record_flight import ticks_of
 
-    load_scenario(scenario, settings)
+    load_scenario(scenario, settings, lambda chosen: ticks_of(chosen, orbits))
     return command.compare(scenario, settings, laws, driver, orbits, seed, workers, out, gains)

@@ -12,7 +12,7 @@ from sim.commissioning.calibrate.flown.coil_axes import CoilAxes, coil_axes
 from sim.commissioning.calibrate.flown.coil_field import CoilResponse, coil_response
 from sim.commissioning.calibrate.flown.expected import Expected, expected
 from sim.commissioning.calibrate.flown.joint_fit import FieldFit, FreeSamples
-from sim.commissioning.calibrate.flown.samples import Samples, in_time
+from sim.commissioning.calibrate.flown.samples import Samples, in_time, whole
 from sim.commissioning.calibrate.flown.sensor_axes import sensor_axes
 from sim.commissioning.calibrate.flown.wiring import WIRINGS, Wiring
 from sim.commissioning.phasing import evidence
@@ -84,8 +84,12 @@ def phasing(samples: Samples, table: FlightTable, known: Known, dipoles: Judged 
     fits: dict[Wiring, FieldFit] = {}
     motion: dict[Wiring, tuple[CoilAxes, list[OutputAxes]]] = {}
     sensors: list[Wiring] = list(WIRINGS)
-    if known.field_around_nt is not None:
-        reading = np.nanmean(samples.field_nt[samples.free(NEAR_TICKS)], axis=0)
+    free_nt = samples.field_nt[samples.free(NEAR_TICKS)]
+    free_nt = free_nt[whole(free_nt)]
+    if known.field_around_nt is not None and not len(free_nt):
+        missing.append("no sample of the field is clear of the pulses, so that the field around tells nothing")
+    elif known.field_around_nt is not None:
+        reading = free_nt.mean(axis=0)
         sensors = evidence.by_field_around(reading, known.field_around_nt, known.offset_nt)
     elif known.in_orbit:
         along = expected(table, samples.unix_s)

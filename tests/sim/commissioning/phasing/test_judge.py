@@ -88,6 +88,15 @@ def test_at_rest_the_coils_field_tells_the_product_alone(flown, wired):
     assert at_rest.told is None
 
 
+def test_a_known_field_without_a_sample_of_it_is_missing_evidence_and_no_contradiction(flown, wired):
+    """As in a log in which a coil is on all the time."""
+    _, samples, table = flown()
+    always = replace(samples, level=np.where(samples.level == 0, 1, samples.level))
+    bench = phasing(always, table, Known(field_around_nt=np.array([20e3, -15e3, 35e3])))
+    assert wired in bench.pairs
+    assert any("the field around tells nothing" in reason for reason in bench.missing)
+
+
 def test_pulses_were_asked_for_by_telecommand(flown):
     from fsw.wire.messages import TcLaw
 
