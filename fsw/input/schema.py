@@ -14,6 +14,10 @@ Triple = Annotated[tuple[float, float, float], Strict(False)]
 Square = Annotated[tuple[Triple, Triple, Triple], Strict(False)]
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+StepNt = Annotated[float, Field(ge=0.0, le=1e5)]
+StepPercent = Annotated[float, Field(ge=0.0, le=100.0)]
+StepOfOne = Annotated[float, Field(ge=0.0, le=1.0)]
+"""Steps of a quantised reading: no coarser than all that it measures."""
 
 Nested = dict[str, Any]
 Model = TypeVar("Model", bound=BaseModel)

@@ -8,7 +8,7 @@ from pydantic import Field, Strict, model_validator
 from fsw.core.algebra.vector import Vec3, unit
 from fsw.core.estimation.cells.cell_set import CellSet, Shade
 from fsw.core.estimation.parameters import MOST_CELLS
-from fsw.input.schema import NotNegative, Positive, Section, Triple
+from fsw.input.schema import Positive, Section, StepPercent, Triple
 
 QUANTUM = 1.0 / 128.0
 """Step of a current on the bus, as a fraction of full sunlight."""
@@ -54,7 +54,7 @@ class CellTable(CellShapes):
 
     full_sun: Annotated[tuple[Positive, ...], Strict(False)] | None = None
     noise_percent: Positive = 1.0
-    quantum_percent: NotNegative = 0.0
+    quantum_percent: StepPercent = 0.0
     dark_percent: float = Field(default=5.0, gt=0.0, le=20.0)
     albedo: float = Field(default=0.3, ge=0.0, le=1.0)
 

@@ -12,7 +12,7 @@ from fsw.core.laws.table import LAWS
 from fsw.core.orbit.propagation import sgp4_orbit
 from fsw.input.near import did_you_mean
 from fsw.input.own_code import short_name
-from fsw.input.schema import NotNegative, Positive, Section, Square, Triple
+from fsw.input.schema import NotNegative, Positive, Section, Square, StepNt, StepOfOne, Triple
 from fsw.table.inertia import check_inertia, three_numbers
 
 CIRCULAR_KEYS = ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")
@@ -226,9 +226,9 @@ class EstimatorTable(Section):
     """
 
     magnetometer_sigma_nt: Positive
-    magnetometer_quantum_nt: NotNegative = 0.0
+    magnetometer_quantum_nt: StepNt = 0.0
     sun_sigma_deg: Positive
-    sun_quantum: NotNegative = 0.0
+    sun_quantum: StepOfOne = 0.0
     rate_sigma_degps: Positive
     valid_sigma_deg: Positive
 

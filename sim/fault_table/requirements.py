@@ -58,7 +58,8 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     Requirement(
         "REQ-FDIR-02",
         "No attitude is called valid that is wrong for long, unless both sensors agree on what is wrong.",
-        f"{WRONG_DEG:g} deg for {WRONG_S:g} s on end; {ALONE_DEG:g} deg where only one sensor is left",
+        f"{WRONG_DEG:g} deg for {WRONG_S:g} s on end; {ALONE_DEG:g} deg where only one sensor is "
+        "left, and in the orbit after an estimate has begun from Sun cells",
         None,
         None,
     ),

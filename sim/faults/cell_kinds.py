@@ -40,6 +40,15 @@ class CellScaled(WrongCurrent):
         return self.parameters["scale"] * current
 
 
+class CellsRandom(Fault):
+    """Each cell has no current or ``percent`` of full sunlight, at random in each tick."""
+
+    def cells(self, currents: tuple[float, ...]) -> tuple[float, ...]:
+        """The random currents."""
+        lit = 0.01 * self.parameters["percent"]
+        return tuple([self.rng.choice((0.0, lit)) for _ in currents])
+
+
 class CellStuck(WrongCurrent):
     """A cell keeps its current of the onset, or ``percent`` of full sunlight if that is above 0."""
 

@@ -6,6 +6,8 @@ from sim.faults.fault import Fault
 
 MOST_TICKS = 2**24
 LAST_TICK = 2**32 - 1
+NEAR_TICKS = 10_000
+"""Counts nearer to the true one than this may fit ticks that were lost."""
 
 
 class ForgedSync(Fault):
@@ -29,7 +31,7 @@ class ForgedEnd(Fault):
 
     def strangers(self, tick: int) -> list[Frame]:
         """The forged PLANT_END."""
-        ticks = (tick + self.rng.randrange(100, MOST_TICKS - 100)) % MOST_TICKS
+        ticks = (tick + self.rng.randrange(NEAR_TICKS, MOST_TICKS - NEAR_TICKS)) % MOST_TICKS
         return [PlantEnd(ticks, counter=tick & 0xF).encode()]
 
 

@@ -118,6 +118,7 @@ KINDS: dict[str, FaultKind] = {
     "cell_dead": FaultKind(cell.CellDead, CELL, sensor="cells"),
     "cell_scaled": FaultKind(cell.CellScaled, {**CELL, "scale": Parameter(0.5, 0.0, 10.0)}, sensor="cells"),
     "cell_stuck": FaultKind(cell.CellStuck, {**CELL, "percent": Parameter(0.0, 0.0, 199.0)}, sensor="cells"),
+    "cells_random": FaultKind(cell.CellsRandom, {"percent": Parameter(60.0, 1.0, 199.0)}, sensor="cells"),
     "extreme_codes": FaultKind(plant.ExtremeCodes, {"sun": Parameter(0.0, 0.0, 1.0)}),
     "coil_open": FaultKind(plant.CoilOpen, AXIS),
     "coil_wired": FaultKind(plant.CoilRescaling, {**AXIS, "scale": Parameter(-1.0, -2.0, 2.0)}),

@@ -15,6 +15,9 @@ from sim.plant.config import PlantConfig
 from sim.plant.own_effects import NO_EFFECTS, OwnEffects
 from sim.plant.plant import Plant
 
+ROUNDING = 1e-6
+"""Of a tick: 0.14 s at 50 Hz is tick 7, though the product of the two numbers is a little more."""
+
 
 class FaultSection(Section):
     """One fault. It begins with the first tick at or after ``at_s``; without ``lasts_s`` it is permanent."""
@@ -104,7 +107,7 @@ def make_plant(
 
 
 def _schedule(number: int, fault: FaultSection, config: PlantConfig) -> ScheduledFault:
-    first = ceil(fault.at_s * config.tick_hz)
+    first = ceil(fault.at_s * config.tick_hz - ROUNDING)
     lasts = None if fault.lasts_s is None else max(1, round(fault.lasts_s * config.tick_hz))
     rng = Random(f"fault {number}/{config.seed}")
     end = None if lasts is None else first + lasts

@@ -35,7 +35,7 @@ class BusTally:
         """Count one frame."""
         can_id = entry.frame.can_id
         if can_id == CoilRefused.ID:
-            self.refused += 1
+            self.refused += intact(entry.frame)
         elif NAMES.get(can_id, "").endswith("_EVENT") and intact(entry.frame):
             self._take_event(entry)
 

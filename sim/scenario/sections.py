@@ -4,7 +4,17 @@ from typing import Annotated, Literal, Self
 
 from pydantic import AfterValidator, Field, Strict, model_validator
 
-from fsw.input.schema import Nested, NotNegative, Positive, Section, Square, Triple
+from fsw.input.schema import (
+    Nested,
+    NotNegative,
+    Positive,
+    Section,
+    Square,
+    StepNt,
+    StepOfOne,
+    StepPercent,
+    Triple,
+)
 from fsw.table.cells import CellShapes
 from fsw.table.sections import BodyTable, CoilTable, OrbitTable
 from fsw.table.wheel import WheelTable
@@ -111,7 +121,7 @@ class MagnetometerSection(Section):
     scale: Triple = (1.0, 1.0, 1.0)
     misalignment_deg: Triple = (0.0, 0.0, 0.0)
     non_orthogonality_deg: Annotated[tuple[Skew, Skew, Skew], Strict(False)] = (0.0, 0.0, 0.0)
-    quantum_nt: NotNegative = 2.0
+    quantum_nt: StepNt = 2.0
     saturation_nt: Positive = 65000.0
     latency_s: Latency = 0.0
     coil_field_nt_per_am2: Annotated[tuple[Triple, Triple, Triple], Strict(False)] = (
@@ -130,7 +140,7 @@ class SunSensorSection(Section):
 
     noise_deg: NotNegative = 0.5
     misalignment_deg: Triple = (0.0, 0.0, 0.0)
-    quantum: NotNegative = 0.0
+    quantum: StepOfOne = 0.0
     latency_s: Latency = 0.0
     fov_half_deg: float | None = Field(default=None, gt=0.0, le=180.0)
     boresights: Annotated[tuple[Triple, ...], Strict(False)] = ()
@@ -157,7 +167,7 @@ class CellsSection(CellShapes):
     gain: Annotated[tuple[Positive, ...], Strict(False)] | None = None
     turn_deg: Annotated[tuple[Triple, ...], Strict(False)] | None = None
     noise_percent: NotNegative = 1.0
-    quantum_percent: NotNegative = 0.0
+    quantum_percent: StepPercent = 0.0
     threshold_percent: NotNegative = 2.0
     albedo: Part = 0.3
     albedo_spread: Part = 0.3

@@ -17,7 +17,7 @@ from fsw.core.fdir.coils.torques import BelievedParts
 from fsw.core.fdir.faults import OPEN_PART, Sensor
 from fsw.core.fdir.sensors import health as sensor_health
 from fsw.core.fdir.sensors import pair, plausibility
-from fsw.core.fdir.sensors.cells import cell_changes, doubtful, unusable
+from fsw.core.fdir.sensors.cells import cell_changes, doubtful, faulty, unusable
 from fsw.core.fdir.sensors.credibility import credible_but_coils
 from fsw.core.fdir.sensors.health import SensorConfig, SensorHealth
 from fsw.core.fdir.sensors.pair import Pair, Standing
@@ -88,7 +88,8 @@ def examine(
     estimate: Estimate | None = None,
 ) -> Findings:
     """What the samples of this tick show by themselves; by an estimate, if it is valid, while they repeat."""
-    return plausibility.examine(health.sensors.memory, readings, reference, config.plausibility, estimate)
+    memory, isolated = health.sensors.memory, faulty(health.sensors.cells)
+    return plausibility.examine(memory, readings, reference, config.plausibility, estimate, isolated)
 
 
 def trusted(readings: Readings, health: Health, findings: Findings) -> Readings:

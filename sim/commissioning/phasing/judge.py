@@ -87,7 +87,9 @@ def phasing(samples: Samples, table: FlightTable, known: Known, dipoles: Judged 
     free_nt = samples.field_nt[samples.free(NEAR_TICKS)]
     free_nt = free_nt[whole(free_nt)]
     if known.field_around_nt is not None and not len(free_nt):
-        missing.append("no sample of the field is clear of the pulses, so that the field around tells nothing")
+        missing.append(
+            "no sample of the field is clear of the pulses, so that the field around tells nothing"
+        )
     elif known.field_around_nt is not None:
         reading = free_nt.mean(axis=0)
         sensors = evidence.by_field_around(reading, known.field_around_nt, known.offset_nt)

@@ -6,7 +6,7 @@ from sim.fault_table.row import FaultRow, RowFault, Unseen, When
 
 CUBESAT = "cubesat-cells"
 CELLS = "a Sun cell: dead, stuck, of half the current; more light from the Earth"
-MESSAGE = "the message of the Sun cells: late, lost, corrupted, with extreme values"
+MESSAGE = "the message of the Sun cells: late, lost, corrupted, with extreme or random values"
 ORBIT_S = 5740.0
 """Period of the scenario's orbit."""
 BRIGHT = ("sensors.cells.albedo=0.45", "sensors.cells.albedo_spread=0.4", "flight.cells.albedo=0.3")
@@ -80,5 +80,6 @@ CELL_ROWS: tuple[FaultRow, ...] = (
     _message("cells-board-dead", "sun_board_dead"),
     _message("cells-corrupted", "corruption", "dropped", part=0.3),
     _message("cells-extreme-codes", "extreme_codes", sun=1.0),
+    _message("cells-random", "cells_random", percent=60.0),
 )
 """All of them, in the order of the page."""

@@ -216,7 +216,15 @@ ROWS: Rows = (
     *_field("mag-extreme-codes", "extreme_codes"),
     FaultRow("sun-nan-passing", SENSOR, "sun_nan", {}, 300.0, When.SUNLIT, ("goes on", "recovers")),
     FaultRow(
-        "sun-nan", SENSOR, "sun_nan", {}, inf, When.SUNLIT, ("goes on", "bounded", "quiet"), watch_s=900.0
+        "sun-nan",
+        SENSOR,
+        "sun_nan",
+        {},
+        inf,
+        When.SUNLIT,
+        ("goes on", "bounded", "quiet"),
+        "sun sensor",
+        watch_s=900.0,
     ),
     *_sun("sun-extreme-codes", "extreme_codes", sun=1.0),
     *_sun("sun-frozen", "sun_frozen"),

@@ -36,6 +36,14 @@ def test_a_stuck_cell_stays_at_what_it_had():
     assert stuck.cells((0.1, 0.9, 0.2, 0.3)) == (0.1, 0.25, 0.2, 0.3)
 
 
+def test_random_cells_are_dark_or_lit_each_by_itself_and_anew_in_each_tick():
+    nonsense = fault("cells_random", percent=60.0)
+    read = [nonsense.cells((0.5, 0.25, 0.75, 0.1, 0.0, 0.3)) for _ in range(400)]
+    assert {value for currents in read for value in currents} == {0.0, 0.6}
+    assert len(set(read)) > 50
+    assert all(150 < sum(currents[cell] > 0.0 for currents in read) < 250 for cell in range(6))
+
+
 def test_it_lasts_as_long_as_it_is_scheduled():
     dead = fault("cell_dead", cell=1.0)
     plant = FaultyPlant(plant_config(load("cubesat-cells"), 1), [ScheduledFault(dead, 1, 2)])

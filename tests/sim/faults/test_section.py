@@ -153,6 +153,7 @@ def test_a_fault_without_an_end_stays():
         (1, 3.0, 0.2, [3]),
         (4, 1.0, 0.5, [4, 5]),
         (4, 1.1, 0.75, [5, 6, 7]),
+        (50, 0.14, 0.04, [7, 8]),
     ],
 )
 def test_it_begins_with_the_first_tick_at_its_time_and_lasts_in_seconds(tick_hz, at_s, lasts_s, ticks):

@@ -316,10 +316,12 @@ class TestTally:
         assert summary["event_count"] == MAX_EVENTS + 1
         assert "201; the first 200 of 201 events are in summary.json" in summary_text(summary)
 
-    def test_refusals_are_counted(self):
+    def test_refusals_are_counted_but_for_broken_ones(self):
         tally = BusTally(self.EPOCH_US)
         for seq in range(3):
             tally.take(self.entry(CoilRefused(1, seq, 8, 0).encode()))
+        broken = CoilRefused(1, 4, 8, 0).encode()
+        tally.take(self.entry(broken._replace(data=broken.data[:-1] + b"\0")))
         assert (tally.refused, tally.events) == (3, [])
 
     def test_a_broken_event_is_none(self):

@@ -48,6 +48,12 @@ CONTINUOUS = ("coils.driver=continuous", "coils.max_dipole_am2=12")
             ["cells.quantum_percent", "equal to 0"],
         ),
         (["flight.estimator.sun_quantum=-1"], ["[flight]: estimator.sun_quantum = -1", "at least 0"]),
+        (["sensors.sun.quantum=1.5"], ["sensors.sun.quantum = 1.5", "at most 1"]),
+        (["sensors.magnetometer.quantum_nt=2e5"], ["sensors.magnetometer.quantum_nt", "100000"]),
+        (
+            ["sensors.cells={normals=[[1, 0, 0]], quantum_percent=101}"],
+            ["cells.quantum_percent", "equal to 100"],
+        ),
         (["sensors.sun.latency_s=61"], ["sensors.sun.latency_s", "at most 60"]),
         (["sensors.sun.fov_half_deg=60"], ["sensors.sun", "both fov_half_deg and boresights"]),
         (["sensors.sun.boresights=[[1, 0, 0]]"], ["sensors.sun", "both fov_half_deg and boresights"]),

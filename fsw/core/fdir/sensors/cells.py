@@ -3,7 +3,7 @@
 Each cell is compared with what the estimate predicts, while the estimate is proven and the field has been
 taken with it. What speaks against a cell:
 
-- it gives a current in the Earth's shadow;
+- it gives a current in the Earth's shadow, more often than none;
 - it is lit, and the filter refuses what it shows, or it shows nothing;
 - its gain, or what it shows beyond its model, exceeds ``SIGMAS`` of the standard deviations that the table
   allows;
@@ -104,6 +104,11 @@ def unusable(health: CellsHealth) -> tuple[int, ...]:
     return tuple([cell for cell, one in enumerate(health) if one.watch.fault or one.still])
 
 
+def faulty(health: CellsHealth) -> tuple[int, ...]:
+    """Numbers of the cells that are isolated."""
+    return tuple([cell for cell, one in enumerate(health) if one.watch.fault])
+
+
 def cell_changes(before: CellsHealth, after: CellsHealth) -> list[tuple[int, int, int]]:
     """(number, fault before, fault after) of each cell whose fault has changed; without a watch, none."""
     cells = max(len(before), len(after))
@@ -142,8 +147,8 @@ def _judged(
     cells: CellSet,
 ) -> CellWatch:
     if evidence.seen is None:
-        bright = evidence.shadow and current > cells.dark
-        return CellWatch(_weighed(before.watch, SensorFault.STRENGTH if bright else None, False, weights))
+        verdict = _by_dark(before.watch.fault, current, cells) if evidence.shadow else None
+        return CellWatch(_weighed(before.watch, verdict, False, weights))
     if evidence.estimate is None or not evidence.sure:
         return before
     estimate, seen, normal = evidence.estimate, evidence.seen, cells.normals_body[cell]
@@ -164,6 +169,13 @@ def _judged(
         fits = taken(estimate, cell, current, seen, config, cells) is not None
         verdict = 0 if fits else SensorFault.REFUSED
     return shown._replace(watch=_weighed(before.watch, verdict, unclear, weights))
+
+
+def _by_dark(fault: int, current: float, cells: CellSet) -> int | None:
+    """What the shadow shows of a cell: that it is a lamp, or none; nothing of a cell with another fault."""
+    if current > cells.dark:
+        return SensorFault.UNLIT
+    return 0 if fault in (0, SensorFault.UNLIT) else None
 
 
 def _as_by_table(estimate: Estimate) -> Estimate:

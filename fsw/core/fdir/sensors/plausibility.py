@@ -5,7 +5,7 @@ Only a quantised reading repeats itself while all is well: ``standstill`` says f
 Every limit is what the bounds of the table and the noise at the edge of the filter's gate allow in this tick.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import acos
 from typing import NamedTuple
 
@@ -13,6 +13,7 @@ from fsw.core.algebra.vector import ZERO, Vec3, dot, norm
 from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.samples import coils_idle, sensed_sun, usable_cells, usable_field
+from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.faults import Sensor, SensorFault
 from fsw.core.fdir.sensors.standstill import NO_MOTION, Motion, Steps, frozen, moved_on
 from fsw.core.gate.readings import Readings
@@ -25,6 +26,11 @@ SHADOW_M = RADIUS_M - 100e3
 15 km wide, and the position may be off by tens of km."""
 DARK: Vec3 = (0.0, 0.0, 0.0)
 """The sample of a Sun sensor without a Sun."""
+MOST_LAMPS, MOST_BEYOND = 2, 1
+"""Sun cells that may be broken at once: those lit in the shadow, those brighter than anything can make them.
+
+What speaks against more of them in one tick speaks against the board that reads them.
+"""
 
 
 class PlausibilityConfig(NamedTuple):
@@ -70,7 +76,10 @@ class Memory(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """What the checks look at in one tick: all that the boards sent, and what the models expect."""
+    """What the checks look at in one tick: all that the boards sent, and what the models expect.
+
+    ``lamps``: how many Sun cells in use are lit in the shadow; ``beyond``: how many show what no light does.
+    """
 
     readings: Readings
     field: Vec3 | None
@@ -80,6 +89,8 @@ class Seen(NamedTuple):
     field_still: bool
     sun_still: bool
     limits: PlausibilityConfig
+    lamps: int = 0
+    beyond: int = 0
 
 
 CHECKS: tuple[tuple[Sensor, SensorFault, Callable[[Seen], bool]], ...] = (
@@ -104,11 +115,17 @@ CHECKS: tuple[tuple[Sensor, SensorFault, Callable[[Seen], bool]], ...] = (
         ),
     ),
     (Sensor.SUN_SENSOR, SensorFault.SILENT, lambda s: s.readings.sun is None and s.readings.cells is None),
-    (Sensor.SUN_SENSOR, SensorFault.UNLIT, lambda s: s.sun is not None and s.shadow),
+    (
+        Sensor.SUN_SENSOR,
+        SensorFault.UNLIT,
+        lambda s: s.shadow and (s.sun is not None or s.lamps > MOST_LAMPS),
+    ),
     (
         Sensor.SUN_SENSOR,
         SensorFault.STRENGTH,
-        lambda s: s.sun is not None and not abs(norm(s.sun) - 1.0) <= s.limits.sun_norm,
+        lambda s: (
+            s.beyond > MOST_BEYOND or (s.sun is not None and not abs(norm(s.sun) - 1.0) <= s.limits.sun_norm)
+        ),
     ),
     (Sensor.SUN_SENSOR, SensorFault.FROZEN, lambda s: s.sun_still and not s.field_still),
 )
@@ -119,7 +136,8 @@ class Findings(NamedTuple):
 
     ``field_cause`` and ``sun_cause``: what speaks against each, 0 if nothing does; ``field`` and ``sun``: the
     samples that could be used if nothing did; ``pair``: both can be compared, ``apart``: by an angle that is
-    not the modelled one. ``currents`` are those of Sun cells, and ``shadow`` says if none can see the Sun.
+    not the modelled one. ``currents`` are those of Sun cells, None where they show nothing about their cell,
+    and ``shadow`` says if none can see the Sun.
     """
 
     field_cause: int
@@ -139,6 +157,7 @@ def examine(
     reference: Reference,
     limits: PlausibilityConfig,
     estimate: Estimate | None = None,
+    isolated: Sequence[int] = (),
 ) -> Findings:
     """Apply the checks to the samples of this tick.
 
@@ -148,6 +167,7 @@ def examine(
         reference: field and Sun as modelled.
         limits: largest deviations if all is well.
         estimate: predicted to this tick, if it is valid; only quantised readings are judged by it.
+        isolated: Sun cells of which it is known that they are faulty.
     """
     memory, late = _remember(memory, readings), limits.late_ticks
     field_still, sun_still = still = memory.field_still > late, memory.sun_still > late
@@ -155,16 +175,11 @@ def examine(
         motion = moved_on(memory.motion or NO_MOTION, still, estimate, reference, limits.steps)
         memory, (field_still, sun_still) = memory._replace(motion=motion), frozen(motion, still, limits.steps)
     field, sun = usable_field(readings), sensed_sun(readings, limits.cells)
-    seen = Seen(
-        readings,
-        field,
-        sun,
-        norm(reference.b_eci_t),
-        sun is not None and _in_shadow(reference),
-        field_still,
-        sun_still,
-        limits,
-    )
+    currents = usable_cells(readings, limits.cells)
+    shadow = (sun is not None or bool(currents)) and _in_shadow(reference)
+    lamps, beyond = NOWHERE if limits.cells is None else _wrong(currents, shadow, isolated, limits.cells)
+    modelled_t, still = norm(reference.b_eci_t), (field_still, sun_still)
+    seen = Seen(readings, field, sun, modelled_t, shadow, *still, limits, len(lamps), len(beyond))
     causes = {Sensor.MAGNETOMETER: 0, Sensor.SUN_SENSOR: 0}
     for sensor, cause, speaks_against in CHECKS:
         if not causes[sensor] and speaks_against(seen):
@@ -174,8 +189,28 @@ def examine(
     apart = pair and _apart(seen, reference)
     if limits.cells is None:
         return Findings(b_cause, s_cause, field, sun, pair, apart, memory)
-    currents, shadow = usable_cells(readings, limits.cells), _in_shadow(reference)
+    if len(lamps) > MOST_LAMPS or len(beyond) > MOST_BEYOND:
+        currents = (None,) * len(currents)
+    elif beyond:  # a message with an impossible current in it shows nothing about the other cells
+        currents = tuple([current if cell in beyond else None for cell, current in enumerate(currents)])
     return Findings(b_cause, s_cause, field, sun, pair, apart, memory, currents, shadow)
+
+
+Wrong = tuple[tuple[int, ...], tuple[int, ...]]
+"""Cells lit in the shadow, and cells that are brighter than anything can make them."""
+NOWHERE: Wrong = ((), ())
+
+
+def _wrong(currents: Sequence[float | None], shadow: bool, isolated: Sequence[int], cells: CellSet) -> Wrong:
+    """The cells in use that are wrong by themselves: without an attitude, and whatever the table allows."""
+    used = [
+        (cell, current)
+        for cell, current in enumerate(currents)
+        if current is not None and cell not in isolated
+    ]
+    most = 1.0 + cells.albedo + SIGMAS * cells.model_sigma
+    lamps = tuple([cell for cell, current in used if shadow and current > cells.dark])
+    return lamps, tuple([cell for cell, current in used if current > most])
 
 
 def _remember(memory: Memory, readings: Readings) -> Memory:

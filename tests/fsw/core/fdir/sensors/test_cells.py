@@ -136,10 +136,38 @@ def test_one_that_is_bright_with_the_sun_behind_it_is_found():
     assert faults(health).count(0) == 5
 
 
-@pytest.mark.parametrize(("shadow", "fault"), [(True, SensorFault.STRENGTH), (False, 0)])
+@pytest.mark.parametrize(("shadow", "fault"), [(True, SensorFault.UNLIT), (False, 0)])
 def test_light_in_the_shadow_counts_where_the_shadow_is_certain(shadow, fault):
     health = watched(set_to(2, 0.3), seen=None, shadow=shadow)
     assert faults(health) == [0, 0, fault, 0, 0, 0]
+
+
+def in_shadow(change, ticks, health=()):
+    return watched(change, ticks, health, seen=None, shadow=True, sure=False)
+
+
+def test_a_cell_that_is_lit_at_random_in_the_shadow_is_no_lamp():
+    """As where the message is nonsense: dark as often as bright."""
+    random = np.random.default_rng(7)
+    health = in_shadow(lambda currents: [random.choice((0.0, 0.6)) * (n % 3 == 0) for n in range(6)], 3)
+    for _ in range(10):
+        health = in_shadow(lambda currents: [random.choice((0.0, 0.0, 0.6)) for _ in range(6)], 60, health)
+    assert faults(health) == [0] * 6
+
+
+def test_a_lamp_that_goes_out_is_readmitted_by_the_shadow_alone():
+    lamp = in_shadow(set_to(4, 0.3), ENOUGH)
+    assert faults(lamp) == [0, 0, 0, 0, SensorFault.UNLIT, 0]
+    assert faults(in_shadow(sound, 100, lamp))[4] == SensorFault.UNLIT
+    assert faults(in_shadow(sound, 140, lamp)) == [0] * 6
+    assert faults(in_shadow(set_to(4, 0.3), 600, lamp))[4] == SensorFault.UNLIT
+
+
+@pytest.mark.parametrize("fault", [SensorFault.STRENGTH, SensorFault.FROZEN, SensorFault.REFUSED])
+def test_the_shadow_says_nothing_for_a_cell_that_fails_in_the_light(fault):
+    """A dead cell is dark there, as it should be."""
+    health = tuple(CellWatch(Watch(fault if cell == 1 else 0)) for cell in range(6))
+    assert faults(in_shadow(sound, 600, health))[1] == fault
 
 
 @pytest.mark.long

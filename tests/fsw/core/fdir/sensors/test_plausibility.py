@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import cos, nan, radians, sin
 
 import pytest
+from cell_samples import CELLS
 
 from fsw.core.algebra.vector import add, norm, scale
 from fsw.core.fdir.faults import SensorFault
@@ -11,7 +12,7 @@ from fsw.core.fdir.sensors.plausibility import SHADOW_M, Memory, PlausibilityCon
 from fsw.core.fdir.sensors.standstill import Steps
 from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import reference_at
-from fsw.wire.messages import CoilStatus, MagField, SunVector
+from fsw.wire.messages import CoilStatus, MagField, SunCells, SunVector
 
 LIMITS = PlausibilityConfig(
     field_t=2e-6, field_part=0.01, in_range_t=1e-3, angle_rad=0.05, sun_norm=0.03, late_ticks=0
@@ -109,6 +110,63 @@ def test_a_sun_in_certain_shadow_is_none(reference, readings):
         behind = add(scale(-7.0e6, reference.sun_eci), scale(side_m, across))
         dark = replace(reference, r_eci_m=behind, lit=False)
         assert causes(examine(Memory(), readings(), dark, LIMITS))[1] == cause
+
+
+def behind_the_earth(reference):
+    return replace(reference, r_eci_m=scale(-7.0e6, reference.sun_eci), lit=False)
+
+
+class TestCells:
+    """What speaks against several cells in one tick speaks against the board that reads them."""
+
+    LIMITS = LIMITS._replace(cells=CELLS, sun_norm=0.5)
+    BEYOND = 1.0 + CELLS.albedo + 4.0 * CELLS.model_sigma
+
+    def found(self, reference, readings, currents, isolated=()):
+        sent = [part * full for part, full in zip(currents, CELLS.full_sun, strict=True)]
+        read = readings(sun=None, cells=SunCells(1, *sent, counter=0))
+        return examine(Memory(), read, reference, self.LIMITS, None, isolated)
+
+    @pytest.mark.parametrize(
+        ("currents", "isolated", "cause"),
+        [
+            ((0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (), 0),
+            ((0.3, 0.0, 0.3, 0.0, 0.0, 0.0), (), 0),
+            ((0.3, 0.3, 0.3, 0.0, 0.0, 0.0), (), SensorFault.UNLIT),
+            ((0.3, 0.3, 0.3, 0.0, 0.0, 0.0), (1,), 0),
+            ((0.3, 0.3, 0.3, 0.3, 0.0, 0.0), (1,), SensorFault.UNLIT),
+        ],
+    )
+    def test_more_than_two_lamps_in_the_shadow(self, reference, readings, currents, isolated, cause):
+        findings = self.found(behind_the_earth(reference), readings, currents, isolated)
+        assert findings.sun_cause == cause
+        assert findings.shadow
+        assert findings.currents == ((None,) * 6 if cause else pytest.approx(currents))
+
+    def test_in_the_light_many_cells_may_be_lit(self, reference, readings):
+        findings = self.found(reference, readings, (0.3, 0.0, 0.6, 0.1, 0.7, 0.1))
+        assert findings.sun_cause == 0
+        assert not findings.shadow
+
+    @pytest.mark.parametrize("dark", [False, True])
+    @pytest.mark.parametrize(
+        ("wrong", "isolated", "cause"), [((1, 4), (), SensorFault.STRENGTH), ((1, 4), (4,), 0), ((1,), (), 0)]
+    )
+    def test_more_than_one_brighter_than_anything_makes_it(
+        self, reference, readings, dark, wrong, isolated, cause
+    ):
+        """A single one is judged by itself, and its message shows nothing about the others."""
+        currents = tuple(1.01 * self.BEYOND if cell in wrong else 0.0 for cell in range(6))
+        at = behind_the_earth(reference) if dark else reference
+        findings = self.found(at, readings, currents, isolated)
+        assert findings.sun_cause == cause
+        only = tuple(one if cell == 1 and not cause else None for cell, one in enumerate(currents))
+        assert findings.currents == pytest.approx(only)
+
+    def test_the_brightest_that_the_table_allows_is_no_fault(self, reference, readings):
+        currents = (0.99 * self.BEYOND, 0.0, 0.99 * self.BEYOND, 0.0, 0.0, 0.2)
+        findings = self.found(reference, readings, currents)
+        assert (findings.sun_cause, findings.currents) == (0, pytest.approx(currents))
 
 
 @pytest.mark.requirement("REQ-SENSOR-03")
