@@ -16,6 +16,7 @@ BUS = ("no extra pulse", "goes on")
 TIMED = ("limits by time", *BUS, "quiet", "recovers")
 BROKEN = (*BUS, "dropped", "recovers")
 PASSING = ("goes on", "recovers")
+UNNAMED = ("goes on", "bounded", "quiet")
 
 NOTHING = "nothing: false alarms"
 LOSS = "loss 1/10/50 %, bursts; duplicates; reordering; delay, jitter"
@@ -214,18 +215,8 @@ ROWS: Rows = (
     *_field("mag-swapped", "mag_swapped", axis=1.0),
     *_field("mag-sign", "mag_scale", axis=2.0, scale=-1.0),
     *_field("mag-extreme-codes", "extreme_codes"),
-    FaultRow("sun-nan-passing", SENSOR, "sun_nan", {}, 300.0, When.SUNLIT, ("goes on", "recovers")),
-    FaultRow(
-        "sun-nan",
-        SENSOR,
-        "sun_nan",
-        {},
-        inf,
-        When.SUNLIT,
-        ("goes on", "bounded", "quiet"),
-        "sun sensor",
-        watch_s=900.0,
-    ),
+    FaultRow("sun-nan-passing", SENSOR, "sun_nan", {}, 300.0, When.SUNLIT, PASSING),
+    FaultRow("sun-nan", SENSOR, "sun_nan", {}, inf, When.SUNLIT, UNNAMED, "sun sensor", watch_s=900.0),
     *_sun("sun-extreme-codes", "extreme_codes", sun=1.0),
     *_sun("sun-frozen", "sun_frozen"),
     *_sun("sun-swapped", "sun_swapped"),
