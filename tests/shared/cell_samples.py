@@ -2,9 +2,14 @@
 
 from math import radians
 
-from fsw.core.algebra.quaternion import normalise
+import numpy as np
+
+from fsw.core.algebra.quaternion import normalise, rotate
 from fsw.core.algebra.vector import norm, unit
-from fsw.core.estimation.cells.cell_set import CellSet, Shade
+from fsw.core.estimation import mekf
+from fsw.core.estimation.cells.cell_set import CellSet, Shade, light
+from fsw.core.estimation.cells.relinearise import linear_about, relinearised
+from fsw.core.estimation.cells.update import update_cells
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
 from fsw.core.orbit.ephemeris import Reference
@@ -69,3 +74,38 @@ def cell_filter(cells=CELLS, **priors):
         gate_nis=16.27,
         cells=cells,
     )
+
+
+SEEN = light(REFERENCE.r_eci_m, REFERENCE.sun_eci, CELLS.albedo)
+OMEGA = (0.004, -0.006, 0.003)
+EXCESS = (0.03, -0.05, 0.04, -0.02, 0.06, -0.03)
+GAIN = (0.04, 0.06, -0.05, 0.03, -0.02, 0.05)
+LIGHT = 0.07
+
+
+def begun(q=Q_BODY_FROM_ECI):
+    """An estimate with parameters of their own."""
+    estimate = mekf.start(q, OMEGA, cell_filter())
+    known = estimate.parameters._replace(
+        sun_turn_rad=(0.004, -0.006, 0.005), cell_excess=EXCESS, cell_gain=GAIN, earth_light=(LIGHT,)
+    )
+    return estimate._replace(parameters=known)
+
+
+def shown(q_body_from_eci=Q_BODY_FROM_ECI, gain=(0.0,) * 6, light=0.0):
+    """What cells show, without excess, turn and age: written out again."""
+    s, e = rotate(q_body_from_eci, SEEN.s_eci), rotate(q_body_from_eci, SEEN.e_eci)
+    earth = SEEN.earth * (1.0 + light / CELLS.albedo)
+    return [
+        (1.0 + more) * max(0.0, float(np.dot(normal, s)))
+        + earth * (0.5 + 0.5 * float(np.dot(normal, e))) ** 2
+        for normal, more in zip(CELLS.normals_body, gain, strict=True)
+    ]
+
+
+def cells_taken(estimate, currents, seen, config):
+    """The estimate after these currents, by the equations about what it was, and which cells were taken."""
+    cells = config.cells
+    known = linear_about(estimate, REFERENCE.b_eci_t, seen, config, cells)
+    after, used = update_cells(estimate, currents, known, config, cells)
+    return relinearised(after, known, config, cells), used

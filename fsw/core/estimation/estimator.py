@@ -8,6 +8,7 @@ from typing import NamedTuple
 from fsw.core.algebra.vector import Vec3, dot, norm, scale
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import light
+from fsw.core.estimation.cells.relinearise import linear_about, relinearised
 from fsw.core.estimation.cells.update import NO_CELLS, CellsUsed, faded, update_cells
 from fsw.core.estimation.dynamics.error_dynamics import FAST_RADPS, KNOWN_RADPS, SLOW_RADPS, Driven
 from fsw.core.estimation.measurement import field_sampled
@@ -23,8 +24,6 @@ from fsw.core.orbit.ephemeris import Reference
 
 MAX_ELAPSED_S = 60.0
 """After a longer silence the filter restarts instead of predicting."""
-
-
 CELLS_ANEW = 2.0
 """Factor on the standard deviations of attitude and rate when the parameters start anew, with cells."""
 
@@ -168,23 +167,25 @@ def update(
     limited = saturated_field(readings)
     if limited is not None:
         field, blanked, tuning = limited[0], False, with_open_direction(tuning, limited[1])
-    estimate, took_field, took_sun = _updated(state.estimate, field, sun, reference, tuning)
+    before = state.estimate
+    b = field_sampled(before.parameters, reference.b_eci_t, reference.b_rate_eci_tps)
+    estimate, took_field, took_sun = _updated(before, field, sun, b, reference.sun_eci, tuning)
     rejected = (field is not None and not took_field) + (sun is not None and not took_sun)
     by_cell = NO_CELLS
-    if cells is not None and currents:
-        lit = light(reference.r_eci_m, reference.sun_eci, cells.albedo)
-        estimate, by_cell = update_cells(estimate, currents, lit, tuning)
+    if cells is not None:
+        seen = light(reference.r_eci_m, reference.sun_eci, cells.albedo) if currents else None
+        known = linear_about(before, b, seen, tuning, cells)
+        estimate, by_cell = update_cells(estimate, currents, known, tuning, cells)
+        estimate = relinearised(estimate, known, tuning, cells)
         took_sun = bool(by_cell.taken)
         rejected += len(by_cell.refused) > 1 and not took_sun  # one alone may be faulty
-    in_a_row = state.rejected_in_a_row + rejected
-    if not rejected and (took_field or took_sun):
-        in_a_row = 0
+    in_a_row = 0 if not rejected and (took_field or took_sun) else state.rejected_in_a_row + rejected
     updated = state._replace(
         estimate=estimate, rejected_in_a_row=in_a_row, rejected_total=state.rejected_total + rejected
     )
     if not state.frozen:
-        known = took_field and took_sun and (cells is None or sensed_sun(readings, cells) is not None)
-        updated = _settled(updated, estimate, known, config.mekf)
+        both = took_field and took_sun and (cells is None or sensed_sun(readings, cells) is not None)
+        updated = _settled(updated, estimate, both, config.mekf)
     lost = in_a_row >= config.restart_after_rejections or not mekf.healthy(estimate)
     return (restart(updated) if lost else updated), Used(took_field, took_sun, blanked, by_cell)
 
@@ -218,17 +219,16 @@ def _from_first(started: Estimate, state: EstimatorState) -> Estimate:
 
 
 def _updated(
-    current: Estimate, field: Vec3 | None, sun: Vec3 | None, reference: Reference, config: MekfConfig
+    current: Estimate, field: Vec3 | None, sun: Vec3 | None, b_eci_t: Vec3, s_eci: Vec3, config: MekfConfig
 ) -> tuple[Estimate, bool, bool]:
     """The estimate after what was measured, and whether field and Sun were taken."""
-    b, s = field_sampled(current.parameters, reference.b_eci_t, reference.b_rate_eci_tps), reference.sun_eci
     if field is not None and sun is not None:
-        after_both = mekf.update_both(current, field, b, sun, s, config)
+        after_both = mekf.update_both(current, field, b_eci_t, sun, s_eci, config)
         if after_both is not None:
             return after_both, True, True
-    after_field = mekf.update_field(current, field, b, config) if field is not None else None
+    after_field = mekf.update_field(current, field, b_eci_t, config) if field is not None else None
     current = after_field or current
-    after_sun = mekf.update_sun(current, sun, s, config) if sun is not None else None
+    after_sun = mekf.update_sun(current, sun, s_eci, config) if sun is not None else None
     return after_sun or current, after_field is not None, after_sun is not None
 
 

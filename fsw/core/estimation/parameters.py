@@ -134,6 +134,13 @@ def corrected_parameters(parameters: Parameters, error: list[float], places: Lay
     return Parameters._make(parts)
 
 
+def added(before: Parameters, after: Parameters, places: Layout) -> list[float]:
+    """What was added to the parameters that are carried, in the order of the error state."""
+    return [
+        now - was for index, _ in places.carried for was, now in zip(before[index], after[index], strict=True)
+    ]
+
+
 def component_places(places: Layout) -> dict[int, int]:
     """By the number of each component that is carried, its place in the error state; in the order of both."""
     parts = dict(places.carried)

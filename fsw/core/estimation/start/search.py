@@ -5,7 +5,7 @@ inertia, the bias of the field, excess and gain of each cell and the light of th
 over the batch. The starts are rotations about the first field, with the rates that the field's own motion
 leaves open; the best of them are improved by the Levenberg-Marquardt method. The motion is found if no other
 that ends ``APART`` or more away comes within ``LEAD`` nats of it. It is then carried on through the samples
-that have come meanwhile.
+that have come meanwhile, and improved until it has settled.
 
 All motions go through the samples side by side. A piece is one leg of all, from one sample to the next, or
 the work at the end. So the work of a tick does not grow with the number of samples.
@@ -17,7 +17,6 @@ from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf import Estimate
@@ -38,6 +37,7 @@ from fsw.core.estimation.start.batch_model import (
     varied,
 )
 from fsw.core.estimation.start.batch_sample import BatchSample
+from fsw.core.estimation.start.best import Best, improved
 from fsw.core.estimation.start.motions import flown
 
 PIECES = 4
@@ -48,23 +48,17 @@ APART = 0.9848
 """Cosine of half the angle, 20 deg."""
 MOST_MISFIT = 3.0
 """Largest chi square of a found motion per number measured."""
+SETTLED, CARRIED = 0.5, 6
+"""A motion has settled when another step promises fewer nats, so is within one standard deviation; it is
+carried through the samples at most so many times."""
 
 
 class Stage(IntEnum):
-    """SURVEY: the cost of all starts; IMPROVE: the best of them; CARRY: what is found, to this tick."""
+    """SURVEY: the cost of all starts; IMPROVE: the best of them; CARRY: the one found, to this tick."""
 
     SURVEY = 0
     IMPROVE = 1
     CARRY = 2
-
-
-class Best(NamedTuple):
-    """The motions as improved so far, their equations, attitudes at the end, (n, 4), and damping."""
-
-    motions: Motions
-    equations: Equations
-    ends: Matrix
-    damping: Matrix
 
 
 class MotionSearch(NamedTuple):
@@ -189,34 +183,11 @@ def _order(costs: Matrix) -> list[int]:
 
 def _improved(search: MotionSearch, first: BatchSample, model: BatchModel) -> MotionSearch | None:
     """Keep the motions that are better than before, and step all of them while there are steps left."""
-    best = _better(search)
+    best = improved(search.motions, search.equations, search.q[: len(search.motions.q)], search.best)
     if search.steps >= STEPS:
         return _found(search.searched, best, first, model)
     tried = best.motions.changed(improving_step(best.equations, best.damping))
     return _passing(Stage.IMPROVE, search.searched, search.steps + 1, tried, first, model, best)
-
-
-def _better(search: MotionSearch) -> Best:
-    """The best so far, with those that have just gone through the samples."""
-    size, before = len(search.motions.q), search.best
-    now = Best(search.motions, search.equations, search.q[:size], np.full(size, 1e-2))
-    if before is None:
-        return now
-    better = now.equations.costs < before.equations.costs
-    return Best(
-        Motions(*_where(better, now.motions, before.motions)),
-        Equations(*_where(better, now.equations, before.equations)),
-        _where(better, (now.ends,), (before.ends,))[0],
-        np.where(better, 0.2 * before.damping, 10.0 * before.damping),
-    )
-
-
-def _where(better: NDArray[np.bool_], one: tuple[Matrix, ...], other: tuple[Matrix, ...]) -> list[Matrix]:
-    """The rows of one or the other, by motion."""
-    return [
-        np.where(better.reshape(-1, *(1,) * (mine.ndim - 1)), mine, theirs)
-        for mine, theirs in zip(one, other, strict=True)
-    ]
 
 
 def _found(count: int, best: Best, first: BatchSample, model: BatchModel) -> MotionSearch | None:
@@ -238,10 +209,17 @@ def _fits(cost: float, equations: Equations) -> bool:
 
 def _estimate(
     search: MotionSearch, samples: tuple[BatchSample, ...], rest: BatchSample | None, model: BatchModel
-) -> Ended:
-    """The estimate at this tick."""
+) -> MotionSearch | Ended:
+    """The estimate at this tick; the motion goes through the samples again if it has not settled."""
     q, omega = search.q, search.omega
     if rest is not None:
         q, omega = _flown(search, _going(search, model), samples[-1], rest, model)
     estimate, cost = estimate_of(search.motions, search.equations, q, omega, model)
-    return estimate if _fits(cost, search.equations) else None
+    if not _fits(cost, search.equations):
+        return None
+    if float(search.equations.costs[0]) - cost < SETTLED:
+        return estimate
+    if search.steps + 1 >= CARRIED:
+        return None
+    better = search.motions.changed(improving_step(search.equations, np.zeros(1)))
+    return _passing(Stage.CARRY, search.searched, search.steps + 1, better, samples[0], model)

@@ -23,7 +23,8 @@ from typing import NamedTuple
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import dot
 from fsw.core.estimation.cells.cell_set import CellSet, Light
-from fsw.core.estimation.cells.update import LEAST_COSINE, CellsUsed, most_behind, prediction, taken
+from fsw.core.estimation.cells.prediction import LEAST_COSINE, most_behind, prediction
+from fsw.core.estimation.cells.update import CellsUsed, taken
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import Parameters

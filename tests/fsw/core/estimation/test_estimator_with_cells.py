@@ -4,14 +4,14 @@ from math import inf, radians
 
 import numpy as np
 import pytest
-from cell_samples import CELLS, Q_BODY_FROM_ECI, REFERENCE, cell_filter
+from cell_samples import CELLS, Q_BODY_FROM_ECI, REFERENCE, cell_filter, cells_taken
 from estimator_samples import IDLE, field_message
 
 from fsw.core.algebra.quaternion import normalise, rotate
 from fsw.core.algebra.vector import ZERO, scale, unit
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import light
-from fsw.core.estimation.cells.update import earthlit, sunlit, update_cells
+from fsw.core.estimation.cells.prediction import earthlit, sunlit
 from fsw.core.estimation.dynamics.error_dynamics import Driven
 from fsw.core.estimation.estimator import EstimatorConfig, EstimatorState, Turning, predict, update
 from fsw.core.estimation.start.batch import EMPTY, kept
@@ -101,5 +101,5 @@ def test_a_cell_with_the_sun_behind_it_tells_how_bright_the_earth_is():
     whole = currents(q)
     without = [None if cell in behind else one for cell, one in enumerate(whole)]
     estimate = mekf.start(normalise(q), SLOW, MEKF)
-    known, unknown = (update_cells(estimate, shown, SEEN, MEKF)[0] for shown in (whole, without))
+    known, unknown = (cells_taken(estimate, shown, SEEN, MEKF)[0] for shown in (whole, without))
     assert known.covariance[place, place] < 0.99 * unknown.covariance[place, place]

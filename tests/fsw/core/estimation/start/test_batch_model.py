@@ -11,7 +11,7 @@ from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import cross, norm, unit
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import light
-from fsw.core.estimation.cells.update import prediction
+from fsw.core.estimation.cells.prediction import prediction
 from fsw.core.estimation.start.batch_model import (
     RATES_DEGPS,
     TURNS,

@@ -7,13 +7,12 @@ from math import inf
 import numpy as np
 import pytest
 from batch_samples import BIAS_T, CONFIG, EXCESS, MOVING_PRIORS, STARTS, flight
-from cell_samples import CELLS, REFERENCE, cell_filter
+from cell_samples import CELLS, REFERENCE, cell_filter, cells_taken
 from scipy.optimize import least_squares
 
 from fsw.core.algebra.quaternion import conjugate, multiply
 from fsw.core.algebra.vector import norm
 from fsw.core.estimation.cells.cell_set import light
-from fsw.core.estimation.cells.update import update_cells
 from fsw.core.estimation.mekf import Estimate, healthy, start
 from fsw.core.estimation.start import first as first_module
 from fsw.core.estimation.start import search as search_module
@@ -85,6 +84,43 @@ def test_what_fits_no_motion_is_not_believed():
     assert fitted(tuple(crossed)) is None
 
 
+class TestSettled:
+    """A step that still promises much ends where the linear equations do not hold."""
+
+    def passes(self, samples, away):
+        """What the search ends in, and how often a motion so far, deg, from the best was carried through."""
+        best = self.carried(samples)
+        turn = np.zeros((1, MODEL.prior.size))
+        turn[0, 0:3] = np.radians(away) / np.sqrt(3.0)
+        search = search_module._passing(
+            Stage.CARRY, len(samples), 0, best.motions.changed(turn), samples[0], MODEL
+        )
+        count = 0
+        while isinstance(search, MotionSearch):
+            search, before = worked(search, samples, None, MODEL), search
+            count += not isinstance(search, MotionSearch) or search.steps > before.steps
+        return search, count
+
+    def carried(self, samples):
+        search = begun(samples, MODEL)
+        while search.stage is not Stage.CARRY:
+            search = worked(search, samples, None, MODEL)
+        return search
+
+    def test_a_motion_that_is_not_the_best_goes_through_the_samples_again(self):
+        samples, q, omega = flight(*STARTS[0], 25)
+        estimate, count = self.passes(samples, 12.0)
+        straight, once = self.passes(samples, 0.0)
+        assert once < count <= search_module.CARRIED
+        sigmas = np.sqrt(straight.covariance.diagonal()[0:6])
+        assert (abs(error(estimate, q, omega) - error(straight, q, omega)) / sigmas).max() < 0.5
+
+    def test_one_that_goes_on_and_on_is_none(self, monkeypatch):
+        samples, _, _ = flight(*STARTS[0], 25)
+        monkeypatch.setattr(search_module, "SETTLED", -1.0)
+        assert self.passes(samples, 0.0) == (None, search_module.CARRIED)
+
+
 def test_what_it_finds_of_the_parameters_goes_into_the_filter_with_what_is_left():
     samples, _, _ = flight(*STARTS[0], 25)
     estimate, parts = fitted(samples), CONFIG.layout
@@ -130,7 +166,7 @@ def test_the_errors_of_the_cells_are_not_counted_once_more(q, omega):
     samples, _, _ = flight(q, omega, 25)
     last, estimate = samples[-1], fitted(samples)
     seen = light(last.r_eci_m, last.s_eci, CELLS.albedo)
-    after, used = update_cells(estimate, last.currents, seen, CONFIG)
+    after, used = cells_taken(estimate, last.currents, seen, CONFIG)
     assert len(used.taken) >= 2
     before, now = (np.linalg.eigvalsh(one.covariance[0:3, 0:3])[-1] for one in (estimate, after))
     assert now > 0.8**2 * before
@@ -247,7 +283,7 @@ class TestByTicks:
         assert off @ np.linalg.solve(estimate.covariance[0:6, 0:6], off) < 16.8
         assert np.degrees(np.linalg.norm(off[:3])) < 6.0
 
-    def test_it_is_bit_for_bit_what_it_is_at_once(self, samples, batches):
+    def test_it_is_what_it_is_at_once(self, samples, batches):
         """From the samples that were there when it began, then on through the rest."""
         batch, estimate = started(samples)
         searched = next(one.search.searched for one in batches if one.search)
@@ -255,8 +291,10 @@ class TestByTicks:
         search = begun(batch.samples[:searched], MODEL)
         while isinstance(search, MotionSearch):
             search = worked(search, batch.samples, None, MODEL)
-        assert search[:3] == estimate[:3]
-        np.testing.assert_array_equal(search.covariance, estimate.covariance)
+        sigmas = np.sqrt(search.covariance.diagonal()[0:6])
+        there = error(search, estimate.q_body_from_eci, np.array(estimate.omega_body_radps))
+        assert (abs(there) / sigmas).max() < 0.01  # the first steps were with fewer samples
+        np.testing.assert_allclose(np.sqrt(estimate.covariance.diagonal()[0:6]), sigmas, rtol=0.01)
 
     def test_no_tick_does_more_than_its_pieces(self, samples, monkeypatch):
         legs = []

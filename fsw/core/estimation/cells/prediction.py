@@ -1,0 +1,89 @@
+"""What Sun cells should show, which of them Sun and Earth light, and what is the most that they can show."""
+
+from math import hypot
+
+import numpy as np
+
+from fsw.core.algebra.quaternion import Quaternion, rotate
+from fsw.core.algebra.vector import Vec3, dot, scale
+from fsw.core.estimation.cells.cell_set import CellSet, Light
+from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.measurement import sun_prediction
+from fsw.core.estimation.mekf import Estimate
+from fsw.core.estimation.mekf_config import MekfConfig
+
+LEAST_COSINE = 0.2
+"""Of the angle from a cell's normal to the Sun: below it an attitude error may leave the cell dark."""
+SIGMAS = 4.0
+"""Beyond this many standard deviations an excess or a gain is outside what the table allows."""
+BRIGHT = 2.0
+"""Times the threshold: a cell that faces away from the Sun is taken if the Earth alone gives it this much."""
+
+CellPrediction = tuple[float, Matrix]
+"""What a cell should show without its excess, and the sensitivity, (1, n)."""
+
+
+def prediction(
+    estimate: Estimate, cell: int, seen: Light, config: MekfConfig, cells: CellSet
+) -> CellPrediction:
+    """What a cell, clear of the edge of its view, should show, and how that depends on the error state.
+
+    Misalignment and age are those of the Sun sensor that the cells replace: common to all cells.
+    """
+    normal, parts, known = cells.normals_body[cell], config.layout, estimate.parameters
+    s, sensitivity = sun_prediction(*estimate[:3], seen.s_eci, config)
+    shown, row = 0.0, np.zeros(parts.size)
+    direct = dot(normal, s)
+    if direct > 0.0:
+        gain = 1.0 + (known.cell_gain[cell] if known.cell_gain else 0.0)
+        shown, row = gain * direct, gain * np.array(normal).dot(sensitivity)
+        if parts.cell_gain is not None:
+            row[parts.cell_gain.start + cell] = direct
+    if seen.earth > 0.0:
+        e, e_sensitivity = sun_prediction(*estimate[:3], seen.e_eci, config)
+        view = 0.5 * (1.0 + dot(normal, e))
+        of_one = seen.earth / cells.albedo
+        earth = seen.earth + of_one * (known.earth_light[0] if known.earth_light else 0.0)
+        shown += earth * view * view
+        row = row + np.array(scale(earth * view, normal)).dot(e_sensitivity)
+        if parts.earth_light is not None:
+            row[parts.earth_light.start] = of_one * view * view
+    if parts.cells is not None:
+        row[parts.cells.start + cell] = 1.0
+    return shown, row.reshape(1, -1)
+
+
+def sunlit(q_body_from_eci: Quaternion, seen: Light, cells: CellSet) -> list[int]:
+    """The cells that certainly see the Sun."""
+    s = rotate(q_body_from_eci, seen.s_eci)
+    return [
+        cell
+        for cell, normal in enumerate(cells.normals_body)
+        if dot(normal, s) > LEAST_COSINE and not cells.shaded(cell, s)
+    ]
+
+
+def earthlit(q_body_from_eci: Quaternion, seen: Light, cells: CellSet) -> list[int]:
+    """The cells that face away from the Sun and that the Earth alone lights."""
+    s = rotate(q_body_from_eci, seen.s_eci)
+    return [
+        cell
+        for cell, normal in enumerate(cells.normals_body)
+        if dot(normal, s) < -LEAST_COSINE and _by_earth(q_body_from_eci, normal, seen) > BRIGHT * cells.dark
+    ]
+
+
+def most_behind(estimate: Estimate, normal: Vec3, seen: Light, cells: CellSet) -> float:
+    """The most that a cell facing away from the Sun can show, by the Earth's light and its excess.
+
+    The Earth is as bright as the table has it, or brighter where the cells together have shown that it is.
+    """
+    known = estimate.parameters.earth_light
+    brighter = max(0.0, known[0]) / cells.albedo if known else 0.0
+    most = SIGMAS * hypot(cells.excess_sigma, cells.light_sigma)
+    return cells.dark + (1.0 + brighter) * _by_earth(estimate.q_body_from_eci, normal, seen) + most
+
+
+def _by_earth(q_body_from_eci: Quaternion, normal: Vec3, seen: Light) -> float:
+    view = 0.5 * (1.0 + dot(normal, rotate(q_body_from_eci, seen.e_eci)))
+    return seen.earth * view * view
