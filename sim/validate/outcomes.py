@@ -151,7 +151,10 @@ def _row(one: Recorded) -> _Row:
 
 def _recorded(name: str, row: _Row) -> Recorded:
     claim = Claim(name, row.statement, row.source, row.unit, row.low, row.high, row.threshold, row.wide)
-    return Recorded(ClaimOutcome(claim, row.verdict, row.ours, row.where, row.spread), row.code)
+    met = row.verdict is ClaimVerdict.PASS
+    fitted = met and row.threshold is Threshold.FITTED  # however it was called when it was written
+    verdict = ClaimVerdict.FITTED if fitted else row.verdict
+    return Recorded(ClaimOutcome(claim, verdict, row.ours, row.where, row.spread), row.code)
 
 
 def _rounded_spread(spread: Spread) -> Spread:

@@ -93,6 +93,19 @@ def test_figures_are_kept_to_six_digits(path):
     assert read_record(path)["a.b"].outcome.ours == 1.23457e-7
 
 
+def test_what_is_fitted_is_not_met_however_it_was_written(path):
+    fitted = Claim("a.b", "Tilt", "Somebody", "deg", high=2.0, threshold=Threshold.FITTED)
+    rows = {
+        "a.b": Recorded(ClaimOutcome(fitted, ClaimVerdict.PASS, 1.5), "unknown"),
+        "a.c": Recorded(fitted.judge(3.0), "5eed"),
+    }
+    path.write_text(as_text(rows))
+    assert [one.outcome.verdict for one in read_record(path).values()] == [
+        ClaimVerdict.FITTED,
+        ClaimVerdict.FAIL,
+    ]
+
+
 def test_flights_of_other_code_are_told_from_those_of_this_and_from_what_has_none():
     code = {"a": code_digest(), "b": "", "c": "5eed", "d": "unknown"}
     assert of_other_code({name: ROW._replace(code=of) for name, of in code.items()}) == {"c", "d"}
