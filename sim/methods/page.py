@@ -19,9 +19,11 @@ measured of it.
 [laws.md](laws.md) has the equations of the laws, [validation.md](validation.md) the claims.
 
 *flown*: a law of the flight software, or an effect of the plant. *ground*: computed on the ground. *passed
-over*: not built, for the reason given. *holds*: every figure is within its limits. *not measured*: no figure
-has been written yet.
+over*: not built, for the reason given. *holds*: every figure is within its limits, and one at least was not
+fitted. *fitted*: a number of the scenario was chosen so that the figure is met, which shows nothing. *not
+measured*: no figure has been written yet.
 """
+FITTED = "fitted"
 _COLUMNS = ("method", "source", "kind", "where", "claim", "measured", "verdict")
 
 
@@ -52,6 +54,8 @@ def verdict(method: Method, figures: Figures) -> str:
         return "not measured"
     if "FAIL" in found:
         return "fails"
+    if all(one == FITTED for one in found):
+        return FITTED
     return "holds" if len(found) == len(method.claims) else "holds, in part not measured"
 
 
@@ -74,7 +78,8 @@ def _measured(claim: str, figures: Figures) -> str:
     if claim not in figures:
         return f"not measured (`{claim}`)"
     row = figures[claim]
-    return f"{row['figure']}, {row['limits']} (`{claim}`)"
+    fitted = f", {FITTED}" if row["verdict"] == FITTED else ""
+    return f"{row['figure']}, {row['limits']}{fitted} (`{claim}`)"
 
 
 def _counted(methods: Sequence[Method]) -> str:

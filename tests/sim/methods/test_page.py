@@ -1,5 +1,7 @@
 """docs/seeds.md: a row a method, what is not measured called so, the counts at the top."""
 
+from dataclasses import replace
+
 import pytest
 
 from sim.methods.method import Kind, Method
@@ -9,6 +11,7 @@ from sim.methods.table import missing, numbers
 FIGURES = {
     "a.one": {"figure": "1.5 deg", "limits": "<= 2", "verdict": "PASS"},
     "a.two": {"figure": "3 deg", "limits": "<= 2", "verdict": "FAIL"},
+    "a.fitted": {"figure": "1.9 deg", "limits": "<= 2", "verdict": "fitted"},
 }
 LAW = Method("A | law", "[O19] 1 [18, 20-23]", Kind.FLOWN, "a.py", "So.", ("a.one",))
 STUDY = Method("Study", "[O15] sec. 3 [4]", Kind.GROUND, "sim/b.py", "It is so.", ("a.one", "a.new"))
@@ -20,6 +23,9 @@ NONE = Method("None", "[O19] 2 [1]", Kind.PASSED_OVER, "", "Nothing.", remark="N
     [
         (("a.one",), "holds"),
         (("a.one", "a.two"), "fails"),
+        (("a.one", "a.fitted"), "holds"),
+        (("a.fitted",), "fitted"),
+        (("a.fitted", "a.two"), "fails"),
         (("a.one", "a.new"), "holds, in part not measured"),
         (("a.new",), "not measured"),
         ((), "not measured"),
@@ -38,6 +44,11 @@ def test_a_row_a_method():
         "not measured (`a.new`) | holds, in part not measured |",
         "| None | [O19] 2 [1] | passed over | - | Nothing. No equation was found. | - | passed over |",
     ]
+
+
+def test_a_figure_that_was_fitted_is_called_so():
+    law = replace(LAW, claims=("a.one", "a.fitted"))
+    assert "1.5 deg, <= 2 (`a.one`); 1.9 deg, <= 2, fitted (`a.fitted`) | holds |" in page([law], FIGURES)
 
 
 def test_the_top_counts_each_kind_and_names_the_references_left():
