@@ -8,6 +8,7 @@ from pathlib import Path
 
 from sim.campaign.claim import ClaimVerdict, Study
 from sim.campaign.runner import StudyResult, run
+from sim.campaign.study import FlightStudy
 from sim.console import answer, counted, say, warn
 from sim.errors import HarnessError
 from sim.junit import prepare_junit, write_junit
@@ -19,7 +20,7 @@ from sim.validate.outcomes import read_record
 from sim.validate.page import as_json, line, loose, suites, tally
 from sim.validate.reference import reference
 from sim.validate.registry import all_studies, choose_studies, find_repository
-from sim.validate.running.guard import guarded
+from sim.validate.running.guard import claims_of, guarded
 from sim.validate.running.kept_results import keep_result, with_known_results
 from sim.validate.running.results import ResultFiles
 
@@ -145,7 +146,9 @@ def _results(out: Path | None, whole: bool, record: bool, studies: Sequence[Stud
     if figures is not None and figures == page:
         raise HarnessError(f"--out {out}: the outcomes beside the page would have its name: end it in .md")
     before = read_record(figures) if record and figures is not None else None
-    return ResultFiles(page, figures, frozenset(study.id for study in studies), before)
+    flown = [study for study in all_studies(None) if isinstance(study, FlightStudy)] if record else []
+    claimed = frozenset(claim.id for study in flown for claim in claims_of(study))
+    return ResultFiles(page, figures, frozenset(study.id for study in studies), claimed, before)
 
 
 def _keeper(rows: FlightRows | None) -> Callable[[object], None] | None:

@@ -35,6 +35,7 @@ def render(
     finished: Sequence[StudyResult],
     wall_s: float,
     earlier: Collection[str] = (),
+    unknown: Sequence[str] = (),
 ) -> str:
     """The page: the table of claims, what was left out of the reference files, wall time and platform.
 
@@ -43,10 +44,13 @@ def render(
         finished: the studies whose reference files and recorded passes are listed.
         wall_s: of this run.
         earlier: claims whose flights other code has flown; they are marked.
+        unknown: claims that are made and have no outcome yet.
     """
     lines = [_HEAD, tally(outcomes) + ".", "", *claims_table(outcomes, earlier), ""]
     if earlier:
-        lines += ["\\*: flown by an earlier version.", ""]
+        lines += [f"\\*: flown by an earlier version, {len(earlier)} of {len(outcomes)}.", ""]
+    if unknown:
+        lines += [f"Claimed, and not computed yet: {', '.join(unknown)}.", ""]
     lines += [
         f"Own limits more than ten times off, without a reason: {', '.join(loose(outcomes)) or 'none'}.",
         "",

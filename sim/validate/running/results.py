@@ -20,6 +20,7 @@ class ResultFiles:
         page: None: not written.
         figures: the file of outcomes; None: not written.
         studies: ids of all studies.
+        claimed: claims that are made, by all studies that tell them beforehand.
         before: what ``figures`` held of all studies, where the outcomes are put among those; None: it is to
             hold those of this run alone.
         done: the studies of this run that are done.
@@ -28,6 +29,7 @@ class ResultFiles:
     page: Path | None
     figures: Path | None
     studies: frozenset[str]
+    claimed: frozenset[str] = frozenset()
     before: Record | None = None
     done: list[StudyResult] = field(default_factory=list)
 
@@ -40,9 +42,9 @@ class ResultFiles:
         self.done.append(study)
         if self.before is not None:
             known = with_record(self.before, self.done, self.studies)
-            outcomes = [one.outcome for one in known.values()]
+            outcomes, unknown = [one.outcome for one in known.values()], sorted(self.claimed - known.keys())
             # no details: those of a part would stand for the whole
-            self._write(known, render(outcomes, [], wall_s, of_other_code(known)))
+            self._write(known, render(outcomes, [], wall_s, of_other_code(known), unknown))
 
     def finish(self, finished: Sequence[StudyResult], wall_s: float) -> None:
         """All studies are done; say which files there are.

@@ -153,6 +153,19 @@ class TestCommand:
             ["20 at of (20.0,)", "", "<= 10", "own choice", "FAIL \\* |"],
         ]
 
+    def test_claims_without_an_outcome_are_named_on_the_page_of_what_is_recorded(
+        self, tmp_path, monkeypatch, study
+    ):
+        order = Order("microsat", {}, orbits=0.01)
+        figures = [Figure(name, "", "1", lambda flight: 1.0) for name in ("error", "time")]
+        parts = [study("a", [1.0]), campaign("b", "", [Group("", (order,))], figures)]
+        monkeypatch.setattr(command, "all_studies", lambda satellites: parts)
+        page = tmp_path / "page.md"
+        assert self.call("--only", "a", "--record", "--out", page).exit_code == 0
+        assert "Claimed, and not computed yet: b.error, b.time.\n" in page.read_text()
+        assert self.call("--only", "b", "--record", "--out", page).exit_code == 0
+        assert "not computed yet" not in page.read_text()
+
     def test_a_kill_while_outcomes_are_written_leaves_those_before(self, tmp_path, monkeypatch, study):
         parts = [study("a", [1.0])]
         monkeypatch.setattr(command, "all_studies", lambda satellites: parts)
