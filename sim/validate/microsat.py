@@ -148,7 +148,6 @@ def magnetometer_bias() -> Study:
         "deg",
         summary_value("estimate_deg.rms_sunlit"),
         high=0.2,
-        threshold=Threshold.PROTOTYPE,
     )
     return campaign("filter_bias", FILTER, (Group("", orders),), (figure,))
 

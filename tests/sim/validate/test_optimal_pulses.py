@@ -2,11 +2,11 @@
 
 import pytest
 
-from sim.campaign.claim import ClaimVerdict
+from sim.campaign.claim import ClaimVerdict, Threshold
 from sim.campaign.flight import FlightResult
 from sim.scenario.schema import load
 from sim.validate import optimal_pulses
-from sim.validate.microsat import pointing
+from sim.validate.microsat import magnetometer_bias, pointing
 
 SOUND = {"isolated": [], "limits_ok": True}
 HONEST = {
@@ -37,6 +37,12 @@ def test_the_starts_are_those_that_mpc_flies():
         a, b = (load(task.args[0].scenario, task.args[0].overrides) for task in (one, other))
         assert (a.control.law, b.control.law) == ("pulse_mpc", "mpc")
         assert (a.initial, a.disturbance, one.args[0].seed) == (b.initial, b.disturbance, other.args[0].seed)
+
+
+@pytest.mark.parametrize("study", [optimal_pulses.matched(), magnetometer_bias()])
+def test_a_limit_that_no_computation_has_found_is_a_choice(study):
+    own = [figure.threshold for figure in study.figures if not figure.id.startswith("limits_")]
+    assert set(own) == {Threshold.OWN}
 
 
 def test_each_satellite_is_flown_by_both_laws():
