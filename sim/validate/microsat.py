@@ -57,7 +57,8 @@ def pointing() -> Study:
     figures = [
         Figure(
             f"rms_{name}",
-            f"RMS pointing error, last {LAST_ORBITS:.0f} orbits, bias torque {torque_nm:g} N m, all seeds",
+            f"RMS pointing error, last {LAST_ORBITS:.0f} orbits, bias torque {torque_nm:g} N m about "
+            f"each axis, from up to {STARTS_WITHIN_DEG:g} deg off, all seeds",
             "deg",
             figure_of("rms_deg"),
             group=name,

@@ -9,7 +9,7 @@ from sim.campaign.claim import Claim, ClaimOutcome, Study, Threshold
 from sim.campaign.flight import FlightResult, Order
 from sim.campaign.population import population_order
 from sim.campaign.study import Figure, Group, campaign, describe_order, figure_of, spread_of, summary_value
-from sim.validate.microsat import LAST_ORBITS, POINTING_RUNS, pointing_order
+from sim.validate.microsat import LAST_ORBITS, POINTING_RUNS, STARTS_WITHIN_DEG, pointing_order
 from sim.validate.population.claims import ORBITS, quiet_and_honest
 
 LAW = "pulse_mpc"
@@ -37,7 +37,8 @@ def matched() -> Study:
     pointing = [
         Figure(
             f"rms_{name}",
-            f"RMS pointing error of {LAW}, last {LAST_ORBITS:.0f} orbits, torque {torque:g} N m, all seeds",
+            f"RMS pointing error of {LAW}, last {LAST_ORBITS:.0f} orbits, torque {torque:g} N m about each "
+            f"axis, from up to {STARTS_WITHIN_DEG:g} deg off, all seeds",
             "deg",
             figure_of("rms_deg"),
             group=name,

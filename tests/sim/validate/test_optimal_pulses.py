@@ -39,6 +39,17 @@ def test_the_starts_are_those_that_mpc_flies():
         assert (a.initial, a.disturbance, one.args[0].seed) == (b.initial, b.disturbance, other.args[0].seed)
 
 
+@pytest.mark.parametrize("study", [optimal_pulses.matched(), pointing()], ids=["pulse_mpc", "mpc"])
+def test_a_row_on_pointing_says_how_the_torque_acts_and_from_where_the_flights_start(study):
+    rows = [figure.statement for figure in study.figures if figure.id.startswith("rms_")]
+    assert len(rows) == 3
+    assert all("N m about each axis, from up to 60 deg off, all seeds" in row for row in rows)
+    for order in study.orders:
+        x, y, z = order.overrides["disturbance"]["torque_nm"]
+        assert x == y == z
+        assert order.overrides["initial"]["angle_deg"] <= 60.0
+
+
 @pytest.mark.parametrize("study", [optimal_pulses.matched(), magnetometer_bias()])
 def test_a_limit_that_no_computation_has_found_is_a_choice(study):
     own = [figure.threshold for figure in study.figures if not figure.id.startswith("limits_")]
