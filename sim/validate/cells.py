@@ -20,6 +20,8 @@ SCENARIO = "cubesat-cells"
 SOURCE = "Cells as panel currents of SUCHAI-3 show them: up to a third of full sunlight comes from the Earth"
 SEEDS, SATELLITES, WRONG = range(1, 11), range(301, 311), range(401, 441)
 WRONG_ORBITS = 4.0
+HONEST = "0.992 by an honest filter"
+"""Three axes at once."""
 CELLS, GAIN_PART, TURN_DEG = 6, 0.1, 2.0
 SUNLIT_DEG, ECLIPSE_DEG, INSIDE = 2.0, 4.0, 0.95
 CROSSED = ("cell 1", "cell 3")
@@ -58,7 +60,14 @@ def honest_figures() -> tuple[Figure, ...]:
     return (
         Figure("sunlit", "RMS error of the estimate in sunlight, all", "deg", SUNLIT, high=SUNLIT_DEG),
         Figure("eclipse", "RMS error of the estimate in eclipse, all", "deg", ECLIPSE, high=ECLIPSE_DEG),
-        Figure("inside", "Time inside 3 sigma about each axis at once, all", "1", INSIDE_ALL, low=INSIDE),
+        Figure(
+            "inside",
+            "Time inside 3 sigma about each axis at once, all",
+            "1",
+            INSIDE_ALL,
+            low=INSIDE,
+            wide=HONEST,
+        ),
         Figure("isolated", "Healthy units isolated in a flight, all", "1", isolated_units, high=0.0),
     )
 

@@ -40,6 +40,7 @@ def studies() -> list[Study]:
                 f"{REVIEW} [65]: the Lorentz force beside the coils",
                 "1",
                 low=0.9,
+                wide="one but for rounding",
             ),
             partial(charge_along_field, 0.0),
         ),

@@ -99,6 +99,18 @@ class TestPage:
         page = render(outcomes, [], 1.0)
         assert "off, without a reason: a.far, a.prototype." in page
 
+    def test_of_a_part_of_a_whole_what_it_lacks_counts(self):
+        outcomes = [
+            Claim("a.near", "", "", "1", low=0.95).judge(0.994),
+            Claim("a.far", "", "", "1", low=0.95).judge(0.9999),
+            Claim("a.whole", "", "", "1", low=0.95).judge(1.0),
+            Claim("a.reason", "", "", "1", low=0.95, wide="honest").judge(1.0),
+            Claim("a.ratio", "", "", "1", low=0.95).judge(1.2),
+            Claim("a.angle", "", "", "deg", low=0.95).judge(1.0),
+            Claim("a.all", "", "", "1", low=1.0).judge(1.0),
+        ]
+        assert loose(outcomes) == ["a.far", "a.whole"]
+
     def test_the_tally_counts_only_what_shows_something(self):
         fitted = Claim("a.e", "Fitted", "Him", "s", high=3.0, threshold=Threshold.FITTED)
         assert tally([fitted.judge(2.0)]) == "0 claims met, 0 failed, 1 fitted"

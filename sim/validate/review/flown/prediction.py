@@ -90,7 +90,7 @@ def tumbling() -> Study:
             "Energy taken from 5 deg/s in 2 min, searches ended by the rule over those to the end",
             f"{REVIEW} [111]",
             "1",
-            low=0.9,
+            low=0.95,
         ),
         Claim(
             "review.predictive.tumbling.reference",
