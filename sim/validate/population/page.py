@@ -96,7 +96,10 @@ def satellites_table(flights: Flights) -> list[str]:
 
 
 def never_pointed(name: str, flights: Flights) -> list[str]:
-    """How many never come to point, of which dipoles, beside what a coil gives in the mean; or nothing."""
+    """How many never come to point, of which dipoles, beside what a coil gives in the mean; or nothing.
+
+    How many of them have more says whether the dipole is why.
+    """
     dipoles = [one.figures["dipole_am2"] for one in flights if one.figures["pointed_orbits"] == inf]
     if not dipoles:
         return []
@@ -106,7 +109,7 @@ def never_pointed(name: str, flights: Flights) -> list[str]:
         "",
         f"{len(dipoles)} of {len(flights)} never come within {POINTED_DEG:g} deg for good; their dipoles are "
         f"{min(dipoles):.4f} to {max(dipoles):.4f} A m^2. A coil gives {mean_am2:.4f} A m^2 in the mean, at "
-        "its highest level.",
+        f"its highest level: {sum(dipole > mean_am2 for dipole in dipoles)} of them have more.",
     ]
 
 

@@ -71,8 +71,10 @@ def test_satellites_that_never_point_are_counted_beside_what_a_coil_gives_in_the
         "2 of 3 never come within 10 deg for good; their dipoles are 0.0072 to 0.0213 A m^2. "
     )
     assert sentence.endswith(
-        "A coil gives 0.0014 A m^2 in the mean, at its highest level."
+        "A coil gives 0.0014 A m^2 in the mean, at its highest level: 2 of them have more."
     )  # 0.048 x 3 s / 103 s
+    small = [flight(dipole_am2=0.001, pointed_orbits=inf), *flights]
+    assert never_pointed("3u", small)[1].endswith(": 2 of them have more.")
     assert never_pointed("3u", flights[:1]) == []
 
 
