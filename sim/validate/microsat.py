@@ -87,7 +87,8 @@ def acquisition() -> Study:
     figures = (
         Figure(
             "held",
-            f"In POINT and under {ACQUIRED_DEG:g} deg from then on after, from any attitude at 1 deg/s, all",
+            f"In POINT and under {ACQUIRED_DEG:g} deg from then on after, from {ACQUIRED_RUNS} random "
+            f"attitudes at {ACQUIRED_DEGPS:g} deg/s, all",
             "orbits",
             figure_of("held_orbits"),
             high=ACQUIRED_ORBITS,

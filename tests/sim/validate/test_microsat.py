@@ -155,3 +155,9 @@ class TestConsistency:
     def test_is_that_of_the_last_tick(self, monkeypatch, scenario):
         monkeypatch.setattr(microsat, "nees", lambda truth, estimates: np.array([9.0, 5.0, 3.5]))
         assert microsat.consistency_figures(scenario, {}, None) == {"nees": 3.5}
+
+
+def test_the_row_on_acquisition_says_how_many_attitudes_were_drawn():
+    study = microsat.acquisition()
+    held = next(figure for figure in study.figures if figure.id == "held")
+    assert f"from {len(study.orders)} random attitudes at 1 deg/s, all" in held.statement

@@ -35,6 +35,14 @@ class TestCase:
             assert allowed["torque_nm"] > np.abs(torque).max()
             assert allowed["residual_dipole_am2"] > np.abs(dipole).max()
 
+    def test_a_row_says_how_many_flights_there_are_and_from_where(self, case):
+        study = study_of(case)
+        start = "from 10 to 60 deg off" if case.turned else "from its own start"
+        for figure in study.figures:
+            (group,) = (group for group in study.groups if group.name == figure.group)
+            assert figure.statement.endswith(f", {start}, all of {len(group.orders)} flights")
+            assert ("each in a random direction" in figure.statement) is (figure.group == "real")
+
     @pytest.mark.parametrize("place", [0, -1], ids=["shipped", "real"])
     @pytest.mark.parametrize("what", ["pointing", "estimate", "settling"])
     def test_each_limit_acts(self, case, place, what):
