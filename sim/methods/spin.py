@@ -9,7 +9,11 @@ METHODS: tuple[Method, ...] = (
         kind=Kind.FLOWN,
         where="fsw/core/laws/spin/relay_stages.py",
         claim="Relays with a switching function for each stage, one after the other.",
-        claims=("review.spin.relay_stages",),
+        claims=(
+            "review.spin.relay_stages",
+            "review.spin.relay_stages_spin",
+            "review.spin.relay_stages_nutation",
+        ),
         remark="The review names the functions without printing them; they are derived.",
     ),
     Method(
@@ -18,7 +22,7 @@ METHODS: tuple[Method, ...] = (
         kind=Kind.FLOWN,
         where="fsw/core/laws/spin/spin_axis.py",
         claim="Each coil fully on with the sign of h . (e_j x b): spin by coils 1 and 2, nutation by coil 3.",
-        claims=("review.spin.relay",),
+        claims=("review.spin.relay", "review.spin.relay_spin", "review.spin.relay_nutation"),
         remark="The h of the equation must be the error of the momentum.",
     ),
     Method(
@@ -62,7 +66,7 @@ METHODS: tuple[Method, ...] = (
         kind=Kind.FLOWN,
         where="fsw/core/laws/spin/spin_axis.py",
         claim="One error, in space, gives the direction; the other, in the body, gives the spin.",
-        claims=("review.spin.relay",),
+        claims=("review.spin.relay", "review.spin.relay_spin", "review.spin.relay_nutation"),
     ),
     Method(
         name="three terms (`three_term`)",
@@ -70,7 +74,11 @@ METHODS: tuple[Method, ...] = (
         kind=Kind.FLOWN,
         where="fsw/core/laws/spin/spin_axis.py",
         claim="Nutation, spin and direction by the terms of one law.",
-        claims=("review.spin.three_term",),
+        claims=(
+            "review.spin.three_term",
+            "review.spin.three_term_spin",
+            "review.spin.three_term_nutation",
+        ),
     ),
     Method(
         name="precession by the roll angle (`roll_precession`)",

@@ -58,12 +58,44 @@ def _spin(flown: LawHistory) -> Array:
 FIGURES: dict[str, Callable[[LawHistory, LawFlight], float]] = {
     "across_share": lambda flown, case: _across(flown)[-1] / _across(flown)[0],
     "spin_change": lambda flown, case: abs(_spin(flown)[-1] / _spin(flown)[0] - 1.0),
+    "across_spin": lambda flown, case: _across(flown)[-1] / case.spin_radps,
     "spin_share": lambda flown, case: _spin(flown)[-1] / case.spin_radps,
     "target_deg": lambda flown, case: angle_deg(flown.momentum_eci_nms, TARGET)[-1],
     "momentum_normal_deg": lambda flown, case: angle_deg(flown.momentum_eci_nms, NORMAL)[-1],
     "normal_deg": lambda flown, case: flown.orbit_axis_deg(2, 2)[-1],
 }
 """Figures at the end of a flight."""
+
+RELAY = replace(TUMBLING, law="spin_relay", gains=SpinAxisGains(3.0, *TARGET), orbits=2.5, most_am2=1.0)
+THREE_TERM = replace(TUMBLING, law="three_term", gains=ThreeTermGains(3.0, *TARGET), orbits=2.0)
+STAGES = replace(TUMBLING, law="relay_stages", gains=StageGains(3.0, *TARGET), orbits=4.0, most_am2=3.0)
+
+
+def _spun(name: str, source: str, case: LawFlight, spin_off: float, across: float) -> tuple[FlownClaim, ...]:
+    """Of a law that is to give spin and direction at once, what its direction alone does not show."""
+    return (
+        FlownClaim(
+            f"{name}_spin",
+            "The same: spin at the end, of the wanted",
+            source,
+            "1",
+            1.0 - spin_off,
+            1.0 + spin_off,
+            case,
+            "spin_share",
+        ),
+        FlownClaim(
+            f"{name}_nutation",
+            "The same: rate across the axis at the end, of the spin wanted",
+            source,
+            "1",
+            -inf,
+            across,
+            case,
+            "across_spin",
+        ),
+    )
+
 
 ROWS: tuple[FlownClaim, ...] = (
     FlownClaim(
@@ -122,9 +154,10 @@ ROWS: tuple[FlownClaim, ...] = (
         "deg",
         -inf,
         5.0,
-        replace(TUMBLING, law="spin_relay", gains=SpinAxisGains(3.0, *TARGET), orbits=2.5, most_am2=1.0),
+        RELAY,
         "target_deg",
     ),
+    *_spun("relay", "eq. 3 [30, 35]: spin and direction at once", RELAY, 0.1, 0.02),
     FlownClaim(
         "reorientation",
         "Reorientation by one coil: momentum from the target after two orbits",
@@ -142,9 +175,10 @@ ROWS: tuple[FlownClaim, ...] = (
         "deg",
         -inf,
         0.3,
-        replace(TUMBLING, law="three_term", gains=ThreeTermGains(3.0, *TARGET), orbits=2.0),
+        THREE_TERM,
         "target_deg",
     ),
+    *_spun("three_term", "[36]: nutation, spin and direction by one law", THREE_TERM, 0.01, 3e-5),
     FlownClaim(
         "relay_stages",
         "Three stages by relays (3 A m^2): momentum from the target after four orbits of a tumble",
@@ -152,14 +186,15 @@ ROWS: tuple[FlownClaim, ...] = (
         "deg",
         -inf,
         3.0,
-        replace(
-            TUMBLING,
-            law="relay_stages",
-            gains=StageGains(3.0, *TARGET),
-            orbits=4.0,
-            most_am2=3.0,
-        ),
+        STAGES,
         "target_deg",
+    ),
+    *_spun(
+        "relay_stages",
+        "[29]: nutation, spin and direction, each by its switching function",
+        STAGES,
+        0.1,
+        0.2,
     ),
     FlownClaim(
         "target_precession",

@@ -1,0 +1,36 @@
+"""Claims on stabilisation by spin: a law that lacks one of its terms misses one of them."""
+
+from fsw.core.algebra.vector import ZERO
+from fsw.core.laws.spin import spin_axis
+from sim.campaign.claim import ClaimVerdict
+from sim.validate.review import spin
+
+
+def missed(*names):
+    """The claims that are missed, of those with these names."""
+    rows = [row.study("spin", spin.REVIEW, spin.flown_figure) for row in spin.ROWS if row.name in names]
+    assert len(rows) == len(names)
+    outcomes = [outcome for row in rows for outcome in row.conclude([task() for task in row.tasks])]
+    return {one.claim.id.rpartition(".")[2] for one in outcomes if one.verdict is not ClaimVerdict.PASS}
+
+
+def test_without_the_error_of_the_spin_the_relay_turns_the_momentum_but_does_not_spin(monkeypatch):
+    names = ("relay", "relay_spin", "relay_nutation")
+    assert missed(*names) == set()
+    whole = spin_axis._errors
+    monkeypatch.setattr(spin_axis, "_errors", lambda *words: (whole(*words)[0], ZERO))
+    assert missed(*names) == {"relay_spin", "relay_nutation"}
+
+
+def test_without_its_first_term_the_law_of_three_leaves_the_nutation(monkeypatch):
+    names = ("three_term", "three_term_spin", "three_term_nutation")
+    assert missed(*names) == set()
+    whole = spin_axis.three_term_dipole
+    monkeypatch.setattr(
+        spin_axis,
+        "three_term_dipole",
+        lambda b, omega, spin_error, error, axis, k_w, *gains: whole(
+            b, omega, spin_error, error, axis, 0.0, *gains
+        ),
+    )
+    assert missed(*names) == {"three_term_nutation"}
