@@ -142,7 +142,7 @@ ROWS: tuple[FlownClaim, ...] = (
         "2.4 [60]: the difference of two panels, and the panel with the most",
         "deg",
         -inf,
-        45.0,
+        20.0,
         LawFlight(
             "sun_panels",
             INERTIA,

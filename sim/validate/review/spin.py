@@ -164,7 +164,7 @@ ROWS: tuple[FlownClaim, ...] = (
         "[31, 32]",
         "deg",
         -inf,
-        10.0,
+        6.0,
         replace(SPINNING, law="reorientation", gains=SpinAxisGains(3.0, *TARGET, 3e6), orbits=2.0),
         "target_deg",
     ),
@@ -202,7 +202,7 @@ ROWS: tuple[FlownClaim, ...] = (
         "eq. 5 [38]: any f with x f(x) > 0 serves",
         "deg",
         -inf,
-        20.0,
+        12.0,
         replace(
             SPINNING,
             law="target_precession",

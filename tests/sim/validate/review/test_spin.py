@@ -1,7 +1,7 @@
 """Claims on stabilisation by spin: a law that lacks one of its terms misses one of them."""
 
 from fsw.core.algebra.vector import ZERO
-from fsw.core.laws.spin import spin_axis
+from fsw.core.laws.spin import spin_axis, target_precession
 from sim.campaign.claim import ClaimVerdict
 from sim.validate.review import spin
 
@@ -34,3 +34,23 @@ def test_without_its_first_term_the_law_of_three_leaves_the_nutation(monkeypatch
         ),
     )
     assert missed(*names) == {"three_term_nutation"}
+
+
+def test_half_the_gain_misses_its_direction(monkeypatch):
+    whole = spin_axis.reorientation_dipole
+    monkeypatch.setattr(
+        spin_axis, "reorientation_dipole", lambda b, error, axis, k_h: whole(b, error, axis, 0.5 * k_h)
+    )
+    assert missed("reorientation") == {"reorientation"}
+
+
+def test_half_of_one_of_two_terms_misses_the_target(monkeypatch):
+    def halved(b, target, axis, k, limit):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        first, second = (target_precession.bent(target[place], limit) for place in (v, u))
+        m = [0.0, 0.0, 0.0]
+        m[axis] = k * (0.5 * b[u] * first - b[v] * second)
+        return tuple(m)
+
+    monkeypatch.setattr(target_precession, "precession_dipole", halved)
+    assert missed("target_precession") == {"target_precession"}
