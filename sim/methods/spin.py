@@ -50,7 +50,7 @@ METHODS: tuple[Method, ...] = (
         kind=Kind.FLOWN,
         where="fsw/core/laws/spin/spin.py",
         claim="The satellite spins about the axis normal to the orbit at the rate wanted.",
-        claims=("review.spin.y_thomson",),
+        claims=("review.spin.y_thomson", "review.spin.y_thomson_spin"),
     ),
     Method(
         name="reorientation of the spin axis by one coil (`reorientation`)",

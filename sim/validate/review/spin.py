@@ -66,6 +66,15 @@ FIGURES: dict[str, Callable[[LawHistory, LawFlight], float]] = {
 }
 """Figures at the end of a flight."""
 
+THOMSON = replace(
+    SPINNING,
+    law="y_thomson",
+    gains=SpinGains(3.0),
+    spin_radps=0.02,
+    omega_body_radps=(0.0, 0.0, 0.03),
+    k_w=6e6,
+    orbits=4.0,
+)
 RELAY = replace(TUMBLING, law="spin_relay", gains=SpinAxisGains(3.0, *TARGET), orbits=2.5, most_am2=1.0)
 THREE_TERM = replace(TUMBLING, law="three_term", gains=ThreeTermGains(3.0, *TARGET), orbits=2.0)
 STAGES = replace(TUMBLING, law="relay_stages", gains=StageGains(3.0, *TARGET), orbits=4.0, most_am2=3.0)
@@ -131,21 +140,23 @@ ROWS: tuple[FlownClaim, ...] = (
     ),
     FlownClaim(
         "y_thomson",
-        "Y-Thomson: angle of the axis from the orbit normal after four orbits from 25",
+        "Y-Thomson: angle of the axis from the orbit normal after four orbits from 25, spun half too fast",
         "[34]: spin about the axis normal to the orbit",
         "deg",
         -inf,
         2.0,
-        replace(
-            SPINNING,
-            law="y_thomson",
-            gains=SpinGains(3.0),
-            spin_radps=0.02,
-            omega_body_radps=(0.0, 0.0, 0.02),
-            k_w=6e6,
-            orbits=4.0,
-        ),
+        THOMSON,
         "normal_deg",
+    ),
+    FlownClaim(
+        "y_thomson_spin",
+        "The same: spin at the end, of the wanted",
+        "[34]: spin about the axis normal to the orbit",
+        "1",
+        0.99,
+        1.01,
+        THOMSON,
+        "spin_share",
     ),
     FlownClaim(
         "relay",

@@ -1,6 +1,7 @@
 """Claims on stabilisation by spin: a law that lacks one of its terms misses one of them."""
 
 from fsw.core.algebra.vector import ZERO
+from fsw.core.laws.spin import spin as thomson
 from fsw.core.laws.spin import spin_axis, target_precession
 from sim.campaign.claim import ClaimVerdict
 from sim.validate.review import spin
@@ -34,6 +35,13 @@ def test_without_its_first_term_the_law_of_three_leaves_the_nutation(monkeypatch
         ),
     )
     assert missed(*names) == {"three_term_nutation"}
+
+
+def test_without_the_coil_that_holds_it_the_spin_stays_as_it_was(monkeypatch):
+    names = ("y_thomson", "y_thomson_spin")
+    assert missed(*names) == set()
+    monkeypatch.setattr(thomson, "y_thomson_dipole", lambda *words: ZERO)
+    assert missed(*names) == set(names)
 
 
 def test_half_the_gain_misses_its_direction(monkeypatch):
