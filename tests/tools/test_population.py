@@ -107,7 +107,8 @@ def test_the_page_can_be_drawn_of_what_there_is_without_flying(run, flown, tmp_p
     text = (tmp_path / "page.md").read_text()
     assert f"5 of {FLIGHTS} flights." in text
     assert (
-        "(`population.twice.wrong`) | Ordinary tolerances of a satellite of this size; 0 satellites" in text
+        "(`population.twice.wrong`) | Tolerances of a satellite of this size whose dipole was measured: own "
+        "estimate; 0 satellites" in text
     )
 
 

@@ -9,7 +9,7 @@ from sim.campaign.honesty import LAST_ORBITS, POINTED_DEG
 from sim.campaign.population import population_order
 from sim.campaign.study import Figure, FlightStudy, Group, campaign, figure_of
 
-SOURCE = "Ordinary tolerances of a satellite of this size"
+SOURCE = "Tolerances of a satellite of this size whose dipole was measured: own estimate"
 SATELLITES = {"50kg": 100, "3u": 30, "6u": 30}
 TUMBLING, TWICE = 30, 30
 ORBITS, ORBITS_FROM_5_DEGPS = 8.0, 14.0

@@ -20,6 +20,11 @@ coils are healthy: none may be isolated. The law is `mpc`; a flight takes eight 
 and begins up to 60 deg and 0.05 deg/s by axis off, where it does not tumble. The 6U has drag and light
 besides. No Sun sensor sees the light of the Earth (`sensors.sun.albedo` would turn it on).
 
+The tolerances are an own estimate, and no more than the onboard table declares, but for the population
+`twice`. The dipole is that of a satellite whose own was measured: one that was not has some mA m^2 per kg
+([uncertainty.md](uncertainty.md)), at 50 kg as much as the largest here or several times that; what 0.2 A m^2
+does is in the table of one difference.
+
 An honest filter has each axis of its error inside 3 sigma for 99.7 % of the time.
 """
 

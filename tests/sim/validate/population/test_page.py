@@ -7,7 +7,8 @@ import pytest
 
 from sim.campaign.flight import FlightResult
 from sim.campaign.population import Tolerances, population_order
-from sim.validate.population.page import TOLERANCES, never_pointed, page, satellites_table
+from sim.validate.population.claims import SOURCE
+from sim.validate.population.page import HEAD, TOLERANCES, never_pointed, page, satellites_table
 from sim.validate.population.pictures import draw_satellites, draw_sweep, spread_of
 from sim.validate.population.sweep import QUANTITIES
 
@@ -76,6 +77,12 @@ def test_satellites_that_never_point_are_counted_beside_what_a_coil_gives_in_the
     small = [flight(dipole_am2=0.001, pointed_orbits=inf), *flights]
     assert never_pointed("3u", small)[1].endswith(": 2 of them have more.")
     assert never_pointed("3u", flights[:1]) == []
+
+
+def test_the_page_says_whose_the_tolerances_are_and_which_satellite_is_not_among_them():
+    assert SOURCE.endswith(": own estimate")
+    assert "own estimate" in HEAD
+    assert "The dipole is that of a satellite whose own was measured" in HEAD
 
 
 def test_every_tolerance_is_on_the_page():
