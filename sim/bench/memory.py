@@ -10,12 +10,13 @@ SAMPLES = 240
 
 
 def resident_kib(pid: int) -> int | None:
-    """Resident memory of a process [KiB]; None where the system does not report it."""
+    """Resident memory of a process [KiB]; None where it has ended, or the system does not report it."""
     try:
         with open(f"/proc/{pid}/statm", encoding="ascii") as file:
-            return int(file.read().split()[1]) * PAGE_KIB
+            pages = int(file.read().split()[1])
     except (OSError, IndexError):
         return None
+    return pages * PAGE_KIB if pages else None  # one that has ended and is not yet waited for has none
 
 
 def growth_percent(kib: Sequence[int], warm: int) -> float:

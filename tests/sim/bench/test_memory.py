@@ -47,6 +47,16 @@ def test_a_process_that_is_gone_is_not_kept_to_be_flat(resident):
     assert history.growth_percent() == {"fsw": float("inf"), "coil": 0.0}
 
 
+def test_a_process_that_ended_and_is_not_waited_for_is_gone():
+    with subprocess.Popen(["true"]) as ended:
+        os.waitid(os.P_PID, ended.pid, os.WEXITED | os.WNOWAIT)
+        assert resident_kib(ended.pid) is None
+        history = MemoryMonitor({"this": os.getpid(), "ended": ended.pid}, 100, 10, 2.0)
+        for tick in range(100):
+            history.sample(tick)
+    assert history.growth_percent()["ended"] == float("inf")
+
+
 @pytest.mark.parametrize(("ticks", "judged"), [(210, False), (211, True)])
 def test_a_run_that_ends_before_it_is_warm_is_not_judged(resident, ticks, judged):
     history = watched(ticks)
