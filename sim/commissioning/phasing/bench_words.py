@@ -59,7 +59,7 @@ def findings(one: BenchResponse) -> list[str]:
             found.append(
                 f"not proportional to a command along {letter}: off by {percent:.0f} % of the largest"
             )
-        for other in _reverses(levels):
+        for other in _reverses(levels, axis):
             found.append(f"the response of {other} to a command along {letter} reverses with its level")
     return found
 
@@ -96,12 +96,14 @@ def _off_proportion(levels: list[Step], axis: int) -> float:
     return float(np.max(np.where(off > SIGMAS * sigma, off, 0.0))) / largest if largest > 0.0 else 0.0
 
 
-def _reverses(levels: list[Step]) -> list[str]:
-    """Axes along which clear responses to one sense of a command have both signs."""
+def _reverses(levels: list[Step], along: int) -> list[str]:
+    """Axes along which clear responses to one sense of a command along an axis have both signs."""
     found = []
     for axis, letter in enumerate("xyz"):
-        clear = [s.response_nt[axis] for s in levels if abs(s.response_nt[axis]) > SIGMAS * s.sigma_nt[axis]]
-        found += [letter] if clear and min(clear) < 0.0 < max(clear) else []
+        clear = [s for s in levels if abs(s.response_nt[axis]) > SIGMAS * s.sigma_nt[axis]]
+        signs = {(s.command_am2[along] > 0.0, bool(s.response_nt[axis] > 0.0)) for s in clear}
+        if {(True, True), (True, False)} <= signs or {(False, True), (False, False)} <= signs:
+            found.append(letter)
     return found
 
 

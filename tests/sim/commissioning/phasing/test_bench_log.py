@@ -5,7 +5,7 @@ import os
 import numpy as np
 import pytest
 
-from sim.commissioning.phasing.bench_log import bench_responses, read_recording
+from sim.commissioning.phasing.bench_log import Recording, bench_responses, read_recording
 from sim.commissioning.phasing.bench_words import NOT_TOLD, findings, lines
 from sim.commissioning.phasing.command import of_csv
 from sim.errors import HarnessError
@@ -107,6 +107,37 @@ def test_an_axis_that_repeats_another_is_told(responses):
 def test_a_response_out_of_proportion_is_told(responses):
     assert any("not proportional to a command along x" in text for text in findings(responses["mag2"]))
     assert not any("not proportional" in text for text in findings(responses["mag1"]))
+
+
+def of_levels(*fields_by_level):
+    """A recording of a command along x whose response has these sizes, by level, after a rest each."""
+    times, readings, commands = [], [], []
+    for number, (level, field_nt) in enumerate(pair for one in fields_by_level for pair in ((0.0, 0.0), one)):
+        commands.append((4.0 * number, level))
+        times += [4.0 * number + 0.25 * part for part in range(1, 16)]
+        readings += [20000.0 + field_nt + 10.0 * (part % 2) for part in range(1, 16)]
+    moments, levels = np.array(commands).T
+    x, still = np.array(readings), np.zeros(len(readings))
+    fields = {"mag": (np.array(times), np.column_stack([x, 500.0 + still, -2.0 * x]))}
+    return Recording(fields, (moments, np.outer(levels, (1.0, 0.0, 0.0))))
+
+
+BOTH_SENSES = ((0.1, 5e3), (-0.1, -5e3), (0.2, 1e4), (-0.2, -1e4))
+
+
+@pytest.mark.parametrize(
+    ("levels", "axes"),
+    [
+        (BOTH_SENSES, []),
+        (tuple((level, -field_nt) for level, field_nt in BOTH_SENSES), []),
+        (((0.1, 5e3), (0.2, -1e4)), ["x", "z"]),
+        (((-0.1, 5e3), (-0.2, -1e4), (0.1, 5e3)), ["x", "z"]),
+    ],
+)
+def test_a_response_reverses_with_the_level_of_one_sense_of_a_command(levels, axes):
+    (found,) = bench_responses(of_levels(*levels))
+    told = [text for text in findings(found) if "reverses" in text]
+    assert told == [f"the response of {axis} to a command along x reverses with its level" for axis in axes]
 
 
 def test_no_axis_is_claimed(responses):
