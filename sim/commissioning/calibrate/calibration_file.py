@@ -40,12 +40,13 @@ def as_toml(found: RecordedCalibration, ratios: Array) -> str:
 
 
 def _cell(cell: CellFit) -> list[str]:
+    scale, sigma = (f"{value:.{cell.decimals + 1}f}" for value in (cell.full_scale, cell.full_scale_sigma))
     return [
         "",
         "[[recorded.cell]]",
         f'name = "{cell.name}"',
         f"face_body = {_numbers(cell.face_body, 4)}  # +- {cell.face_sigma_deg:.1f} deg",
-        f"full_scale = {cell.full_scale:.1f}  # +- {cell.full_scale_sigma:.1f}, by {cell.rows} rows",
+        f"full_scale = {scale}  # +- {sigma}, by {cell.rows} rows",
     ]
 
 

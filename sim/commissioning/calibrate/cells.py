@@ -3,6 +3,7 @@
 A cell that sees the Sun gives full_scale (face . s): linear in the product, which is fitted robustly.
 """
 
+from math import floor, log10
 from typing import NamedTuple
 
 import numpy as np
@@ -37,6 +38,11 @@ class CellFit(NamedTuple):
     def told(self) -> bool:
         """Whether the data tell it."""
         return self.face_sigma_deg <= TOLD_DEG and self.full_scale_sigma <= TOLD_PART * self.full_scale
+
+    @property
+    def decimals(self) -> int:
+        """Decimals that give the full scale, which may be in A, three digits at least."""
+        return max(0, 2 - floor(log10(self.full_scale)))
 
 
 def fit_cells(around: Along, followed: Followed, settled: int) -> list[CellFit]:

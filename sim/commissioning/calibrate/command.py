@@ -76,7 +76,8 @@ def _say(found: RecordedCalibration, parameters: int) -> None:
         say(f"  with temperature: {_triple(*drift.per_degc_nt)} nT/deg C")
     for cell in found.cells:
         face = ", ".join(f"{part:.3f}" for part in cell.face_body)
-        scale = f"full scale {cell.full_scale:.0f} +- {cell.full_scale_sigma:.0f}"
+        digits = cell.decimals
+        scale = f"full scale {cell.full_scale:.{digits}f} +- {cell.full_scale_sigma:.{digits}f}"
         said = "" if cell.told else "; cannot be told"
         say(f"cell {cell.name}: face ({face}) +- {cell.face_sigma_deg:.1f} deg, {scale}{said}")
     if found.body is not None:

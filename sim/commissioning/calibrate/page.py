@@ -102,12 +102,13 @@ def _others(found: RecordedCalibration) -> list[Table]:
 
 
 def _cell(one: CellFit) -> tuple[str, ...]:
-    figures = (one.full_scale, one.full_scale_sigma, one.residual_rms, one.rows)
+    figures = (one.full_scale, one.full_scale_sigma, one.residual_rms)
     face = (_triple(one.face_body, 3), f"{one.face_sigma_deg:.1f}°")
     return (
         one.name,
         *face,
-        *(f"{figure:.0f}" for figure in figures),
+        *(f"{figure:.{one.decimals}f}" for figure in figures),
+        str(one.rows),
         "told" if one.told else "cannot be told",
     )
 

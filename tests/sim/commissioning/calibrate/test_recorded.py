@@ -64,6 +64,26 @@ def test_the_file_says_what_was_found(calibrated, tmp_path):
     assert 0.0 < bounds["magnetometer_scale_percent"] <= 10.0
 
 
+@pytest.mark.parametrize("unit", [1.0, 1e-4, 1e-6])
+def test_full_scales_keep_their_digits_in_any_unit(calibrated, tmp_path, unit):
+    def in_unit(cell):
+        scaled = {
+            name: unit * getattr(cell, name) for name in ("full_scale", "full_scale_sigma", "residual_rms")
+        }
+        return cell._replace(**scaled)
+
+    found = replace(calibrated, cells=tuple(map(in_unit, calibrated.cells)))
+    path = tmp_path / "c.toml"
+    path.write_text(as_toml(found, DECLARED))
+    told = [cell for cell in found.cells if cell.told]
+    assert told
+    for known, cell in zip(read_calibration(path).cells, told, strict=True):
+        assert known.full_scale == pytest.approx(cell.full_scale, rel=1e-3)
+        shown = f"{cell.full_scale:.{cell.decimals}f}"
+        assert float(shown) == pytest.approx(cell.full_scale, rel=5e-3)
+        assert f">{shown}<" in calibration_page(found, "")
+
+
 def test_the_file_can_be_read_whatever_the_name_of_the_pass(tmp_path):
     around = made_up(40).along(tmp_path)
     named = replace(around, recorded=replace(around.recorded, name="a\nb\x01"))
