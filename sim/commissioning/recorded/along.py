@@ -30,7 +30,7 @@ class Along:
         recorded: the pass.
         elements: those that were used.
         tick_s: length of a tick.
-        tick: of each row, (n), from that of the first row on.
+        tick: of each row, (n), counted from the whole second in which the first row is.
         first_of_tick: whether no earlier row has the tick: later ones are of an unknown moment, (n).
         references: by tick, for every tick that a row has.
         b_eci_nt: field, (n, 3); ``sun_eci``: unit vector, (n, 3); ``lit``: (n).
@@ -49,7 +49,7 @@ class Along:
     @property
     def t_s(self) -> Array:
         """Time of each row since the first one, (n)."""
-        t_s: Array = np.asarray(self.tick * self.tick_s, dtype=np.float64)
+        t_s: Array = np.asarray((self.tick - self.tick[0]) * self.tick_s, dtype=np.float64)
         return t_s
 
     @property

@@ -56,6 +56,21 @@ def test_faster_samples_have_shorter_ticks(tmp_path):
     np.testing.assert_allclose(around.t_s, 0.25 * np.arange(12))
 
 
+def test_time_is_counted_from_the_first_row_wherever_in_its_second_that_is(tmp_path):
+    head, *rows = made_up(12).text.splitlines()
+    start = float(rows[0].split(",")[0])
+    for name, step_s, later_s in (("slow", 1.0, 0.75), ("fast", 0.25, 0.5)):
+        moved = [
+            ",".join([f"{start + later_s + step_s * n:.2f}", *row.split(",")[1:]])
+            for n, row in enumerate(rows)
+        ]
+        path = tmp_path / f"{name}.csv"
+        path.write_text("\n".join([head, *moved]) + "\n")
+        recorded = read_pass(path)
+        around = along(recorded, nearest_elements(TLE, recorded.middle_unix_s))
+        np.testing.assert_allclose(around.t_s, recorded.utc_unix_s - recorded.utc_unix_s[0], atol=1e-6)
+
+
 def test_a_time_without_a_field_model_is_refused(tmp_path):
     text = made_up(5).text.replace("17023079", "23023079")
     path = tmp_path / "late.csv"
