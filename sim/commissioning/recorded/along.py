@@ -20,6 +20,8 @@ NT_PER_T = 1e9
 FASTEST_HZ = 100
 OLD_DAYS = 7.0
 """Elements further away put the satellite tens of kilometres off: 10 nT and more each."""
+NEARLY_ALL, MOST_TICKS_APART = 0.9, 600
+"""Part of the samples that lie a number of ticks apart, or multiples of it, and the largest such number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +62,9 @@ class Along:
 
 
 def placed(recorded: RecordedPass, tle: Path) -> Along:
-    """The pass along the nearest elements of a file; of elements that are far away the user is warned.
+    """The pass along the nearest elements of a file.
+
+    The user is warned of elements that are far away, and of samples that are further apart than a second.
 
     Raises:
         HarnessError: as ``nearest_elements`` and ``along``.
@@ -69,6 +73,12 @@ def placed(recorded: RecordedPass, tle: Path) -> Along:
     age_days = around.elements.age_days(recorded.middle_unix_s)
     if abs(age_days) > OLD_DAYS:
         warn(f"{tle}: the nearest element set is {abs(age_days):.0f} days away: its field may be off")
+    if ticks_apart(around) > 1:
+        apart_s = 1.0 / sample_hz(around)
+        warn(
+            f"{recorded.name}: samples are {apart_s:g} s apart: a spin beyond {180.0 / apart_s:.3g} deg/s "
+            "looks like a slower one"
+        )
     return around
 
 
@@ -116,6 +126,22 @@ def _references(name: str, ticks: Integers, model: EphemerisModel) -> dict[int, 
             raise HarnessError(f"{name}: SGP4 finds no orbit {tick / model.tick_hz:.0f} s into the pass")
         references[tick] = reference_at(window, tick, model)
     return references
+
+
+def sample_hz(around: Along) -> float:
+    """The rate of the samples, beyond half of which a spin looks like a slower one."""
+    return 1.0 / (around.tick_s * ticks_apart(around))
+
+
+def ticks_apart(around: Along) -> int:
+    """How many ticks, or a multiple of them, nearly all samples are from each other."""
+    ticks = around.tick[sampled(around)]
+    usual = int(np.median(np.diff(ticks))) if len(ticks) > 1 else 1
+    found = 1
+    for number in range(2, min(usual, MOST_TICKS_APART) + 1):
+        if np.bincount(ticks % number).max() >= NEARLY_ALL * len(ticks):
+            found = number
+    return found
 
 
 def sampled(around: Along) -> Integers:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.commissioning.recorded.along import Along, sampled
+from sim.commissioning.recorded.along import Along, sample_hz, sampled
 from sim.commissioning.recorded.calibration import PassCalibration
 from sim.commissioning.telemetry.follow import Followed, Noise, filter_config, follow
 from sim.commissioning.telemetry.held_back import Azimuths, coasts_deg, sun_azimuths
@@ -110,7 +110,7 @@ def judge(around: Along, known: PassCalibration, noise: Noise, start_s: float = 
     first = t_s <= t_s[0] + start_s
     field_nt = known.field_nt(around.recorded.mag_nt)[rows]
     axis = turning_axis(known, field_nt)
-    starts = spins(t_s[first], field_nt[first], around.b_eci_nt[rows][first], axis, 1.0 / around.tick_s)
+    starts = spins(t_s[first], field_nt[first], around.b_eci_nt[rows][first], axis, sample_hz(around))
     config = filter_config(known.inertia, around.tick_s, noise)
     settling_s = SETTLING_S["long" if t_s[-1] - t_s[0] > LONG_S else "short"]
     settled = int(np.searchsorted(t_s, t_s[0] + min(settling_s, 0.5 * (t_s[-1] - t_s[0]))))

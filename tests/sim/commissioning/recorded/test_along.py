@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from recorded_samples import DATA, TLE, made_up
 
-from sim.commissioning.recorded.along import along, placed, sampled
+from sim.commissioning.recorded.along import along, placed, sample_hz, sampled
 from sim.commissioning.recorded.element_sets import nearest_elements
 from sim.commissioning.recorded.recorded_pass import read_pass
 from sim.errors import HarnessError
@@ -69,6 +69,31 @@ def test_time_is_counted_from_the_first_row_wherever_in_its_second_that_is(tmp_p
         recorded = read_pass(path)
         around = along(recorded, nearest_elements(TLE, recorded.middle_unix_s))
         np.testing.assert_allclose(around.t_s, recorded.utc_unix_s - recorded.utc_unix_s[0], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "apart"),
+    [
+        (range(0, 60), 1),
+        (range(0, 60, 4), 4),
+        ([*range(0, 60, 4), 61], 4),
+        ([0, 1, 4, 5, 8, 9, 12, 13, 16, 17, 20], 1),
+        ([0, 3, 4, 7, 8, 11, 12, 15, 16, 19], 1),
+        ([0, 10, 20, 30, 60, 90, 100], 10),
+    ],
+)
+def test_how_far_samples_are_apart(tmp_path, capsys, seconds, apart):
+    recorded = made_up(60).along(tmp_path).recorded
+    chosen = np.arange(len(seconds))
+    thinned = replace(
+        recorded,
+        utc_unix_s=recorded.utc_unix_s[0] + np.array(seconds, float),
+        mag_nt=recorded.mag_nt[chosen],
+        cells={},
+    )
+    around = placed(thinned, TLE)
+    assert sample_hz(around) == pytest.approx(1.0 / apart)
+    assert ("looks like a slower one" in capsys.readouterr().err) is (apart > 1)
 
 
 def test_a_time_without_a_field_model_is_refused(tmp_path):

@@ -23,6 +23,18 @@ def judged(name):
     return judge(along(recorded, nearest_elements(TLE, recorded.middle_unix_s)), KNOWN, Noise())
 
 
+@pytest.mark.parametrize("apart", [3, 5])
+def test_of_samples_that_are_seconds_apart_no_faster_spin_is_believed(tmp_path, apart):
+    head, *rows = (DATA / "s3_20240314T153551Z.csv").read_text().splitlines()
+    path = tmp_path / "thinned.csv"
+    path.write_text("\n".join([head, *rows[::apart]]) + "\n")
+    recorded = read_pass(path)
+    around = along(recorded, nearest_elements(TLE, recorded.middle_unix_s))
+    thinned = judge(around, KNOWN, Noise())
+    rates = [motion.followed.rate_degps[-1, 1] for motion in thinned.motions]
+    assert rates == pytest.approx([23.6] * len(rates), abs=0.5), "the gyro, which is not used, has 23.3"
+
+
 @pytest.fixture(scope="module")
 def sunlit():
     """200 s of 24 deg/s, calibrated three months before."""
