@@ -48,7 +48,7 @@ def telemetry_page(judged: Judged, known: PassCalibration, found: dict[str, Any]
     facts = (
         f"{found['rows']} rows in {around.t_s[-1]:.0f} s",
         f"elements {found['elements_age_days']:.2f} days old",
-        "calibrated" if not np.array_equal(known.matrix, np.eye(3)) else "not calibrated",
+        "not calibrated" if _is_raw(known) else "calibrated",
     )
     with style():
         sections = [
@@ -59,6 +59,11 @@ def telemetry_page(judged: Judged, known: PassCalibration, found: dict[str, Any]
         ]
     header = PageHeader("Recorded telemetry", around.recorded.name, facts, [badge], tiles)
     return sections_page(header, sections, time_data(time, t_s, float(around.recorded.utc_unix_s[0])))
+
+
+def _is_raw(known: PassCalibration) -> bool:
+    """Whether samples are taken as they are."""
+    return np.array_equal(known.matrix, np.eye(3)) and not known.offset_nt.any()
 
 
 def _motion_chart(judged: Judged, time: TimeAxis, t_s: Array) -> Chart:

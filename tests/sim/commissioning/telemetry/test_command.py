@@ -54,6 +54,21 @@ def test_the_words_say_what_was_not_used_and_the_page_is_written(short, tmp_path
 
 
 @pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("offset_nt = [98000.0, -29000.0, -28000.0]", "calibrated"),
+        ("matrix = [[1.01, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]", "calibrated"),
+        ("", "not calibrated"),
+    ],
+)
+def test_the_page_says_whether_samples_are_calibrated(short, tmp_path, text, said):
+    page, calibration = tmp_path / "page.html", tmp_path / "c.toml"
+    calibration.write_text(f"[calibration.magnetometer]\n{text}\n")
+    run(short, "--tle", TLE, "--calibration", calibration, "--page", page)
+    assert (" not calibrated" in page.read_text()) is (said == "not calibrated")
+
+
+@pytest.mark.parametrize(
     ("arguments", "said"),
     [
         (("none.csv", "--tle", TLE), "none.csv: cannot be read (No such file or directory)"),
