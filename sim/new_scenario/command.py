@@ -14,6 +14,7 @@ from sim.new_scenario.satellite import NewSatellite, gains_for
 from sim.record.destination import check_file
 from sim.scenario.names import ALLOWED, is_name
 from sim.scenario.schema import scenario_of, shipped_names
+from sim.sizing.command import points
 from sim.sizing.doubts import doubts
 from sim.sizing.expectation import expect
 from sim.sizing.levels import levels_against, two_digits
@@ -49,9 +50,11 @@ def new(satellite: NewSatellite, out: Path | None) -> int:
     for doubt in doubts(scenario):
         warn(doubt)
     expectation = expect(scenario)
-    say(f"written: {file}; about {expectation.pointing_deg:.1f} deg RMS to expect (torquer size {file})")
+    pointing_deg = expectation.pointing_deg if points(expectation) else None
+    about = "no pointing" if pointing_deg is None else f"about {pointing_deg:.1f} deg RMS"
+    say(f"written: {file}; {about} to expect (torquer size {file})")
     say(f"fly it: torquer sil {file}")
-    answer({"file": file, "name": scenario.name, "pointing_rms_deg": expectation.pointing_deg})
+    answer({"file": file, "name": scenario.name, "pointing_rms_deg": pointing_deg})
     return 0
 
 

@@ -108,6 +108,15 @@ def test_the_file_loads_and_the_way_on_is_said(tmp_path, capsys):
     assert console.answer["pointing_rms_deg"] == expect(load(str(file))).pointing_deg
 
 
+def test_coils_that_are_too_weak_to_point_are_not_said_to(tmp_path, capsys):
+    weak = NewSatellite("weak", None, 600.0, 97.0, None, None, (1.0, 1.9, 2.0), (0.02, 0.06, 0.11))
+    file = tmp_path / "weak.toml"
+    with speaking(Console("new")) as console:
+        assert new(weak, file) == 0
+    assert f"written: {file}; no pointing to expect (torquer size {file})\n" in capsys.readouterr().out
+    assert console.answer["pointing_rms_deg"] is None
+
+
 def test_nothing_is_overwritten(tmp_path):
     file = tmp_path / "my-3u.toml"
     file.write_text("mine")
