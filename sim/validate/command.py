@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from sim.campaign.claim import ClaimVerdict, Study
+from sim.campaign.claim import ClaimOutcome, ClaimVerdict, Study
 from sim.campaign.runner import StudyResult, run
 from sim.campaign.study import FlightStudy
 from sim.console import answer, counted, say, warn
@@ -96,8 +96,7 @@ def validate(
             _print(study)
     outcomes = [outcome for study in finished for outcome in study.outcomes]
     if all(outcome.verdict is ClaimVerdict.ABSENT for outcome in outcomes):
-        names = ", ".join(outcome.claim.source for outcome in outcomes)
-        raise HarnessError(f"nothing was checked: {folder} does not hold {names}")
+        raise HarnessError(f"nothing was checked: {_why_absent(outcomes, folder, satellites)}")
     wall_s = time.monotonic() - began
     results.finish(finished, wall_s)
     write_junit(junit, "torquer validate", suites(finished))
@@ -121,6 +120,14 @@ def _studies(folder: Path | None, flight_data: Path | None, satellites: int | No
     if flight_data is not None:
         return claims.studies(flight_data)
     return reference.studies(folder) if folder is not None else all_studies(satellites)
+
+
+def _why_absent(outcomes: Sequence[ClaimOutcome], folder: Path | None, satellites: int | None) -> str:
+    """Why no claim has data to judge by."""
+    if folder is None:
+        names = ", ".join(outcome.claim.id for outcome in outcomes)
+        return f"--satellites {satellites} leaves none that there are claims on, of {names}"
+    return f"{folder} does not hold {', '.join(outcome.claim.source for outcome in outcomes)}"
 
 
 def _data_files(folder: Path | None) -> Files:

@@ -66,6 +66,14 @@ class TestCommand:
             assert (bare.exit_code, bare.stderr.count("\n")) == (2, 1)
             assert "the reference data are not installed: igrf14.csv, earth_sun.csv, att" in bare.stderr
 
+    def test_a_population_of_which_no_satellite_is_left_is_told(self):
+        result = self.call("--only", "population.50kg_per_coil", "--satellites", "1")
+        assert result.exit_code == 2
+        assert result.stderr == (
+            "torquer: nothing was checked: --satellites 1 leaves none that there are claims on, of "
+            "population.50kg_per_coil.isolated, population.50kg_per_coil.pointing\n"
+        )
+
     @pytest.mark.parametrize("words", [("--reference", "nowhere"), ("--only", "nothing"), ("--workers", "0")])
     def test_what_cannot_be_done_is_exit_code_2(self, words):
         result = self.call(*words)
