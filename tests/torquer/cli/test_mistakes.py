@@ -1,6 +1,8 @@
 """What a user mistypes is answered with what may have been meant: one sentence on stderr, exit code 2."""
 
 import os
+import subprocess
+import sys
 
 import pytest
 
@@ -112,6 +114,17 @@ def test_a_folder_that_is_gone_is_one_sentence(tmp_path, monkeypatch, capsys):
         "",
         "torquer: the folder that this runs in is no longer there: cd to another\n",
     )
+
+
+def test_so_is_it_where_the_command_is_run_as_a_module(tmp_path):
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    remove_it = f"import os, runpy, sys; os.rmdir({str(gone)!r}); sys.argv[1:] = ['doctor']; "
+    run_it = "runpy.run_module('torquer', run_name='__main__', alter_sys=True)"
+    words = [sys.executable, "-c", remove_it + run_it]
+    done = subprocess.run(words, cwd=gone, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "torquer: the folder that this runs in is no longer there: cd to another\n"
 
 
 def test_elements_from_a_pipe_are_refused_at_once(tmp_path, capsys):
