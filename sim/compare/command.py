@@ -107,8 +107,8 @@ def compare(
         _write(folder, scenario, scores, description, results, by, kept)
     say(_heading(scenario, seed, ticks, by))
     say(as_text(scores, by))
-    say(f"files: {folder / JSON}, {CSV}, {PICTURE}, {PAGE}")
-    names = (JSON, CSV, PICTURE, PAGE)
+    names = (JSON, CSV, *([PICTURE] if any(result.history for result in results) else []), PAGE)
+    say(f"files: {folder / JSON}, {', '.join(names[1:])}")
     answer({**as_json(scores, description), "files": [folder / name for name in names]})
     broken = [f"{score.law} ({score.driver})" for score in scores if score.limits_ok is False]
     if broken:

@@ -112,6 +112,7 @@ def test_laws_that_could_not_be_flown_are_told_by_the_exit_code(torquer, monkeyp
     result = torquer("posat1", *words, "--driver", "pulsed")
     assert result.exit_code == 1
     assert "predictive (pulsed) was not flown: no room" in result.stderr
+    assert ("compare.png" in result.stdout) is (lost is not None), "no flight, no picture"
 
 
 def test_two_comparisons_in_one_second_have_a_folder_each(tmp_path, monkeypatch):
