@@ -9,7 +9,7 @@ m(k) the dipole driven over the tick that ended at k, d the delay. D is linear, 
 by least squares; d is where the squares are least.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -20,11 +20,12 @@ from sim.commissioning.calibrate.flown.samples import Samples, whole
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
-AROUND = 12
-"""Ticks before and after a pulse that show the field without it."""
-LONGEST_DELAY = 4.0
-STEP = 0.02
-"""Of the grid of delays, ticks."""
+AROUND_S = 12
+"""Time before and after a pulse that shows the field without it."""
+LONGEST_DELAY_S = 4
+"""A delay at the end of the grid may be any longer one, and is not told."""
+STEP_S, MOST_STEP = 0.02, 0.2
+"""Of the grid of delays, s, and at most so many ticks."""
 CUBIC = 4
 SEEN_SIGMAS = 6.0
 """A delay is known where the response is above so many of its standard deviations."""
@@ -38,7 +39,7 @@ class CoilResponse:
         nt_per_am2: column j is the response to a nominal 1 A m^2 of output j, channels of the magnetometer.
         sigma: its standard deviations.
         pulses: of each output.
-        delay_ticks, delay_sigma: how late it shows; None where no response is seen.
+        delay_ticks, delay_sigma: how late it shows; None where no response is seen, or it is later than 4 s.
         noise_nt: standard deviation of a reading about the fit.
         residual_nt, residual_phase: what the fit leaves, and the ticks since the pulse's request.
     """
@@ -61,7 +62,13 @@ class _Window:
     rows: Numbers
     begin: int
     readings: Array
-    without_cubic: Array
+    cubics: Array
+    """Orthonormal, (rows, 4)."""
+
+    def without_cubic(self, values: Array) -> Array:
+        """What is no cubic of values at its rows."""
+        left: Array = values - self.cubics @ (self.cubics.T @ values)
+        return left
 
 
 def coil_response(samples: Samples, levels_am2: tuple[float, float, float]) -> CoilResponse:
@@ -75,7 +82,8 @@ def coil_response(samples: Samples, levels_am2: tuple[float, float, float]) -> C
     dipoles = np.array([0.0, *levels_am2])[np.abs(samples.level)] * np.sign(samples.level)
     driven[np.arange(len(samples)), np.clip(samples.coil, 0, 2)] = dipoles
     windows = _windows(samples, driven)
-    delays = np.arange(0.0, LONGEST_DELAY + 0.5 * STEP, STEP)
+    step = min(STEP_S * samples.tick_hz, MOST_STEP)
+    delays = np.arange(0.0, LONGEST_DELAY_S * samples.tick_hz + 0.5 * step, step)
     fits = [_at_delay(windows, driven, delay) for delay in delays.tolist()]
     costs = np.array([fit.cost for fit in fits])
     best = int(np.argmin(costs)) if windows else 0
@@ -85,7 +93,8 @@ def coil_response(samples: Samples, levels_am2: tuple[float, float, float]) -> C
     noise = float(np.sqrt(fit.cost / free)) if free > 0 else float("inf")
     sigma = noise / np.sqrt(np.maximum(fit.weight, 1e-300))[None, :] * np.ones((3, 1))
     seen = bool((np.abs(fit.response) > SEEN_SIGMAS * sigma).any()) and free > 0
-    delay, delay_sigma = _refined(delays, costs, best, noise) if seen else (None, None)
+    known = seen and best < len(delays) - 1
+    delay, delay_sigma = _refined(delays, costs, best, noise) if known else (None, None)
     residual, phase = _residuals(windows, driven, fit, delays[best])
     counts = [sum(window.output == output for window in windows) for output in range(3)]
     return CoilResponse(
@@ -103,20 +112,21 @@ class _Fit:
 def _windows(samples: Samples, driven: Array) -> list[_Window]:
     on = np.any(driven != 0.0, axis=1)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], on.astype(int), [0]])))
+    around, longest = AROUND_S * samples.tick_hz, LONGEST_DELAY_S * samples.tick_hz
     windows = []
     for begin, end in zip(edges[0::2].tolist(), edges[1::2].tolist(), strict=True):
         output = int(np.argmax(np.abs(driven[begin])))
-        rows = np.arange(max(0, begin - AROUND), min(len(samples), end + AROUND + int(LONGEST_DELAY)))
-        others = [r for first, last in pairwise_runs(edges) if first != begin for r in range(first, last + 5)]
-        rows = rows[~np.isin(rows, others)]
+        rows = np.arange(max(0, begin - around), min(len(samples), end + around + longest))
+        for first, last in pairwise_runs(edges):
+            if first != begin:
+                rows = rows[(rows < first) | (rows > last + longest)]
         rows = rows[whole(samples.field_nt[rows])]
-        before, after = (rows < begin).sum(), (rows >= end + LONGEST_DELAY).sum()
+        before, after = (rows < begin).sum(), (rows >= end + longest).sum()
         if before < 2 or after < 2 or len(rows) < CUBIC + 6:
             continue
-        x = (rows - begin) / AROUND
-        basis, _ = np.linalg.qr(np.vander(x, CUBIC))
-        without = np.eye(len(rows)) - basis @ basis.T
-        windows.append(_Window(output, rows, begin, without @ samples.field_nt[rows], without))
+        basis, _ = np.linalg.qr(np.vander((rows - begin) / around, CUBIC))
+        window = _Window(output, rows, begin, samples.field_nt[rows], np.asarray(basis, np.float64))
+        windows.append(replace(window, readings=window.without_cubic(window.readings)))
     return windows
 
 
@@ -131,8 +141,7 @@ def _drive(driven: Array, window: _Window, delay: float) -> Array:
     own = driven[:, window.output]
     newer = own[np.maximum(window.rows - late, 0)] * (window.rows - late >= 0)
     older = own[np.maximum(window.rows - late - 1, 0)] * (window.rows - late - 1 >= 0)
-    shown: Array = window.without_cubic @ ((1.0 - part) * newer + part * older)
-    return shown
+    return window.without_cubic((1.0 - part) * newer + part * older)
 
 
 def _at_delay(windows: list[_Window], driven: Array, delay: float) -> _Fit:
@@ -157,9 +166,9 @@ def _refined(delays: Array, costs: Array, best: int, noise: float) -> tuple[floa
     else:
         left, right = max(0, best - reach), min(len(costs) - 1, best + reach)
         low, mid, high = costs[left], costs[best], costs[right]
-    step = reach * STEP
-    rise = max(min(low - mid, high - mid), 1e-30) / step**2
-    return float(delays[best]), float(np.hypot(noise / np.sqrt(rise), STEP / np.sqrt(12.0)))
+    step = float(delays[1])
+    rise = max(min(low - mid, high - mid), 1e-30) / (reach * step) ** 2
+    return float(delays[best]), float(np.hypot(noise / np.sqrt(rise), step / np.sqrt(12.0)))
 
 
 def _residuals(windows: list[_Window], driven: Array, fit: _Fit, delay: float) -> tuple[Array, Array]:

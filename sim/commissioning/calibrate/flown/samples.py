@@ -45,6 +45,12 @@ class Samples:
     def __len__(self) -> int:
         return len(self.tick)
 
+    @property
+    def tick_hz(self) -> int:
+        """Ticks a second; 1 where there is one tick alone."""
+        span_s = float(self.unix_s[-1] - self.unix_s[0])
+        return round((len(self) - 1) / span_s) if span_s > 0.0 else 1
+
     def free(self, within: int) -> NDArray[np.bool_]:
         """Ticks with a field sample, and no coil driven within so many ticks, as was reported."""
         driven = (self.level != 0) | ~self.reported

@@ -57,26 +57,28 @@ def observed_slowly():
 
 @pytest.fixture(scope="session")
 def pulsed():
-    """Makes a log of pulses over a slowly changing field: (response, delay in ticks, noise) -> samples."""
+    """Makes a log of pulses over a slowly changing field: (response, delay in ticks, ...) -> samples."""
 
-    def make(response, delay, noise_nt=0.0, pulses=6, every=40, levels=(0.0, 0.5, 2.0, 8.0)):
+    def make(response, delay, noise_nt=0.0, pulses=6, every=40, levels=(0.0, 0.5, 2.0, 8.0), tick_hz=1):
+        every *= tick_hz
         n = every * (pulses + 1)
         k = np.arange(n)
         coil, level = k % 3, np.zeros(n, dtype=int)
         for number in range(pulses):
-            begin = every * (number + 1) - 20
-            coil[begin : begin + 3] = number % 3
-            level[begin : begin + 3] = 3 if number < 3 else -3
+            begin = every * (number + 1) - 20 * tick_hz
+            coil[begin : begin + 3 * tick_hz] = number % 3
+            level[begin : begin + 3 * tick_hz] = 3 if number < 3 else -3
         driven = np.zeros((n, 3))
         driven[k, coil] = np.array(levels)[np.abs(level)] * np.sign(level)
         late, part = int(delay), delay - int(delay)
         shown = (1.0 - part) * np.roll(driven, late, axis=0) + part * np.roll(driven, late + 1, axis=0)
-        turn = 2.0 * np.pi * k / 700.0
-        earth = np.column_stack([30000.0 * np.cos(turn), 30000.0 * np.sin(turn), 12000.0 + 5.0 * k])
+        t_s = k / tick_hz
+        turn = 2.0 * np.pi * t_s / 700.0
+        earth = np.column_stack([30000.0 * np.cos(turn), 30000.0 * np.sin(turn), 12000.0 + 5.0 * t_s])
         field = earth + shown @ response.T + noise_nt * np.random.default_rng(2).normal(size=(n, 3))
         sun = np.tile([0.6, -0.48, 0.64], (n, 1))
         return Samples(
-            k, 1.0e9 + k, field, sun, coil.astype(np.int64), level.astype(np.int64), np.ones(n, bool)
+            k, 1.0e9 + t_s, field, sun, coil.astype(np.int64), level.astype(np.int64), np.ones(n, bool)
         )
 
     return make

@@ -17,6 +17,22 @@ def test_response_and_delay_are_found_in_a_field_that_turns(pulsed, delay):
     assert found.pulses == (2, 2, 2)
 
 
+@pytest.mark.parametrize(("tick_hz", "delay_s"), [(4, 2.0), (10, 0.66), (10, 3.0), (40, 0.55)])
+def test_so_are_they_with_many_ticks_a_second(pulsed, tick_hz, delay_s):
+    found = coil_response(pulsed(RESPONSE, delay_s * tick_hz, noise_nt=100.0, tick_hz=tick_hz), LEVELS)
+    assert found.nt_per_am2 == pytest.approx(RESPONSE, abs=5.0 * found.sigma.max())
+    assert found.sigma.max() < 10.0
+    assert abs(found.delay_ticks - delay_s * tick_hz) < 4.0 * found.delay_sigma
+    assert found.delay_sigma < 0.02 * tick_hz
+    assert found.pulses == (2, 2, 2)
+
+
+@pytest.mark.parametrize("delay", [4.0, 4.5, 5.5])
+def test_a_delay_beyond_what_is_looked_for_is_not_told(pulsed, delay):
+    found = coil_response(pulsed(RESPONSE, delay), LEVELS)
+    assert (found.delay_ticks, found.delay_sigma) == (None, None)
+
+
 def test_errors_are_as_large_as_it_says(pulsed):
     found = coil_response(pulsed(RESPONSE, 1.46, noise_nt=200.0, pulses=18), LEVELS)
     off = (found.nt_per_am2 - RESPONSE) / found.sigma
