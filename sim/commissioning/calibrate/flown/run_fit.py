@@ -91,7 +91,7 @@ def calibrated(samples: Samples, table: FlightTable) -> RunCalibration:
     widened = _widening(field)
     field = replace(field, covariance=field.covariance * widened**2)
     by_output = field.matrix @ response.nt_per_am2
-    sigma = np.sqrt(field.matrix**2 @ response.sigma**2)
+    sigma = field_sigma_nt_per_am2(field, response)
     b_body_nt = (moved.field_nt - field.offset_nt) @ field.matrix.T
     coils = coil_axes(moved, b_body_nt, free, along, table) if min(response.pulses) else None
     ticks = moved.tick[taken]
@@ -110,6 +110,17 @@ def calibrated(samples: Samples, table: FlightTable) -> RunCalibration:
         float(np.linalg.norm(along.b_eci_nt, axis=1).max()),
         _measurable_nt(field, table),
     )
+
+
+def field_sigma_nt_per_am2(field: FieldFit, response: CoilResponse) -> Array:
+    """Standard deviations of the coils' field in body axes, F = M D: by those of D and those of M.
+
+    A log that tells the pulses well and the magnetometer badly tells the product badly.
+    """
+    rows = [field.covariance[first : first + 3, first : first + 3] for first in (0, 3, 6)]
+    of_matrix = np.einsum("kj,ikl,lj->ij", response.nt_per_am2, np.array(rows), response.nt_per_am2)
+    sigma: Array = np.sqrt(field.matrix**2 @ response.sigma**2 + of_matrix)
+    return sigma
 
 
 def _measurable_nt(field: FieldFit, table: FlightTable) -> float:

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from fsw.table.table import flight_table
 from sim.commissioning.calibrate.flown.expected import expected
-from sim.commissioning.calibrate.flown.run_fit import calibrated
+from sim.commissioning.calibrate.flown.run_fit import calibrated, field_sigma_nt_per_am2
 from sim.commissioning.calibrate.flown.samples import Samples
 from sim.commissioning.calibrate.flown.tables import tables
 from sim.commissioning.calibrate.flown.verdicts import sentences, turn_rad, untold
@@ -77,6 +77,18 @@ def test_true_values_are_within_what_it_says(found):
     ]
     assert np.abs(np.concatenate(off)).max() < 4.5
     assert np.mean(np.abs(np.concatenate(off)) < 3.0) >= 0.95
+
+
+def test_the_coils_field_is_known_no_better_than_matrix_and_response_together(found):
+    draw, root = np.random.default_rng(5), np.linalg.cholesky(40.0 * found.field.covariance[:9, :9])
+    badly = replace(found.field, covariance=40.0 * found.field.covariance)
+    said = field_sigma_nt_per_am2(badly, found.response)
+    products = []
+    for _ in range(2000):
+        matrix = found.field.matrix + (root @ draw.normal(size=9)).reshape(3, 3)
+        response = found.response.nt_per_am2 + found.response.sigma * draw.normal(size=(3, 3))
+        products.append(matrix @ response)
+    assert said == pytest.approx(np.std(products, axis=0), rel=0.08)
 
 
 def test_what_it_says_is_worth_something(found):
