@@ -24,6 +24,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilRefused
 from sim.audit.check import check
 from sim.bench.budgets import BudgetLine
+from sim.bench.command import NUMBERS as BENCH_NUMBERS
 from sim.bench.memory import MemoryMonitor
 from sim.errors import HarnessError
 from sim.flight.flight_loop import WATCH_TICKS
@@ -137,7 +138,7 @@ def flight_part(folder: Path, memory_percent: float) -> RunResult:
 
 def bench_part(folder: Path) -> RunResult:
     """Judge a bench."""
-    numbers = _json(folder / "hil.json")
+    numbers = _json(folder / BENCH_NUMBERS)
     seconds = numbers["ticks"] / numbers["tick_hz"]
     load = numbers["memory"]["load_average"]
     jitter, latency, bus = numbers["jitter_ms"], numbers["latency_ms"], numbers["bus_load_percent"]
@@ -287,6 +288,8 @@ def main(words: Sequence[str] | None = None) -> int:
         try:
             check_file(arguments.out)
             check_file(arguments.out.with_suffix(".svg"))
+            if arguments.hil is None and (hil / BENCH_NUMBERS).exists():
+                raise HarnessError(f"--keep {runs}: {hil} holds a bench already: --hil {hil} judges it again")
             if arguments.flight is None:
                 fly(flight, arguments.scenario, arguments.hours)
             if arguments.hil is None:

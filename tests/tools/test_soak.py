@@ -113,6 +113,16 @@ def test_what_is_not_there_is_one_sentence(tmp_path, capsys):
     assert "none" in sentence
 
 
+def test_a_bench_of_an_earlier_soak_is_not_taken_for_that_of_this_one(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(soak, "bench", lambda *given: pytest.fail("nothing may run"))
+    (tmp_path / "hil").mkdir()
+    (tmp_path / "hil" / "hil.json").write_text("{}")
+    words = ["--flight", str(tmp_path), "--keep", str(tmp_path), "--out", str(tmp_path / "soak.md")]
+    assert soak.main(words) == 2
+    assert f"{tmp_path / 'hil'} holds a bench already" in capsys.readouterr().err
+    assert not (tmp_path / "soak.md").exists()
+
+
 @pytest.mark.parametrize("hours", ["nan", "0", "-1", "1e12"])
 def test_hours_that_no_run_can_have_are_one_sentence(hours, tmp_path, capsys):
     assert soak.main(["--hours", hours, "--out", str(tmp_path / "soak.md")]) == 2
