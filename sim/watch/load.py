@@ -27,7 +27,10 @@ class Load:
     _bits: int = 0
 
     def take(self, frame: Frame, now_s: float) -> None:
-        """Count one frame."""
+        """Count one frame; where time goes back, as from one flight to the next in a log, from it on."""
+        if self._recent and now_s < self._recent[-1][0] - WINDOW_S:
+            self._recent.clear()
+            self._bits = 0
         bits = most_bits(len(frame.data))
         self._recent.append((now_s, bits))
         self._bits += bits

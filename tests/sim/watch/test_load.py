@@ -29,3 +29,12 @@ def test_a_time_that_stands_still_or_goes_back_loses_nothing():
     for now_s in (5.0, 5.0, 4.0, 5.0):
         load.take(Frame(EXTENDED_FLAG | 5, b""), now_s)
     assert load.frames_per_s == 2.0
+
+
+def test_a_flight_that_follows_another_in_a_log_is_counted_by_itself():
+    load = Load()
+    for start_s in (0.0, 0.0):
+        for tick in range(1000):
+            load.take(Frame(0x100, bytes(8)), start_s + 0.1 * tick)
+    assert load.frames_per_s == pytest.approx(10.0, abs=0.6)
+    assert load.part == pytest.approx(10.0 * 135 / BITRATE, rel=0.06)
