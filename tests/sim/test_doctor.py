@@ -1,7 +1,10 @@
 """``torquer doctor``: what is there, what is missing, what to type."""
 
+from pathlib import Path
+
 import pytest
 
+from sim import doctor
 from sim.console import Console, speaking
 from sim.doctor import Finding, Presence, can_interfaces, examine, report
 
@@ -61,3 +64,20 @@ def test_the_interfaces_of_a_machine(tmp_path):
         (tmp_path / name / "flags").write_text(flags + "\n")
     assert can_interfaces(tmp_path) == {"can0": False, "vcan0": True}
     assert can_interfaces(tmp_path / "none") == {}
+
+
+@pytest.mark.parametrize(
+    ("group", "remedy"), [("dialout", "usermod -aG dialout"), (None, "chmod a+rw /dev/")]
+)
+def test_a_serial_adapter_of_a_group_without_a_name_is_told_all_the_same(monkeypatch, group, remedy):
+    def group_of(path):
+        if group is None:
+            raise KeyError("getgrgid(): gid not found: 986")
+        return group
+
+    monkeypatch.setattr(doctor.Path, "glob", lambda path, pattern: iter([Path("/dev/ttyUSB0")]))
+    monkeypatch.setattr(doctor.os, "access", lambda path, mode: False)
+    monkeypatch.setattr(doctor.Path, "group", group_of)
+    (finding,) = doctor._permissions()
+    assert (finding.name, finding.presence) == ("ttyUSB0", Presence.OPTIONAL)
+    assert remedy in finding.remedy
