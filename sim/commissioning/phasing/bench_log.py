@@ -10,14 +10,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from io import StringIO
 from itertools import pairwise
-from math import isfinite, isnan, nan
+from math import isfinite, isnan
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fsw.input.regular_file import read_regular
+from sim.commissioning.phasing.bench_steps import Edge, Share, Step, fall_as_rise, step_of
 from sim.errors import HarnessError
 
 Array = NDArray[np.float64]
@@ -33,8 +33,6 @@ LONGEST_S = 8.0
 SETTLED_S = 1.0
 """After a step the readings have settled, unless they show it later."""
 SIGMAS = 5.0
-WEAK_SIGMAS = 20.0
-"""Below so many standard deviations a single sample does not show the phase of a step."""
 CHANGED = 0.9
 """Part of a step from which a sample shows it."""
 TIED_PART = 0.99
@@ -47,38 +45,6 @@ class Recording:
 
     fields: dict[str, tuple[Array, Array]]
     commands: tuple[Array, Array]
-
-
-class Edge(NamedTuple):
-    """A change of the command: the step of the reading, nT, sensor axes, and its variance, nT^2.
-
-    ``unchanged_s``, ``changed_s``: ages of the last sample without the step and of the first with it.
-    """
-
-    step_nt: Array
-    variance: Array
-    unchanged_s: float
-    changed_s: float
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """The response of a magnetometer to one command, all its rises and falls taken together.
-
-    Attributes:
-        command_am2: what was commanded, by axis.
-        response_nt, sigma_nt: on less off, and the standard deviation of that.
-        edges: how many rises and falls.
-        unchanged_s: age of the last sample after an edge that shows none of the step, mean; 0: there is none.
-        changed_s: age of the first sample that shows all of it, mean; NaN where the step is too weak.
-    """
-
-    command_am2: tuple[float, float, float]
-    response_nt: Array
-    sigma_nt: Array
-    edges: int
-    unchanged_s: float
-    changed_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,8 +170,8 @@ def _response(
         if rise:
             by_command.setdefault(after[2], []).append(edge)
         else:
-            by_command.setdefault(before[2], []).append(edge._replace(step_nt=-edge.step_nt))
-    steps = [_step(command, edges) for command, edges in sorted(by_command.items())]
+            by_command.setdefault(before[2], []).append(fall_as_rise(edge))
+    steps = [step_of(command, edges) for command, edges in sorted(by_command.items())]
     drift = field_nt[idle[-1]].mean(axis=0) - field_nt[idle[0]].mean(axis=0) if idle else np.full(3, np.nan)
     moments_s = np.unique(time_s)
     cycle_s = float(np.median(np.diff(moments_s))) if len(moments_s) > 1 else 0.0
@@ -237,25 +203,16 @@ def _edge(
     edge_s, _, _, since = after
     step = field_nt[new].mean(axis=0) - field_nt[old].mean(axis=0)
     rounding = _quantum(field_nt) ** 2 / 12.0
-    variance = sum(np.maximum(field_nt[rows].var(axis=0), rounding) / len(rows) for rows in (old, new))
+    before, later = (
+        Share(rows, sign / len(rows), np.maximum(field_nt[rows].var(axis=0), rounding))
+        for rows, sign in ((old, -1.0), (new, 1.0))
+    )
     weight = step / max(float(step @ step), 1e-30)
     parts = (field_nt[since] - field_nt[old].mean(axis=0)) @ weight
     ages_s = time_s[since] - edge_s
     changed = int(np.argmax(parts > CHANGED)) if (parts > CHANGED).any() else len(parts) - 1
     unchanged_s = float(ages_s[changed - 1]) if changed and parts[changed - 1] < 1.0 - CHANGED else 0.0
-    return Edge(step, np.asarray(variance, float), unchanged_s, float(ages_s[changed]))
-
-
-def _step(command: tuple[float, float, float], edges: list[Edge]) -> Step:
-    steps = np.array([edge.step_nt for edge in edges])
-    sigma = np.sqrt(sum(edge.variance for edge in edges)) / len(edges)
-    if len(edges) > 1:  # of the scatter between edges, drift included, what the mean of them keeps
-        sigma = np.maximum(sigma, steps.std(axis=0, ddof=1) / np.sqrt(len(edges)))
-    least_nt = WEAK_SIGMAS * float(np.linalg.norm(sigma))
-    clear = [edge for edge in edges if float(np.linalg.norm(edge.step_nt)) > least_nt]
-    unchanged_s = float(np.mean([edge.unchanged_s for edge in clear])) if clear else nan
-    changed_s = float(np.mean([edge.changed_s for edge in clear])) if clear else nan
-    return Step(command, steps.mean(axis=0), np.asarray(sigma, float), len(edges), unchanged_s, changed_s)
+    return Edge(step, (before, later), unchanged_s, float(ages_s[changed]))
 
 
 def _quantum(field_nt: Array) -> float:

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from sim.commissioning.phasing.bench_log import SIGMAS, WEAK_SIGMAS, BenchResponse, Step
+from sim.commissioning.phasing.bench_log import SIGMAS, BenchResponse
+from sim.commissioning.phasing.bench_steps import WEAK_SIGMAS, Step
 
 Json = dict[str, Any]
 
