@@ -27,7 +27,8 @@ from sim.record.pace import Pace
 from sim.scenario.schema import Scenario, flight_table, scenario_of
 
 LAW = "phasing"
-SETTLED_TICKS = 20
+SETTLED_S = 20.0
+"""On a bench after the last pulse, so that a sample that is late shows it and what is there without it."""
 AFTER_S = 30.0
 """After the last pulse, so that what it did is seen."""
 ANY_BUDGET = Budgets(1e9, 1e9, 10**9, 1e9, 1e9)
@@ -122,7 +123,7 @@ def sequence_ticks(scenario: Scenario, rounds: int, at_rest: bool = False) -> in
     coils = scenario.coils
     each_s = coils.pulse_s + coils.backoff_s / (1.0 if coils.shared else 3.0)
     recover_s = flight_table(scenario).modes.recover_s
-    after_s = SETTLED_TICKS / scenario.time.tick_hz if at_rest else coils.backoff_s + AFTER_S
+    after_s = SETTLED_S if at_rest else coils.backoff_s + AFTER_S
     late_s = 4.0 / scenario.time.tick_hz  # until the board has reported that the coil is ready
     whole_s = max(coils.backoff_s, recover_s) + 1.0 + 6 * rounds * (each_s + late_s) + after_s
     return ceil(whole_s * scenario.time.tick_hz)

@@ -38,6 +38,13 @@ def test_the_sequence_has_time_for_each_coil_in_both_polarities():
     assert sequence_ticks(shared, 1, at_rest=True) < sequence_ticks(shared, 1)
 
 
+@pytest.mark.parametrize("tick_hz", [1, 10])
+def test_on_a_bench_the_last_pulse_is_followed_for_as_long_at_any_rate(tick_hz):
+    scenario = load("microsat", {"time": {"tick_hz": tick_hz}})
+    flown, at_rest = (sequence_ticks(scenario, 1, resting) / tick_hz for resting in (False, True))
+    assert flown - at_rest == pytest.approx(100.0 + 30.0 - 20.0, abs=1.0)
+
+
 def run(*arguments):
     return CliRunner().invoke(main, ["phasing", *map(str, arguments)])
 
