@@ -35,7 +35,7 @@ def tables(found: RunCalibration, table: FlightTable) -> Json:
     The coils' dipoles are given only where they are known better than the table says, or are others.
 
     Raises:
-        HarnessError: the magnetometer is not known so well that a satellite may fly by it.
+        HarnessError: the magnetometer is not known so well that a satellite may fly by it, or is too late.
     """
     known = table_bounds(table)
     bias_nt = _up(max(LEAST_BIAS_NT, SIGMAS * float(offset_sigma_nt(found).max())), 0)
@@ -62,8 +62,13 @@ def tables(found: RunCalibration, table: FlightTable) -> Json:
     coils = _coils(found, 1.0 / table.time.tick_hz)
     late, sigma = found.response.delay_ticks, found.response.delay_sigma
     if late is not None and sigma is not None:
-        oldest_s = (late + SIGMAS * sigma) / table.time.tick_hz
-        uncertainty["latency_s"] = min(LONGEST_S, _up(oldest_s, 3))
+        oldest_s = _up((late + SIGMAS * sigma) / table.time.tick_hz, 3)
+        if oldest_s > LONGEST_S:
+            raise HarnessError(
+                f"no table is written: a sample of the field is up to {oldest_s:.2f} s old; a satellite "
+                f"flies by at most {LONGEST_S:.0f} s"
+            )
+        uncertainty["latency_s"] = oldest_s
     dipoles, within = _dipoles(found, known.coil_gain_part)
     if dipoles is not None:
         coils["matrix"] = _rounded(dipoles, 4)

@@ -113,6 +113,17 @@ def test_the_tables_are_taken_by_the_onboard_table(found):
     assert 100.0 <= table.uncertainty.magnetometer_bias_nt < 1000.0
 
 
+@pytest.mark.parametrize(("late", "said"), [(2.9, None), (3.4, "3.43 s old"), (2.99, "3.02 s old")])
+def test_a_field_that_is_later_than_the_onboard_table_admits_gives_no_table(found, late, said):
+    response = replace(found.response, delay_ticks=late, delay_sigma=0.01)
+    later = replace(found, response=response)
+    if said is None:
+        assert tables(later, TABLE)["uncertainty"]["latency_s"] == pytest.approx(2.93)
+        return
+    with pytest.raises(HarnessError, match=rf"no table is written: .* {said}"):
+        tables(later, TABLE)
+
+
 def test_it_is_said_in_words(found):
     text = "\n".join(sentences(found, 1.0))
     assert "samples of the field are 1.40" in text
