@@ -2,6 +2,7 @@
 
 import os
 import select
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -33,7 +34,10 @@ class BenchProcess:
         return self.popen.poll() is None
 
     def last_error(self) -> str:
-        """The last line of its errors."""
+        """Why it has ended: a signal, which leaves no error, else the last line of its errors."""
+        code = self.popen.poll()
+        if code is not None and code < 0:
+            return f"by signal {-code} ({signal.strsignal(-code)})"
         self.errors.seek(0)
         lines = self.errors.read().decode(errors="replace").strip().splitlines()
         return lines[-1] if lines else "without an error message"

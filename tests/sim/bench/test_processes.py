@@ -23,3 +23,17 @@ def test_a_process_that_does_not_react_is_killed(monkeypatch):
         process = processes_started.start("waiting", "http.server", "0")
         os.kill(process.popen.pid, signal.SIGSTOP)
     assert process.popen.returncode < 0
+
+
+def test_a_process_that_was_killed_is_said_to_be_whatever_it_wrote_before():
+    with BenchProcesses() as processes_started:
+        killed = processes_started.start("killed", "http.server", "0")
+        wrong = processes_started.start("wrong", "http.server", "--no-such-option")
+        killed.errors.write(b"it began\n")
+        killed.errors.flush()
+        assert killed.last_error() == "it began"
+        killed.popen.kill()
+        for process in (killed, wrong):
+            process.popen.wait(20.0)
+        assert killed.last_error() == "by signal 9 (Killed)"
+        assert "--no-such-option" in wrong.last_error()
