@@ -172,6 +172,8 @@ def _torque(case: AttitudeCase, q: Quaternion, omega_body_radps: Vec3, around: S
 def _check_physics(table: ReferenceTable, case: AttitudeCase) -> None:
     if not np.linalg.eigvalsh(np.array(case.inertia_kgm2)).min() > 0.0:
         raise HarnessError(f"{table.path}: the header's J is not positive definite")
+    if not case.mu_m3ps2 > 0.0:
+        raise HarnessError(f"{table.path}: the header's mu is {case.mu_m3ps2:g}, and no planet's")
     try:
         two_body(case.r0_m, case.v0_mps, case.mu_m3ps2, np.zeros(1))
     except (ValueError, ZeroDivisionError):
