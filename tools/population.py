@@ -116,8 +116,13 @@ def main(words: Sequence[str] | None = None) -> int:
         check_file(arguments.out)
         check_file(arguments.rows)
         rows = FlightRows(arguments.rows, of_any_code=arguments.render)
+        orders += sweep_orders(arguments.sizes, seeds)
         if not arguments.render:
-            fly_missing([*orders, *sweep_orders(arguments.sizes, seeds)], rows, arguments.workers)
+            fly_missing(orders, rows, arguments.workers)
+        elif not flights_of(orders, rows):
+            raise HarnessError(
+                f"--rows {arguments.rows} holds none of these flights: there is nothing to render"
+            )
         outcomes = write(studies, arguments.sizes, seeds, rows, arguments.out)
     except HarnessError as error:
         print(f"population: {error}", file=sys.stderr)

@@ -112,6 +112,14 @@ def test_the_page_can_be_drawn_of_what_there_is_without_flying(run, flown, tmp_p
     )
 
 
+def test_without_a_flight_the_page_that_is_there_stays(run, tmp_path, capsys):
+    page = tmp_path / "page.md"
+    page.write_text("of hundreds of flights")
+    assert run("--render") == 2
+    assert "rows.jsonl holds none of these flights" in capsys.readouterr().err
+    assert page.read_text() == "of hundreds of flights"
+
+
 def test_flights_of_other_code_are_said_to_be(run, tmp_path, monkeypatch):
     run()
     monkeypatch.setattr("sim.validate.flight_rows.code_digest", lambda: "changed")
