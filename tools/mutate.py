@@ -118,6 +118,9 @@ def main() -> int:
     parser.add_argument("--page", action="store_true", help="write the page anew, run nothing")
     parser.add_argument("--coverage", type=Path, help="take branch coverage from this file, run nothing")
     options = parser.parse_args()
+    known = {name for target in targets() for name in (target.name, *target.modules)}
+    if unknown := [name for name in options.only if name not in known]:
+        parser.error(f"there is no target or module {', '.join(unknown)} in tests/mutation/targets.toml")
     old = outdated(stored(RESULTS)) if options.stale else None
     chosen = [
         (target, module)

@@ -127,6 +127,13 @@ def test_a_module_that_has_changed_since_is_told_and_is_a_failure(repository):
     assert repository.row == "| limits | `fsw/limit.py` (changed since) | 5 | 4 | 0 | 1 | 0 |"
 
 
+@pytest.mark.parametrize("option", ["--quick", "--list", "--again"])
+def test_a_name_that_is_of_nothing_is_told_and_is_no_success(repository, option):
+    done = repository.mutate("limits", "fsw/limit", option)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "there is no target or module fsw/limit in" in done.stderr
+
+
 def test_a_module_that_has_never_been_measured_is_a_failure(repository):
     repository.write("tests/mutation/results.json", "{}")
     assert repository.mutate("--page").returncode == 1
