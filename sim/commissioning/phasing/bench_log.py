@@ -101,9 +101,12 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str | None]]]:
     try:
         text = read_regular(path, MOST_BYTES).decode("utf-8-sig")
         reader = csv.DictReader(StringIO(text, newline=""))
-        missing = sorted({TIME, CHANNEL, *FIELD, *COMMANDED} - set(reader.fieldnames or ()))
+        names = list(reader.fieldnames or ())
+        missing = sorted({TIME, CHANNEL, *FIELD, *COMMANDED} - set(names))
         if missing:
             raise HarnessError(f"{path}: column {missing[0]} is missing: it is no bench log")
+        if twice := [name for name in (TIME, CHANNEL, *FIELD, *COMMANDED) if names.count(name) > 1]:
+            raise HarnessError(f"{path}: there are two columns {twice[0]!r}")
         for row in reader:
             yield reader.line_num, row
     except (OSError, UnicodeDecodeError, csv.Error) as error:

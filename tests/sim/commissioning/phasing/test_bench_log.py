@@ -148,6 +148,7 @@ def test_no_axis_is_claimed(responses):
     ("change", "says"),
     [
         (lambda text: text.replace("mag_y_nt", "mag_why"), "column mag_y_nt is missing"),
+        (lambda text: text.replace("cmd_z_am2", "cmd_z_am2,mag_x_nt", 1), "there are two columns 'mag_x_nt'"),
         (lambda text: text.replace(",mag1,20000", ",mag1,twenty", 1), "line 2: mag_x_nt is 'twenty'"),
         (lambda text: text.replace(",cmd,", ",other,"), "is"),
         (lambda text: text.splitlines()[0] + "\n", "no commands"),
