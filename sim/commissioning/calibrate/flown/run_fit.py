@@ -31,7 +31,8 @@ SMOOTHED = 5
 EVERY = 4
 """Of the smoothed samples the fit takes every so many."""
 MATRIX_SIGMA, OFFSET_SIGMA_NT = 0.1, 1e5
-LONGEST_LAG = 100
+LONGEST_LAG, LEAST_VALUES = 100, 20
+"""Of the residuals by which the deviations are widened."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,12 +179,12 @@ def _widening(field: FieldFit) -> float:
     factors = []
     for column in field.residual.T:
         values = column[np.isfinite(column)]
-        if len(values) < 2 * LONGEST_LAG:
+        if len(values) < LEAST_VALUES:
             continue
         off = values - values.mean()
         variance = float(off @ off) / len(off)
         together = 1.0
-        for lag in range(1, LONGEST_LAG):
+        for lag in range(1, min(LONGEST_LAG, len(values) // 2)):
             r = float(off[lag:] @ off[:-lag]) / len(off) / variance
             if r <= 0.0:
                 break

@@ -91,6 +91,22 @@ def test_the_coils_field_is_known_no_better_than_matrix_and_response_together(fo
     assert said == pytest.approx(np.std(products, axis=0), rel=0.08)
 
 
+def test_a_short_log_of_a_sensor_noisier_than_the_table_says_is_less_sure():
+    short = log(ticks=700)
+    noise = 570.0 * np.random.default_rng(9).normal(size=short.field_nt.shape)
+    found = calibrated(replace(short, field_nt=short.field_nt + noise), TABLE)
+    sigma = np.sqrt(found.field.covariance.diagonal())
+    off = np.concatenate(
+        [
+            (found.field.matrix - np.linalg.inv(CHANNELS_FROM_BODY)).ravel() / sigma[:9],
+            (found.field.offset_nt - OFFSET) / sigma[9:],
+        ]
+    )
+    assert len(found.residual_nt) < 200
+    assert found.widened > 2.5
+    assert np.abs(off).max() < 3.0
+
+
 def test_what_it_says_is_worth_something(found):
     sigma = np.sqrt(found.field.covariance.diagonal())
     assert sigma[:9].max() < 0.01
