@@ -44,8 +44,9 @@ _NONE: Vec3 = (0.0, 0.0, 0.0)
 class DipoleDriver:
     """A board that drives the dipole of one ``COIL_DIPOLE``, in the tick of its reception and no longer.
 
-    A request ends by itself: a tick without one is a tick without drive. The coils are off at the end of
-    every tick, so that no current flows when the sensors sample. ``COIL_FIRE`` is refused.
+    A request ends by itself: a tick without one is a tick without drive. With ``on_fraction``
+    below 1 the coils are off at the end of every tick, so that no current flows when the sensors sample.
+    ``COIL_FIRE`` is refused.
 
     In each tick: ``begin_tick``, then ``receive`` for each frame of the bus, then ``drive``. A request that
     comes after ``drive``, or before the first tick, answers no tick and is refused as one of a wrong tick.

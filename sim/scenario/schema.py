@@ -164,7 +164,7 @@ def load(name_or_path: str, overrides: Nested | None = None) -> Scenario:
         TableError: not found, not TOML, or a key that is unknown, missing, of the wrong type or out of range.
     """
     values, source = _read(name_or_path)
-    return scenario_of(values, source, named(overrides or {}, Path()))
+    return scenario_of(values, source, with_digests(named(overrides or {}, Path()), Path()))
 
 
 def scenario_of(values: Nested, source: str, overrides: Nested | None = None) -> Scenario:

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from sim.statistics.order_statistics import least_part_bounded, quantile, runs_needed, upper_bound
+from sim.statistics.order_statistics import least_part_bounded, quantile, upper_bound
 from sim.statistics.windows import mean_and_relative
 
 Array = NDArray[np.float64]
@@ -95,7 +95,7 @@ def percentile(
 
     Temporal takes the worst of the runs, which bounds a fraction of the ensemble. Ensemble takes the largest
     value of each run, its bound from order statistics. Mixed pools all runs with equal weight; its bound is
-    that of Woodruff (1952), runs being the clusters.
+    that of Woodruff (1952), runs being the clusters, and allows for runs of a kind that is not among them.
     """
     if interpretation is Interpretation.TEMPORAL:
         return _worst(profiles, probability, confidence, failed)
@@ -133,18 +133,21 @@ def _woodruff(profiles: Array, value: float, probability: float, confidence: flo
     """The pooled quantile at P + t s / sqrt(n), s the deviation between runs of the fraction <= ``value``.
 
     t is Student's quantile with n - 1 degrees of freedom. Where a few runs have small fractions, the term of
-    Johnson (1978) for their third moment is added. Runs whose values hardly change over time are n
-    values: there is no bound with fewer runs than their largest needs to be one.
+    Johnson (1978) for their third moment is added. With the confidence C a part u of all runs, (1 - u)^n =
+    1 - C, may be of a kind that none of these is, and worse at all times: the bound is at P / (1 - u) at
+    least, and there is none where that is beyond all times, with fewer runs than their largest value needs.
     """
     runs = len(profiles)
-    if runs < max(2, runs_needed(probability, confidence)):
+    if runs < 2:
         return None
+    seen = (1.0 - confidence) ** (1.0 / runs)
     parts = np.mean(profiles[:, :-1] <= value, axis=1)
     deviation, student = float(parts.std(ddof=1)), float(stdtrit(runs - 1, confidence))
     shifted = probability + student * deviation / sqrt(runs)
     third = float(np.mean((parts - parts.mean()) ** 3))
     if third < 0.0:
         shifted -= third * (1.0 + 2.0 * student**2) / (6.0 * deviation**2 * runs)
+    shifted = max(shifted, probability / seen)
     return _pooled(profiles, shifted) if shifted < 1.0 else None
 
 

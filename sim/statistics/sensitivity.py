@@ -29,16 +29,19 @@ class RankCorrelation:
 def spearman(inputs: Array, results: Array, confidence: float) -> RankCorrelation | None:
     """The rank correlation of an input with a result; None if one does not vary, or with too few runs.
 
-    Bounds by Fisher's transformation with the variance 1.06 / (n - 3) (Fieller, Hartley and Pearson 1957).
+    Results may be infinite, those of runs that failed: as ranks they are the greatest or least. Bounds by
+    Fisher's transformation with the variance (1 + r^2 / 2) / (n - 3) (Bonett and Wright 2000); where all
+    ranks agree, r counts as half of the way to the next smaller one, 1 - 6 / (n^3 - n).
     """
-    known = np.isfinite(inputs) & np.isfinite(results)
+    known = ~(np.isnan(inputs) | np.isnan(results))
     count = int(known.sum())
-    if count < LEAST_RUNS or np.ptp(inputs[known]) == 0.0 or np.ptp(results[known]) == 0.0:
+    if count < LEAST_RUNS or min(len(np.unique(inputs[known])), len(np.unique(results[known]))) < 2:
         return None
     value = float(np.corrcoef(ranks(inputs[known]), ranks(results[known]))[0, 1])
-    centre = atanh(min(max(value, -1.0 + 1e-12), 1.0 - 1e-12))
-    half = float(ndtri(0.5 * (1.0 + confidence))) * sqrt(1.06 / (count - 3))
-    return RankCorrelation(value, tanh(centre - half), tanh(centre + half))
+    most = 1.0 - 6.0 / (count**3 - count)
+    inner = min(max(value, -most), most)
+    half = float(ndtri(0.5 * (1.0 + confidence))) * sqrt((1.0 + 0.5 * inner * inner) / (count - 3))
+    return RankCorrelation(value, tanh(atanh(inner) - half), min(tanh(atanh(inner) + half), 1.0))
 
 
 def ranks(values: Array) -> Array:

@@ -83,10 +83,10 @@ MAX_GAIN = 1e12
 
 
 class Setpoint(NamedTuple):
-    """What the ground may change in flight: law, gains, and the spin about body axis 1.
+    """What the ground may change in flight: law, gains, and the spin wanted.
 
-    Units: ``k_w`` N m s/T^2, ``k_a`` N m/T^2, ``k_i`` N m/(T^2 s), ``spin_radps`` rad/s, relative to the
-    orbital frame.
+    Units: ``k_w`` N m s/T^2, ``k_a`` N m/T^2, ``k_i`` N m/(T^2 s), ``spin_radps`` rad/s: about body axis 1
+    and relative to the orbital frame, for the laws of spin about their own axis and inertial.
     """
 
     law: str

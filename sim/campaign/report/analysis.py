@@ -1,5 +1,6 @@
 """The statistics of a campaign, from its results."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -107,7 +108,7 @@ def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
     met = {entry: sum(map(entry.met_by, columns[entry.figure].tolist())) for entry in campaign.requirements}
     successes = int(results.numbers(("success",))["success"].sum())
     numeric = [name for name, kind in results.kinds().items() if name.startswith("input_") and kind != "TEXT"]
-    inputs = results.numbers(numeric)
+    inputs, all_inputs = results.numbers(numeric), _inputs_of(results, numeric, runs)
     profiles = {name: np.array(list(results.profiles(name).values())).reshape(-1, POINTS) for name in INDICES}
     return CampaignAnalysis(
         done=len(done),
@@ -120,9 +121,7 @@ def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
         indices=table(profiles, settings.probability, settings.confidence, len(failures)),
         profiles=profiles,
         inputs=inputs,
-        sensitivities=_sensitivities(inputs, columns[figures[0].name], settings.confidence)
-        if figures
-        else (),
+        sensitivities=_sensitivities(all_inputs, figures[0].ranked, settings.confidence) if figures else (),
         errors=results.profiles(ERROR_HISTORY),
         orbits=np.where(np.isfinite(columns["orbits"]), columns["orbits"], campaign.base["time"]["orbits"]),
     )
@@ -148,6 +147,17 @@ def _figure(
 def falls(requirement: FigureRequirement | None) -> bool:
     """Whether a figure is the worse the less it is."""
     return requirement is not None and requirement.at_most == np.inf
+
+
+def _inputs_of(results: Results, names: Sequence[str], runs: NDArray[np.int64]) -> dict[str, Array]:
+    """The inputs of these runs, with those that failed."""
+    rows = {
+        run: values
+        for status in (Status.DONE, Status.FAILED)
+        for run, *values in results.each(("run", *names), status)
+    }
+    table_of_all = np.array([rows[run] for run in runs.tolist()], dtype=float).reshape(len(runs), len(names))
+    return dict(zip(names, table_of_all.T, strict=True))
 
 
 def _sensitivities(inputs: dict[str, Array], results: Array, confidence: float) -> tuple[Sensitivity, ...]:

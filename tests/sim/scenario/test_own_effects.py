@@ -1,5 +1,7 @@
 """Effects of one's own in a scenario: named with their digest, loaded, replayed on demand."""
 
+from hashlib import sha256
+
 import pytest
 
 import torquer
@@ -42,6 +44,16 @@ def function(moment):
 def folder(tmp_path):
     (tmp_path / "leak.py").write_text(CODE)
     return tmp_path
+
+
+def test_an_effect_that_is_laid_over_a_scenario_is_named_with_its_digest_too(folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    (entry,) = load("microsat", {"effect": [{"use": "leak.py:GasLeak"}]}).effect
+    assert entry.use == f"{folder / 'leak.py'}:GasLeak"
+    assert entry.sha256 == sha256(CODE.encode()).hexdigest()
+    assert not (folder / "leak.py.trace").exists()
+    with pytest.raises(TableError, match=r"none\.py"):
+        load("microsat", {"effect": [{"use": "none.py:GasLeak"}]})
 
 
 @pytest.fixture

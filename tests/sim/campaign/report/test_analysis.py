@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from sim.campaign.definition.requirements import FigureRequirement
 from sim.campaign.report.analysis import MAIN_FIGURES, analyse
@@ -42,10 +43,13 @@ def test_the_worst_come_first(analysis):
     assert falling.runs[falling.worst_first[:2]].tolist() == [0, 1]
 
 
-def test_inputs_are_ranked_by_what_depends_on_them(analysis):
+def test_inputs_are_ranked_by_what_depends_on_them_and_failed_runs_are_the_worst(campaign_of_40, analysis):
     strongest = analysis.sensitivities[0]
     assert strongest.column == "input_initial_angle_deg"
-    assert strongest.correlation.value == pytest.approx(1.0)
+    drawn = campaign_of_40.draw
+    inputs = [drawn(run).inputs["initial.angle_deg"] if run in (7, 21) else float(run) for run in range(40)]
+    results = [np.inf if run in (7, 21) else float(run) for run in range(40)]
+    assert strongest.correlation.value == pytest.approx(stats.spearmanr(inputs, results).statistic)
     assert "input_coils_backoff" not in analysis.inputs
     assert "input_disturbance_residual_dipole_am2_length" in analysis.inputs
 
