@@ -84,8 +84,7 @@ def linear(estimate: Estimate, b_eci_t: Vec3, config: MekfConfig) -> bool:
     """Whether the attitude is known so well that the equations of the filter, which are linear, hold.
 
     An error theta of the attitude moves the field by |b| theta and, to second order, by |b| theta^2 / 2. The
-    filter leaves the latter out. While the field turns it appears to be evidence of the rotation about the
-    field, which is known least, and the filter becomes sure of a wrong one. Here |b| theta^2 / 2 is to be
+    filter leaves the latter out, and begun too early it may lose the estimate. Here |b| theta^2 / 2 is to be
     less than the noise of a field sample, theta being the standard deviation about the worst axis.
 
     Args:
