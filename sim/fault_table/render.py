@@ -182,7 +182,7 @@ def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
     lines = [_HEAD, f"{tally(results)}. Phases {phases}, seeds {seeds} each.", ""]
     other = otherwise_flown(results, phases, seeds)
     if other:
-        lines += [f"But \\*: {OTHERWISE_FLOWN}.", ""]
+        lines += [f"But \\*, {counted(len(other), 'row')}: {OTHERWISE_FLOWN}.", ""]
     for group, rows in _groups(results):
         lines += [f"## {group}", "", f"| {' | '.join(_COLUMNS)} |"]
         lines.append("|---|---|---|---|---|---|")
@@ -248,7 +248,13 @@ def _found(result: RowResult) -> str:
 
 
 def _figures(result: RowResult) -> str:
-    return ", ".join(f"{name} {value:.4g}" for name, value in result.measured.items() if name in _REPEATABLE)
+    """The worst of each figure; of one that not every case has, with how many have it."""
+    said = []
+    for name in [name for name in result.measured if name in _REPEATABLE]:
+        count = sum(name in case.measured for case in result.cases)
+        part = f" in {count} of {len(result.cases)}" if count < len(result.cases) else ""
+        said.append(f"{name} {result.measured[name]:.4g}{part}")
+    return ", ".join(said)
 
 
 def _verdict(result: RowResult, other: Collection[str]) -> str:

@@ -309,6 +309,15 @@ def test_a_broken_limit_is_counted_over_all_cases():
     assert "; 1 violation of the coil limits" in render.tally([RowResult(row, (broken,))])
 
 
+def test_a_figure_that_some_cases_lack_says_how_many_have_it():
+    found = [
+        replace(case("late", CheckVerdict.PASS, phase=phase), measured={"pulses": 3.0}) for phase in range(3)
+    ]
+    found[1] = replace(found[1], measured={"pulses": 5.0, "named s": 17.2})
+    line = render.line(RowResult(choose_rows(["mag-late"])[0], tuple(found)))
+    assert line.endswith("pulses 5, named s 17.2 in 1 of 3")
+
+
 def test_there_is_no_page_outside_a_checkout(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(HarnessError, match="no checkout"):
