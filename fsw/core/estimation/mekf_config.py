@@ -212,7 +212,7 @@ def mekf_config(
         rotor=rotor,
         tick_s=tick_s,
         layout=parts,
-        initial_parameters=_means(priors),
+        initial_parameters=_means(priors, cells is not None),
         initial_covariance=np.diag(variances),
         process_noise=noise,
         constant=np.eye(6, parts.size) + tick_s * system,
@@ -233,8 +233,8 @@ def mekf_config(
     )
 
 
-def _means(priors: Mapping[str, Prior]) -> Parameters:
+def _means(priors: Mapping[str, Prior], with_cells: bool) -> Parameters:
     given = [priors[name].mean if name in priors else () for name in NAMES]
     means = Parameters._make(mean or none for mean, none in zip(given, NOTHING, strict=True))
-    of_cells: dict[str, Any] = {name: (0.0,) * size for name, size in OF_CELLS.items() if name in priors}
-    return means._replace(**of_cells)
+    of_cells: dict[str, Any] = {name: (0.0,) * size for name, size in OF_CELLS.items()}
+    return means._replace(**of_cells) if with_cells else means

@@ -198,4 +198,7 @@ def by_gain(estimate: Estimate, tuning: MekfConfig, test: WeakTest) -> list[floa
         return [0.0, 0.0, 0.0]
     parts = [1.0 + error for error in estimate.parameters.coil_error[::4]]
     variances = estimate.covariance.diagonal()[place][::4].tolist()
-    return [test.nats(part, variance) for part, variance in zip(parts, variances, strict=True)]
+    return [
+        test.nats(part, variance) if variance > 0.0 else 0.0
+        for part, variance in zip(parts, variances, strict=True)
+    ]

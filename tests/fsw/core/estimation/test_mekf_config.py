@@ -3,6 +3,7 @@
 from math import radians
 
 import numpy as np
+from cell_samples import CELLS
 
 from fsw.core.algebra.vector import inverse
 from fsw.core.estimation.mekf_config import mekf_config
@@ -36,9 +37,9 @@ def test_every_array_has_the_size_of_the_error_state(satellite):
 
 
 def test_the_parameters_begin_at_the_means_of_their_priors(full):
-    assert full.config().initial_parameters == NOTHING._replace(
-        **{name: (0.0,) * size for name, size in OF_CELLS.items()}
-    )
+    """With cells theirs are there even where they are certain."""
+    of_cells = {name: (0.0,) * size for name, size in OF_CELLS.items()}
+    assert full.config(cells=CELLS).initial_parameters == NOTHING._replace(**of_cells)
     tuning = {
         "magnetometer_sigma_t": 2e-7,
         "sun_sigma_rad": 0.01,
@@ -53,6 +54,8 @@ def test_the_parameters_begin_at_the_means_of_their_priors(full):
     }
     config = mekf_config(full.inertia_kgm2, 1.0, late, **tuning)
     assert config.initial_parameters == Parameters(delay_s=(0.5, 0.7))
+    with_cells = mekf_config(full.inertia_kgm2, 1.0, late, cells=CELLS, **tuning)
+    assert with_cells.initial_parameters == config.initial_parameters._replace(**of_cells)
 
 
 def test_the_rotor_is_that_of_the_table(full):

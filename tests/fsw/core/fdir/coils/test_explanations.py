@@ -195,6 +195,13 @@ def accused(estimate, config):
 class TestGain:
     """A coil that was always weak hides in what the filter estimates of the coils."""
 
+    def test_a_gain_that_is_exact_says_nothing(self):
+        config = tuned(coil_error=Prior((0.0, 0.1, 0.1, 0.1, 0.05, 0.1, 0.1, 0.1, 0.0), (0.0,) * 9))
+        estimate = mekf.start((1.0, 0.0, 0.0, 0.0), (0.0,) * 3, config)
+        first, second, third = by_gain(estimate, config, WEAK)
+        assert first == third == 0.0
+        assert second < 0.0
+
     @pytest.fixture
     def estimated(self):
         def make(coil, gain, sigma):
