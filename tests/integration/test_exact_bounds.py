@@ -4,7 +4,7 @@ import pytest
 
 from fsw.table.uncertainty import UncertaintyTable
 from sim.campaign.flight import record_scenario
-from sim.scenario.schema import load
+from sim.scenario.schema import load, parse_settings
 
 CELLS = "cubesat-cells"
 SATELLITES = {CELLS: 0.15, "realsat": 0.05, "microsat-wheel": 0.05}
@@ -28,6 +28,13 @@ def test_it_estimates_the_rest_where_one_thing_is_certain(satellite, name):
     flight = flown(satellite, [name])
     assert flight.audit.ok
     assert flight.estimates.last is not None
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("of", ["flight.cells", "sensors.cells"])
+def test_an_earth_that_reflects_nothing_is_no_error(of):
+    settings = parse_settings((f"{of}.albedo=0.0",))
+    assert record_scenario(load(CELLS, settings), 1, SATELLITES[CELLS]).audit.ok
 
 
 @pytest.mark.long

@@ -79,7 +79,7 @@ def most_behind(estimate: Estimate, normal: Vec3, seen: Light, cells: CellSet) -
     The Earth is as bright as the table has it, or brighter where the cells together have shown that it is.
     """
     known = estimate.parameters.earth_light
-    brighter = max(0.0, known[0]) / cells.albedo if known else 0.0
+    brighter = max(0.0, known[0]) / cells.albedo if known and cells.albedo > 0.0 else 0.0
     most = SIGMAS * hypot(cells.excess_sigma, cells.light_sigma)
     return cells.dark + (1.0 + brighter) * _by_earth(estimate.q_body_from_eci, normal, seen) + most
 

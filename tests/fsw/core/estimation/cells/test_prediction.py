@@ -1,5 +1,6 @@
 """What Sun cells should show, its derivative, and the most that one facing away from the Sun can show."""
 
+from dataclasses import replace
 from math import hypot
 
 import numpy as np
@@ -90,6 +91,13 @@ class TestPrediction:
                 if np.dot(normal, s) > LEAST_COSINE and not (cell == 2 and s[1] > 0.9)
             }
             assert set(sunlit(attitude, SEEN, CELLS)) == expected
+
+
+def test_without_light_of_the_earth_it_shows_its_excess_at_most():
+    dark = replace(CELLS, albedo=0.0)
+    for normal in CELLS.normals_body:
+        most = most_behind(begun(), normal, SEEN._replace(earth=0.0), dark)
+        assert most == pytest.approx(0.05 + 4.0 * hypot(EXCESS_SIGMA, LIGHT_SIGMA))
 
 
 @pytest.mark.parametrize(("light_shown", "brighter"), [(LIGHT, 1.0 + LIGHT / CELLS.albedo), (-LIGHT, 1.0)])
