@@ -236,5 +236,7 @@ def mekf_config(
 def _means(priors: Mapping[str, Prior], with_cells: bool) -> Parameters:
     given = [priors[name].mean if name in priors else () for name in NAMES]
     means = Parameters._make(mean or none for mean, none in zip(given, NOTHING, strict=True))
-    of_cells: dict[str, Any] = {name: (0.0,) * size for name, size in OF_CELLS.items()}
-    return means._replace(**of_cells) if with_cells else means
+    of_cells: dict[str, Any] = {
+        name: (0.0,) * size for name, size in OF_CELLS.items() if with_cells or name in priors
+    }
+    return means._replace(**of_cells)
