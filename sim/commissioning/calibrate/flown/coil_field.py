@@ -23,7 +23,8 @@ Numbers = NDArray[np.int64]
 AROUND_S = 12
 """Time before and after a pulse that shows the field without it."""
 LONGEST_DELAY_S = 4
-"""A delay at the end of the grid may be any longer one, and is not told."""
+"""And half of the shortest pause between pulses at most, so that each shows by itself. A delay at the end of
+the grid may be any longer one, and is not told."""
 STEP_S, MOST_STEP = 0.02, 0.2
 """Of the grid of delays, s, and at most so many ticks."""
 CUBIC = 4
@@ -39,7 +40,7 @@ class CoilResponse:
         nt_per_am2: column j is the response to a nominal 1 A m^2 of output j, channels of the magnetometer.
         sigma: its standard deviations.
         pulses: of each output.
-        delay_ticks, delay_sigma: how late it shows; None where no response is seen, or it is later than 4 s.
+        delay_ticks, delay_sigma: how late it shows; None where no response is seen, or it comes too late.
         noise_nt: standard deviation of a reading about the fit.
         residual_nt, residual_phase: what the fit leaves, and the ticks since the pulse's request.
     """
@@ -81,9 +82,11 @@ def coil_response(samples: Samples, levels_am2: tuple[float, float, float]) -> C
     driven = np.zeros((len(samples), 3))
     dipoles = np.array([0.0, *levels_am2])[np.abs(samples.level)] * np.sign(samples.level)
     driven[np.arange(len(samples)), np.clip(samples.coil, 0, 2)] = dipoles
-    windows = _windows(samples, driven)
+    runs = _runs(driven)
+    longest = _longest_delay(runs, samples)
+    windows = _windows(samples, driven, runs, longest)
     step = min(STEP_S * samples.tick_hz, MOST_STEP)
-    delays = np.arange(0.0, LONGEST_DELAY_S * samples.tick_hz + 0.5 * step, step)
+    delays = np.arange(0.0, longest + 0.5 * step, step)
     fits = [_at_delay(windows, driven, delay) for delay in delays.tolist()]
     costs = np.array([fit.cost for fit in fits])
     best = int(np.argmin(costs)) if windows else 0
@@ -109,15 +112,26 @@ class _Fit:
     cost: float
 
 
-def _windows(samples: Samples, driven: Array) -> list[_Window]:
+def _runs(driven: Array) -> list[tuple[int, int]]:
+    """First tick of each pulse, and the one after its last."""
     on = np.any(driven != 0.0, axis=1)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], on.astype(int), [0]])))
-    around, longest = AROUND_S * samples.tick_hz, LONGEST_DELAY_S * samples.tick_hz
+    return list(zip(edges[0::2].tolist(), edges[1::2].tolist(), strict=True))
+
+
+def _longest_delay(runs: list[tuple[int, int]], samples: Samples) -> int:
+    """Of the grid, ticks."""
+    pauses = [begin - end for (_, end), (begin, _) in pairwise(runs)]
+    return min(LONGEST_DELAY_S * samples.tick_hz, *(max(1, pause // 2) for pause in pauses), len(samples))
+
+
+def _windows(samples: Samples, driven: Array, runs: list[tuple[int, int]], longest: int) -> list[_Window]:
+    around = AROUND_S * samples.tick_hz
     windows = []
-    for begin, end in zip(edges[0::2].tolist(), edges[1::2].tolist(), strict=True):
+    for begin, end in runs:
         output = int(np.argmax(np.abs(driven[begin])))
         rows = np.arange(max(0, begin - around), min(len(samples), end + around + longest))
-        for first, last in pairwise_runs(edges):
+        for first, last in runs:
             if first != begin:
                 rows = rows[(rows < first) | (rows > last + longest)]
         rows = rows[whole(samples.field_nt[rows])]
@@ -128,11 +142,6 @@ def _windows(samples: Samples, driven: Array) -> list[_Window]:
         window = _Window(output, rows, begin, samples.field_nt[rows], np.asarray(basis, np.float64))
         windows.append(replace(window, readings=window.without_cubic(window.readings)))
     return windows
-
-
-def pairwise_runs(edges: Numbers) -> list[tuple[int, int]]:
-    """Begin and end of each run."""
-    return [(first, last) for place, (first, last) in enumerate(pairwise(edges.tolist())) if place % 2 == 0]
 
 
 def _drive(driven: Array, window: _Window, delay: float) -> Array:
