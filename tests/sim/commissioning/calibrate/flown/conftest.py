@@ -65,7 +65,7 @@ def pulsed():
         k = np.arange(n)
         coil, level = k % 3, np.zeros(n, dtype=int)
         for number in range(pulses):
-            begin = every * (number + 1) - 20 * tick_hz
+            begin = every * (number + 1) - every // 2
             coil[begin : begin + 3 * tick_hz] = number % 3
             level[begin : begin + 3 * tick_hz] = 3 if number < 3 else -3
         driven = np.zeros((n, 3))

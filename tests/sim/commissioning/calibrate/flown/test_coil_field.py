@@ -27,6 +27,16 @@ def test_so_are_they_with_many_ticks_a_second(pulsed, tick_hz, delay_s):
     assert found.pulses == (2, 2, 2)
 
 
+def test_short_pauses_leave_room_for_short_delays(pulsed):
+    """Pulses of 3 s with 4 s between them: up to 2 s late."""
+    found = coil_response(pulsed(RESPONSE, 12.0, noise_nt=100.0, every=7, tick_hz=10), LEVELS)
+    assert found.pulses == (2, 2, 2)
+    assert found.nt_per_am2 == pytest.approx(RESPONSE, abs=5.0 * found.sigma.max())
+    assert abs(found.delay_ticks - 12.0) < 4.0 * found.delay_sigma
+    late = coil_response(pulsed(RESPONSE, 25.0, noise_nt=100.0, every=7, tick_hz=10), LEVELS)
+    assert late.delay_ticks is None
+
+
 @pytest.mark.parametrize("delay", [4.0, 4.5, 5.5])
 def test_a_delay_beyond_what_is_looked_for_is_not_told(pulsed, delay):
     found = coil_response(pulsed(RESPONSE, delay), LEVELS)
