@@ -7,7 +7,7 @@ from sim.campaign.flight import record_scenario
 from sim.scenario.schema import load, parse_settings
 
 CELLS = "cubesat-cells"
-SATELLITES = {CELLS: 0.15, "realsat": 0.05, "microsat-wheel": 0.05}
+SATELLITES = {CELLS: 0.15, "realsat": 0.05}
 """How long each flies, orbits: until the filter has begun, and all of its parameters have been sent."""
 BOUNDS = {
     satellite: tuple(

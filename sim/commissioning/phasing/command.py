@@ -28,7 +28,8 @@ from sim.scenario.schema import Scenario, flight_table, scenario_of
 
 LAW = "phasing"
 SETTLED_S = 20.0
-"""On a bench after the last pulse, so that a sample that is late shows it and what is there without it."""
+"""On a bench after the last pulse, so that a sample that is late shows it and what is there without it; but
+no more than twice the back-off, which bounds how late a sample may be told to be."""
 AFTER_S = 30.0
 """After the last pulse, so that what it did is seen."""
 ANY_BUDGET = Budgets(1e9, 1e9, 10**9, 1e9, 1e9)
@@ -123,7 +124,7 @@ def sequence_ticks(scenario: Scenario, rounds: int, at_rest: bool = False) -> in
     coils = scenario.coils
     each_s = coils.pulse_s + coils.backoff_s / (1.0 if coils.shared else 3.0)
     recover_s = flight_table(scenario).modes.recover_s
-    after_s = SETTLED_S if at_rest else coils.backoff_s + AFTER_S
+    after_s = min(SETTLED_S, 2.0 * coils.backoff_s) if at_rest else coils.backoff_s + AFTER_S
     late_s = 4.0 / scenario.time.tick_hz  # until the board has reported that the coil is ready
     whole_s = max(coils.backoff_s, recover_s) + 1.0 + 6 * rounds * (each_s + late_s) + after_s
     return ceil(whole_s * scenario.time.tick_hz)
