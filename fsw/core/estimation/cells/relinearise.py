@@ -143,9 +143,10 @@ def correction(before: Estimate, after: Estimate, config: MekfConfig) -> Matrix:
 def _uncertain(estimate: Estimate, lit: tuple[int, ...], config: MekfConfig) -> tuple[list[int], list[int]]:
     """Of field and lit cells, those whose bias or excess is uncertain: numbers, and places of it."""
     parts, variances = config.layout, estimate.covariance.diagonal().tolist()
-    bias = [] if parts.mag_bias is None else [parts.mag_bias.start + axis for axis in range(3)]
-    excess = [] if parts.cells is None else [parts.cells.start + cell for cell in lit]
-    of_bias = [(axis, place) for axis, place in enumerate(bias)]
-    of_excess = [(3 + number, place) for number, place in enumerate(excess)]
-    uncertain = [(number, place) for number, place in (*of_bias, *of_excess) if variances[place] > 0.0]
-    return [number for number, _ in uncertain], [place for _, place in uncertain]
+    place_of: dict[int, int] = {}
+    if parts.mag_bias is not None:
+        place_of = {axis: parts.mag_bias.start + axis for axis in range(3)}
+    if parts.cells is not None:
+        place_of |= {3 + number: parts.cells.start + cell for number, cell in enumerate(lit)}
+    uncertain = {number: place for number, place in place_of.items() if variances[place] > 0.0}
+    return list(uncertain), list(uncertain.values())
