@@ -19,6 +19,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory, TemporaryFile
 from typing import Any, NamedTuple
 
+from argument_types import count, positive
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "performance.md"
 BENCHMARKS = ROOT / "benchmarks"
@@ -220,8 +222,8 @@ def page(rows: list[Row], overheads: list[float], parts: dict[str, dict[str, Any
 def main() -> None:
     """Measure and write the page."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--orbits", type=float, default=3.0, help="of each flight")
+    parser.add_argument("--rounds", type=count, default=5)
+    parser.add_argument("--orbits", type=positive, default=3.0, help="of each flight")
     parser.add_argument("--out", type=Path, default=PAGE)
     options = parser.parse_args()
     peer_version = install_peer()

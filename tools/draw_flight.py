@@ -49,7 +49,11 @@ def draw(run: torquer.Run, target: Path) -> None:
 def main(arguments: list[str]) -> None:
     mpl.rcParams.update({"svg.hashsalt": "torquer", "font.size": 9, "path.simplify_threshold": 0.5})
     if arguments:
-        draw(torquer.load(arguments[0]), TARGET)
+        try:
+            draw(torquer.load(arguments[0]), TARGET)
+        except torquer.InputError as error:
+            print(f"draw_flight: {error}", file=sys.stderr)
+            sys.exit(2)
         return
     with TemporaryDirectory() as folder:
         draw(torquer.fly("microsat", orbits=4, seed=2, out=Path(folder) / "run", progress=True), TARGET)

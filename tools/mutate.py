@@ -21,6 +21,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from argument_types import count
+
 sys.path.insert(0, str(Path(__file__).parent))
 from mutants import Mutant
 from mutation_page import (
@@ -108,7 +110,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("only", nargs="*", help="targets or modules; default all")
     parser.add_argument("--stale", action="store_true", help="only modules not measured as they are now")
-    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--workers", type=count, default=os.cpu_count() or 1)
     parser.add_argument(
         "--verbose", action="store_true", help="print every mutant, and the test that noticed"
     )

@@ -14,6 +14,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
 
+from argument_types import count
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -84,8 +85,8 @@ def main() -> int:
         metavar="NAME",
         help="classes of *_schedulers.py; default: all",
     )
-    parser.add_argument("--runs", type=int, default=4, help="seeds of each (4)")
-    parser.add_argument("--workers", type=int, default=1, help="runs at a time (1)")
+    parser.add_argument("--runs", type=count, default=4, help="seeds of each (4)")
+    parser.add_argument("--workers", type=count, default=1, help="runs at a time (1)")
     options = parser.parse_args()
     unknown = sorted(set(options.names) - SCHEDULERS.keys())
     if unknown:

@@ -14,6 +14,8 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
+from argument_types import count
+
 from sim.campaign.claim import ClaimOutcome, ClaimVerdict, Study
 from sim.campaign.flight import FlightResult, Order, fly_order
 from sim.campaign.population import POPULATIONS
@@ -102,10 +104,10 @@ def main(words: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--satellites", type=int, help="at most so many of each population; default: all")
-    parser.add_argument("--sizes", type=int, default=6, help="of each quantity that is varied alone")
-    parser.add_argument("--per-size", type=int, default=4, help="satellites of each size")
-    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="processes")
+    parser.add_argument("--satellites", type=count, help="at most so many of each population; default: all")
+    parser.add_argument("--sizes", type=count, default=6, help="of each quantity that is varied alone")
+    parser.add_argument("--per-size", type=count, default=4, help="satellites of each size")
+    parser.add_argument("--workers", type=count, default=os.cpu_count() or 1, help="processes")
     parser.add_argument("--rows", type=Path, default=ROWS, help="where the flights are kept")
     parser.add_argument("--render", action="store_true", help="fly nothing, of any version of the code")
     parser.add_argument("--out", type=Path, default=PAGE, help="the page; its pictures lie beside it")

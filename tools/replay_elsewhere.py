@@ -7,6 +7,7 @@ another. Commands must be equal everywhere; the page says where telemetry and st
 import argparse
 import os
 import platform
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -14,6 +15,8 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
+
+from argument_types import count, positive
 
 from sim.errors import HarnessError
 from sim.record.destination import check_file
@@ -78,13 +81,16 @@ def main() -> int:
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenario", action="append", help="default: microsat and posat1-ekf")
-    parser.add_argument("--orbits", type=float, default=20.0)
+    parser.add_argument("--orbits", type=positive, default=20.0)
     parser.add_argument(
         "--python", action="append", default=[], help="another interpreter with torquer in it"
     )
-    parser.add_argument("--workers", type=int, default=os.cpu_count(), help="default: one a core")
+    parser.add_argument("--workers", type=count, default=os.cpu_count(), help="default: one a core")
     parser.add_argument("--out", type=Path, default=PAGE)
     arguments = parser.parse_args()
+    for python in arguments.python:
+        if shutil.which(python) is None:
+            parser.error(f"--python {python} is no program")
     arguments.scenario = arguments.scenario or ["microsat", "posat1-ekf"]
     return arguments
 

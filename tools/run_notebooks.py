@@ -37,9 +37,13 @@ def execute(notebook: NotebookNode, folder: Path) -> None:
 
 
 def main(names: list[str]) -> None:
+    there = sorted(path.stem for path in NOTEBOOKS.glob("*.ipynb"))
+    if unknown := sorted(set(names).difference(there)):
+        print(f"run_notebooks: no notebook {unknown[0]}, of {', '.join(there)}", file=sys.stderr)
+        sys.exit(2)
     folder = ROOT / "build" / "notebooks"
     folder.mkdir(parents=True, exist_ok=True)
-    for name in names or sorted(path.stem for path in NOTEBOOKS.glob("*.ipynb")):
+    for name in names or there:
         notebook, began = read(name), time.monotonic()
         try:
             execute(notebook, folder)

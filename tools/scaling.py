@@ -22,6 +22,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
+from argument_types import count
 from jinja2 import Environment, StrictUndefined
 
 from sim.campaign.definition.campaign import Campaign
@@ -212,9 +213,9 @@ def page(figures: Figures) -> str:
 def main() -> None:
     """Measure and write the page."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--flights", type=int, default=4, help="of each worker")
-    parser.add_argument("--rows", type=int, default=3000, help="taken in from workers that do nothing")
-    parser.add_argument("--rounds", type=int, default=10, help="of the workers that sleep")
+    parser.add_argument("--flights", type=count, default=4, help="of each worker")
+    parser.add_argument("--rows", type=count, default=3000, help="taken in from workers that do nothing")
+    parser.add_argument("--rounds", type=count, default=10, help="of the workers that sleep")
     parser.add_argument("--out", type=Path, default=PAGE)
     options = parser.parse_args()
     figures = measure(options.flights, options.rows, options.rounds)

@@ -8,6 +8,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+from argument_types import count
 
 from sim.design.feedback.neural import MOST_AM2, PD_GAINS, cost, orbit_rms_deg, train, trials
 from sim.design.theory.bodies import BODIES
@@ -20,8 +21,8 @@ FLIGHTS, GENERATIONS, FLIGHTS_SEED, SEARCH_SEED = 60, 140, 1, 3
 def main() -> None:
     """Train, print the weights, write the file."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--flights", type=int, default=FLIGHTS)
-    parser.add_argument("--generations", type=int, default=GENERATIONS)
+    parser.add_argument("--flights", type=count, default=FLIGHTS)
+    parser.add_argument("--generations", type=count, default=GENERATIONS)
     parser.add_argument("--out", type=Path, default=KEPT)
     given = parser.parse_args()
     body, flown = BODIES[2], trials(given.flights, FLIGHTS_SEED)

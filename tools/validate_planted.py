@@ -16,6 +16,8 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
+from argument_types import positive
+
 sys.path.insert(0, str(Path(__file__).parent))
 from mutation_tests import copy_repository
 
@@ -224,7 +226,7 @@ def main() -> int:
         "names", nargs="*", metavar="NAME", help="plants by a part of their names; default: all"
     )
     parser.add_argument("--list", action="store_true", help="name them, run nothing")
-    parser.add_argument("--timeout", type=float, default=1800.0, help="seconds for a run (1800)")
+    parser.add_argument("--timeout", type=positive, default=1800.0, help="seconds for a run (1800)")
     options = parser.parse_args()
     chosen = [one for one in PLANTS if not options.names or any(name in one.name for name in options.names)]
     if not chosen:

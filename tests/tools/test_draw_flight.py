@@ -16,3 +16,10 @@ def test_it_draws_errors_and_pulses_of_a_run(tmp_path):
     drawn = sum(group.startswith("LineCollection") for group in groups)
     assert len(run.pulses) > 0
     assert drawn == 3
+
+
+def test_what_is_no_run_is_one_sentence(tmp_path, capsys):
+    with pytest.raises(SystemExit) as ended:
+        draw_flight.main([str(tmp_path)])
+    assert ended.value.code == 2
+    assert f"{tmp_path} is no run directory" in capsys.readouterr().err

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-TOOLS = ("mutate.py", "mutants.py", "mutation_page.py", "mutation_tests.py")
+TOOLS = ("argument_types.py", "mutate.py", "mutants.py", "mutation_page.py", "mutation_tests.py")
 MODULE = '''"""A limit."""
 
 LIMIT = 3

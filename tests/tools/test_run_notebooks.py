@@ -29,3 +29,10 @@ def test_the_first_flight_runs(tmp_path):
     assert "microsat, seed 2: 604 s flown" in text
     assert "bit-exact: 604 ticks" in text
     assert not any(output.get("name") == "stderr" for output in outputs)
+
+
+def test_a_notebook_that_is_not_there_is_one_sentence(capsys):
+    with pytest.raises(SystemExit) as ended:
+        run_notebooks.main(["first_fligth"])
+    assert ended.value.code == 2
+    assert "no notebook first_fligth, of " in capsys.readouterr().err

@@ -123,10 +123,9 @@ def test_a_bench_of_an_earlier_soak_is_not_taken_for_that_of_this_one(tmp_path, 
     assert not (tmp_path / "soak.md").exists()
 
 
-@pytest.mark.parametrize("hours", ["nan", "0", "-1", "1e12"])
-def test_hours_that_no_run_can_have_are_one_sentence(hours, tmp_path, capsys):
-    assert soak.main(["--hours", hours, "--out", str(tmp_path / "soak.md")]) == 2
-    assert "--hours" in capsys.readouterr().err
+def test_more_hours_than_a_run_can_have_are_one_sentence(tmp_path, capsys):
+    assert soak.main(["--hours", "1e12", "--out", str(tmp_path / "soak.md")]) == 2
+    assert "--hours 1e+12: a run has at most" in capsys.readouterr().err
 
 
 def test_the_bench_is_armed_at_10_hz_and_held_to_the_budget(monkeypatch, tmp_path):
