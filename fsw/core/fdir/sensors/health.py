@@ -15,6 +15,7 @@ import numpy as np
 
 from fsw.core.algebra.vector import Vec3, sub
 from fsw.core.estimation.cells.cell_set import light
+from fsw.core.estimation.cells.update import NO_CELLS
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.kalman import Matrix, inverse
 from fsw.core.estimation.measurement import Prediction, field_prediction, sun_prediction
@@ -101,7 +102,8 @@ def judge(
         used,
         estimate,
         refused_field=_refused(findings.field, findings.field_cause or field.fault, used.field, estimate),
-        refused_sun=_refused(findings.sun, findings.sun_cause or sun.fault, used.sun, estimate),
+        refused_sun=_sun_compared(used, config.mekf)
+        and _refused(findings.sun, findings.sun_cause or sun.fault, used.sun, estimate),
         isolated=bool(field.fault or sun.fault),
         untold=bool((field.fault and b_fits is None) or (sun.fault and s_fits is None)),
         shown=min([watch.nats for watch in (field, sun) if watch.fault], default=0.0),
@@ -154,6 +156,11 @@ def _cells(
 def _refused(sample: Vec3 | None, fault: int, taken: bool, estimate: Estimate | None) -> bool:
     """Whether the filter had a sample of a sensor in use, against which nothing spoke, and refused it."""
     return not (estimate is None or sample is None or fault or taken)
+
+
+def _sun_compared(used: Used, mekf: MekfConfig) -> bool:
+    """Whether the filter looked at the Sun: of cells it leaves out those that it cannot predict well."""
+    return mekf.cells is None or used.cells != NO_CELLS
 
 
 def _field_fits(

@@ -4,10 +4,12 @@ from functools import partial
 
 import numpy as np
 import pytest
+from cell_samples import Q_BODY_FROM_ECI, REFERENCE, cell_filter
 
 from fsw.core.algebra.quaternion import normalise, rotate
 from fsw.core.algebra.vector import add
 from fsw.core.estimation import mekf
+from fsw.core.estimation.cells.update import CellsUsed
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.fdir.evidence import weights
@@ -86,6 +88,26 @@ class TestRefused:
         for _ in range(400):
             health = after(after(health, SUN), TOOK_BOTH)
         assert faults(health) == (0, 0)
+
+
+@pytest.mark.parametrize(
+    ("cells", "fault"),
+    [
+        (CellsUsed(taken=(), refused=()), 0),
+        (CellsUsed(taken=(), refused=(1,)), SensorFault.REFUSED),
+    ],
+    ids=["that the filter left out", "that it refused"],
+)
+def test_cells_speak_against_their_board_where_the_filter_refused_them(cells, fault):
+    mekf_with_cells = cell_filter()
+    config = SensorConfig(WEIGHTS, credibility_config(mekf_with_cells), mekf_with_cells)
+    estimate = mekf.start(Q_BODY_FROM_ECI, (0.0, 0.0, 0.0), mekf_with_cells)._replace(nis=3.0, numbers=3)
+    reference, used = REFERENCE, FIELD._replace(cells=cells)
+    field, sun = (rotate(Q_BODY_FROM_ECI, one) for one in (reference.b_eci_t, reference.sun_eci))
+    seen, health = Findings(0, 0, field, sun, True, False, Memory(), currents=(0.1,) * 6), TRUSTED
+    for _ in range(29):
+        health = judge(health, seen, used, estimate, reference, config)
+    assert faults(health) == (0, fault)
 
 
 @pytest.mark.parametrize(
