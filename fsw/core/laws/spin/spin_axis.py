@@ -2,11 +2,12 @@
 
 Two errors of a satellite that is to spin about body axis e, its momentum along an inertial direction t:
 
-    L1 = H_ref t - h      the momentum, which only torques change in space,
+    L1 = |h_ref| t - h    the momentum, which only torques change in space,
     L2 = h_ref e - h      the momentum in the body: spin, and the nutation across it,
 
-h = J omega + h_wheel and H_ref = h_ref = e . (J e w_ref + h_wheel). The relay law reduces both together:
-for a body symmetric about e, d/dt (|L1|^2 + |L2|^2) / 2 = -(L1 + L2) . M.
+h = J omega + h_wheel and h_ref = e . (J e w_ref + h_wheel). Where h_ref < 0, as with a negative spin, the
+momentum is to be along t all the same, and e ends against it. The relay law reduces both together: for a body
+symmetric about e, d/dt (|L1|^2 + |L2|^2) / 2 = -(L1 + L2) . M.
 
 Source of the errors: Avanzini, de Angelis, Giulietti 2014, as in Ovchinnikov, Roldugin 2019, section 2.1.
 """
@@ -188,7 +189,7 @@ def _wanted_spin_nms(setpoint: Setpoint, gains: SpinAxisGains, config: ControlCo
 def _errors(moving: InertialMotion, wanted_nms: float, gains: SpinAxisGains) -> tuple[Vec3, Vec3]:
     """L1 and L2, body axes."""
     target_body = rotate(moving.q_body_from_eci, gains.target_eci)
-    direction = sub(scale(wanted_nms, target_body), moving.momentum_body_nms)
+    direction = sub(scale(abs(wanted_nms), target_body), moving.momentum_body_nms)
     body = sub(scale(wanted_nms, AXES[gains.number]), moving.momentum_body_nms)
     return direction, body
 

@@ -34,11 +34,11 @@ axes = st.integers(0, 2)
 
 @pytest.fixture(scope="module")
 def spinning(bench):
-    def fly(law, omega, orbits, most_am2, step_s=3.0):
+    def fly(law, omega, orbits, most_am2, step_s=3.0, spin_radps=0.1):
         orbit = bench.Orbit()
         return bench.fly(
             law,
-            bench.setpoint(k_w=3e6, spin_radps=0.1),
+            bench.setpoint(k_w=3e6, spin_radps=spin_radps),
             gains=GAINS,
             orbit=orbit,
             body=bench.Body(inertia=INERTIA, gravity=False, most_am2=most_am2),
@@ -139,6 +139,14 @@ class TestFlights:
         assert run.axis_to_deg(0, TARGET)[-1] < 3.0
         assert run.omega_body[-1, 0] == pytest.approx(0.1, rel=0.03)
         assert np.linalg.norm(run.omega_body[-1, 1:]) < 2e-3
+
+    @pytest.mark.parametrize("law", [three_term, spin_relay])
+    def test_a_negative_spin_brings_the_momentum_to_the_same_target(self, spinning, law):
+        """The axis ends against it."""
+        run = spinning(law, (-0.02, 0.04, -0.05), orbits=2.5, most_am2=1.0, spin_radps=-0.1)
+        assert run.angle_to_deg(TARGET)[-1] < 3.0
+        assert run.axis_to_deg(0, TARGET)[-1] > 177.0
+        assert run.omega_body[-1, 0] == pytest.approx(-0.1, rel=0.03)
 
     def test_the_two_errors_of_the_relay_only_shrink(self, spinning):
         """(|L1|^2 + |L2|^2) / 2 for a body symmetric about its spin axis, before the relay chatters."""
