@@ -8,7 +8,6 @@ from math import atan2, sin
 
 from fsw.core.algebra.quaternion import dcm
 from fsw.core.algebra.vector import Mat3, Vec3, add
-from fsw.core.laws.feedback.pd import attitude_error
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 
 
@@ -37,7 +36,7 @@ def wheel_axis_dipole(
     Args:
         b_body_t: field in body axes, T.
         omega_body_orbit_radps: rate relative to the orbital frame, body axes.
-        s2: 2 phi2, the second component of S of the PD law.
+        s2: 2 phi2, of ``twice_roll``.
         k_w: N m s / T^2.
         k_a: N m / T^2.
 
@@ -74,6 +73,14 @@ def pitch(c_body_from_orbit: Mat3) -> float:
     return atan2(a12 - a21, a11 + a22)
 
 
+def twice_roll(c_body_from_orbit: Mat3) -> float:
+    """2 phi2 = -2 a13, whatever the pitch: the lean of axis 3 from the orbit normal, seen along body axis 1.
+
+    At pitch zero it is the second component of S of the PD law, to first order.
+    """
+    return -2.0 * c_body_from_orbit[0][2]
+
+
 def dual_spin(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The wheel held to the orbit normal, the body turned to its pitch.
 
@@ -85,7 +92,7 @@ def dual_spin(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Cont
         return Demand()
     c = dcm(inputs.attitude.q_body_from_orbit)
     omega = inputs.attitude.omega_body_orbit_radps
-    holding = wheel_axis_dipole(inputs.b_body_t, omega, attitude_error(c)[1], setpoint.k_w, setpoint.k_a)
+    holding = wheel_axis_dipole(inputs.b_body_t, omega, twice_roll(c), setpoint.k_w, setpoint.k_a)
     stiff = 2.0 * setpoint.k_a * gains.stiffness
     turning = pitch_dipole(inputs.b_body_t, stiff * sin(gains.pitch_rad - pitch(c)) - setpoint.k_w * omega[2])
     return Demand(add(holding, turning))

@@ -8,9 +8,8 @@ from math import sin
 
 from fsw.core.algebra.quaternion import dcm
 from fsw.core.algebra.vector import ZERO, Vec3, add, dot
-from fsw.core.laws.feedback.pd import attitude_error
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
-from fsw.core.laws.wheel.dual_spin import pitch, pitch_dipole, wheel_axis_dipole
+from fsw.core.laws.wheel.dual_spin import pitch, pitch_dipole, twice_roll, wheel_axis_dipole
 from fsw.core.laws.wheel.effort import check_frequency
 
 LEAST_COSINE = 0.99
@@ -96,5 +95,5 @@ def pitch_wheel(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Co
     unloading = momentum_dipole(inputs.b_body_t, h - gains.bias_nms, gains.unload_per_s)
     holding = ZERO
     if h > 0.0:
-        holding = wheel_axis_dipole(inputs.b_body_t, omega, attitude_error(c)[1], setpoint.k_w, setpoint.k_a)
+        holding = wheel_axis_dipole(inputs.b_body_t, omega, twice_roll(c), setpoint.k_w, setpoint.k_a)
     return Demand(add(holding, unloading), wheel_torque_nm=-torque_nm)

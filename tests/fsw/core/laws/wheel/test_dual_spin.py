@@ -7,7 +7,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fsw.core.laws.wheel.dual_spin import DualSpinGains, dual_spin, pitch, pitch_dipole, wheel_axis_dipole
+from fsw.core.laws.interface import Wheel
+from fsw.core.laws.wheel.dual_spin import (
+    DualSpinGains,
+    dual_spin,
+    pitch,
+    pitch_dipole,
+    twice_roll,
+    wheel_axis_dipole,
+)
+from fsw.core.laws.wheel.pitch_wheel import PitchWheelGains, pitch_wheel
 
 WHEEL = (0.0, 0.0, 0.05)
 INERTIA = np.diag([1.9, 1.95, 2.0])
@@ -32,6 +41,18 @@ def test_the_attitude_term_turns_the_tilted_momentum_back(b, roll_rad, turned):
     torque = np.cross(wheel_axis_dipole(b, (0.0, 0.0, 0.0), 2.0 * roll_rad, 1e7, 4000.0), b)
     assert torque[0] == pytest.approx(-2.0 * 4000.0 * b[1] ** 2 * roll_rad)
     assert torque[0] * tilt < 0.0
+
+
+@pytest.mark.parametrize("pitch_deg", [0.0, 60.0, 180.0, -120.0])
+@pytest.mark.parametrize("lean_about", [(1, 0, 0), (0, 1, 0)])
+def test_at_any_pitch_it_is_turned_back(turned, pitch_deg, lean_about):
+    """With a field that has no first component, the torque is along axis 1 alone and reduces the lean."""
+    c = turned((0, 0, 1), pitch_deg) @ turned(lean_about, 5.0)
+    b, normal_body = (0.0, -2.3e-5, 3.1e-5), c[:, 2]
+    rows = tuple(map(tuple, c.tolist()))
+    torque = np.cross(wheel_axis_dipole(b, (0.0, 0.0, 0.0), twice_roll(rows), 1e7, 4000.0), b)
+    assert torque[0] == pytest.approx(2.0 * 4000.0 * b[1] ** 2 * normal_body[0], abs=1e-18)
+    assert torque @ normal_body >= 0.0
 
 
 @given(fields, st.floats(-1e-2, 1e-2))
@@ -73,6 +94,24 @@ class TestFlights:
         """The gravity gradient holds it back by a fraction of a degree."""
         pitch_deg = np.degrees([pitch(c) for c in run.c_body_from_orbit[-1000:]])
         np.testing.assert_allclose(pitch_deg, np.degrees(0.5), atol=0.5)
+
+
+@pytest.mark.parametrize("law", [dual_spin, pitch_wheel])
+def test_at_a_quarter_turn_of_pitch_the_wheel_is_turned_to_the_normal_too(bench, turned, law):
+    """Without rates and at their own pitch only the coil along the wheel acts, against the lean."""
+    orbit, k_a = bench.Orbit(), 4000.0
+    own = {
+        "dual_spin": DualSpinGains(pitch_rad=0.5 * pi),
+        "pitch_wheel": PitchWheelGains(pitch_rad=0.5 * pi, unload_per_s=0.0),
+    }
+    driven = Wheel((0.0, 0.0, 1.0), 2e-4, 2e-3, 0.12, 0.0, 0.0, tick_s=1.0, stale_ticks=10)
+    settings = bench.config(bench.Body(INERTIA, WHEEL, driven=driven), 1.0, own)
+    c = turned((0, 0, 1), 90.0) @ turned((1, 0, 0), 5.0)
+    c_body_from_eci = c @ orbit.c_orbit_from_eci(700.0)
+    inputs = bench.inputs_at(orbit, 700, 1.0, c_body_from_eci, orbit.rate_radps * c[:, 2], None)
+    m = law(inputs._replace(wheel_nms=0.05), (), bench.setpoint(k_a=k_a), settings).m_body_am2
+    assert m[2] == pytest.approx(-2.0 * k_a * inputs.b_body_t[1] * c[0, 2], rel=1e-9)
+    assert abs(c[0, 2]) > 0.08
 
 
 @pytest.mark.parametrize("wheel_nms", [0.0, -0.05])
