@@ -1,7 +1,7 @@
 """Roll of a horizon sensor as the only measurement of a satellite with a pitch wheel near the equator."""
 
 from dataclasses import dataclass
-from math import atan2, exp
+from math import atan2, exp, pi, remainder
 
 from fsw.core.algebra.quaternion import dcm
 from fsw.core.algebra.vector import Mat3, Vec3
@@ -68,15 +68,20 @@ def filtered(
     """Roll and its rate by the fading-memory filter, from those of ``before``, ``elapsed_s`` ago.
 
     With p = exp(-bandwidth elapsed) the residual e of the predicted roll corrects the roll by (1 - p^2) e and
-    the rate by (1 - p)^2 e / elapsed.
+    the rate by (1 - p)^2 e / elapsed. Residual and roll are wrapped to +-pi.
 
     Source: Morrison 1969, the fading-memory polynomial filter of degree one.
     """
     old, rate = before
     p = exp(-bandwidth_radps * elapsed_s)
     ahead = old + rate * elapsed_s
-    residual = roll - ahead
-    return ahead + (1.0 - p * p) * residual, rate + (1.0 - p) ** 2 * residual / elapsed_s
+    residual = wrapped(roll - ahead)
+    return wrapped(ahead + (1.0 - p * p) * residual), rate + (1.0 - p) ** 2 * residual / elapsed_s
+
+
+def wrapped(angle_rad: float) -> float:
+    """The same angle, from -pi to pi."""
+    return remainder(angle_rad, 2.0 * pi)
 
 
 def horizon_roll(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:

@@ -42,6 +42,18 @@ def test_the_filter_follows_a_steady_rate_exactly_and_smooths_a_jump():
     assert (roll, rate) == pytest.approx((0.01 * (1 - p * p), 0.01 * (1 - p) ** 2))
 
 
+@pytest.mark.parametrize("rate", [0.05, -0.05])
+def test_the_filter_follows_a_turn_through_half_a_turn_back(rate):
+    """The sensor's angle jumps by a whole turn there; the body does not."""
+    state = (3.0, rate) if rate > 0.0 else (-3.0, rate)
+    begun = state[0]
+    for step in range(1, 200):
+        shown = np.remainder(begun + rate * step + np.pi, 2.0 * np.pi) - np.pi
+        state = filtered(shown, state, 1.0, 0.2)
+        assert abs(state[0]) <= np.pi
+        assert state[1] == pytest.approx(rate, rel=1e-9)
+
+
 @pytest.mark.parametrize("value", [0.0, -1.0, 101.0, float("nan")])
 def test_a_bandwidth_out_of_range_is_named(value):
     with pytest.raises(ValueError, match="bandwidth_radps must be"):
