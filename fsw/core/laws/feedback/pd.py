@@ -44,10 +44,16 @@ def pd_dipole(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, k_w: fl
 def integrate_error(
     integral_s: Vec3, error: Vec3, b_body_t: Vec3, k_i: float, tick_s: float, mean_dipole_am2: float
 ) -> Vec3:
-    """The integral I + S h, h a tick, limited where k_i |b| |I| is the mean dipole that the coils give."""
-    grown = add(integral_s, scale(tick_s, error))
-    demanded_am2 = k_i * norm(b_body_t) * norm(grown)
-    return grown if demanded_am2 <= mean_dipole_am2 else scale(mean_dipole_am2 / demanded_am2, grown)
+    """The integral I + S h, h a tick, limited as by ``bounded_integral``."""
+    return bounded_integral(add(integral_s, scale(tick_s, error)), b_body_t, k_i, mean_dipole_am2)
+
+
+def bounded_integral(integral_s: Vec3, b_body_t: Vec3, k_i: float, mean_dipole_am2: float) -> Vec3:
+    """The integral, limited where k_i |b| |I| is the mean dipole that the coils give."""
+    demanded_am2 = k_i * norm(b_body_t) * norm(integral_s)
+    if demanded_am2 <= mean_dipole_am2:
+        return integral_s
+    return scale(mean_dipole_am2 / demanded_am2, integral_s)
 
 
 def pd(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
@@ -64,10 +70,14 @@ def pd(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConf
 
 
 def pd_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The same law far from the goal: an error that does not vanish upside down, the integral frozen."""
+    """The same law far from the goal: an error that does not vanish upside down, the integral frozen.
+
+    It is limited here too: k_i may have been raised since it grew.
+    """
     integral_s = _integral(memory)
     if not inputs.attitude.valid:
         return Demand(memory=integral_s)
+    integral_s = bounded_integral(integral_s, inputs.b_body_t, setpoint.k_i, config.mean_dipole_am2)
     return _demand(inputs, far_error(inputs.attitude.q_body_from_orbit), integral_s, setpoint)
 
 

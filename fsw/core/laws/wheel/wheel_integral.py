@@ -4,7 +4,7 @@ from math import sin
 
 from fsw.core.algebra.quaternion import dcm
 from fsw.core.algebra.vector import ZERO, Vec3, add
-from fsw.core.laws.feedback.pd import integrate_error
+from fsw.core.laws.feedback.pd import bounded_integral, integrate_error
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.wheel.dual_spin import pitch, pitch_dipole
 from fsw.core.laws.wheel.roll_yaw import can_hold, pitch_holding_dipole, roll_yaw
@@ -55,9 +55,12 @@ def wheel_integral(inputs: LawInput, memory: Memory, setpoint: Setpoint, config:
 
 
 def wheel_integral_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The same far from the goal, the integral frozen."""
+    """The same far from the goal, the integral frozen, and limited as the gain is now."""
     integral_s = _integral(memory)
-    return _demand(inputs, integral_s, setpoint) if can_hold(inputs, config) else Demand(memory=integral_s)
+    if not can_hold(inputs, config):
+        return Demand(memory=integral_s)
+    held = bounded_integral(integral_s, inputs.b_body_t, 2.0 * setpoint.k_i, config.mean_dipole_am2)
+    return _demand(inputs, held, setpoint)
 
 
 def _demand(inputs: LawInput, integral_s: Vec3, setpoint: Setpoint) -> Demand:
