@@ -11,8 +11,9 @@ With d = 2 vec(z^-1 q) and M the torque of the last tick's dipole, limited to wh
 
     z' = 1/2 z (0, w + 2 a d),   w' = M / J + w0 w x e3 + a^2 d,   m = -k_w b x w - k_a b x E,   E = 4 qv.
 
-Its error is critically damped, with bandwidth a. As it knows the torque it does not lag as the filter of
-``output_feedback`` does; for a body that is not a sphere the gyroscopic and gravity torques are its error.
+Its error is critically damped, with bandwidth a, for any a and tick: a step takes the d of its end. As it
+knows the torque it does not lag as the filter of ``output_feedback`` does; for a body that is not a sphere
+the gyroscopic and gravity torques are its error.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1: the vertical after Bushenkov, Ovchinnikov, Smirnov 2002; the
 law without a rate after Reyhanoglu, Drakunov 2008 and Reyhanoglu, Ton, Drakunov 2009. The review prints no
@@ -22,7 +23,15 @@ with a target.
 
 from dataclasses import dataclass
 
-from fsw.core.algebra.quaternion import Quaternion, canonical, conjugate, multiply, normalise, rotate
+from fsw.core.algebra.quaternion import (
+    Quaternion,
+    canonical,
+    conjugate,
+    from_small_rotation,
+    multiply,
+    normalise,
+    rotate,
+)
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, dot, scale, unit
 from fsw.core.laws.feedback.output_feedback import MAX_BANDWIDTH_RADPS
 from fsw.core.laws.feedback.pd import far_error, pd_dipole
@@ -44,9 +53,14 @@ class VerticalGains:
     axis_3: float = 0.0
 
     def __post_init__(self) -> None:
-        """Raises ValueError: no axis."""
-        if not any((self.axis_1, self.axis_2, self.axis_3)):
-            raise ValueError("axis_1, axis_2 and axis_3 must not all be 0")
+        """Raises ValueError: no direction."""
+        if self.axis_body == ZERO:
+            raise ValueError("axis_1, axis_2 and axis_3 must give a direction, neither zero nor immense")
+
+    @property
+    def axis_body(self) -> Vec3:
+        """Unit vector."""
+        return unit((self.axis_1, self.axis_2, self.axis_3))
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,10 +97,9 @@ def sphere_vertical(inputs: LawInput, memory: Memory, setpoint: Setpoint, config
     if not inputs.attitude.valid:
         return Demand()
     gains: VerticalGains = config.gains["sphere_vertical"]
-    axis = unit((gains.axis_1, gains.axis_2, gains.axis_3))
     radius = rotate(inputs.attitude.q_body_from_orbit, RADIUS)
     omega = inputs.attitude.omega_body_orbit_radps
-    torque = vertical_torque(inputs.b_body_t, omega, axis, radius, setpoint.k_w, setpoint.k_a)
+    torque = vertical_torque(inputs.b_body_t, omega, gains.axis_body, radius, setpoint.k_w, setpoint.k_a)
     return Demand(torque_dipole(torque, inputs.b_body_t))
 
 
@@ -98,7 +111,10 @@ def observed(
     bandwidth_radps: float,
     tick_s: float,
 ) -> tuple[Quaternion, Vec3]:
-    """The observer's quaternion z and rate w one tick later.
+    """The observer's quaternion z and rate w one tick later, by an implicit step.
+
+    With h the tick, y = z turned by h w and e = 2 vec(y^-1 q), d at the end of the tick is e / (1 + a h)^2:
+    z is y turned by a h (2 + a h) d, and w changes by h (dOmega/dt + a^2 d). Both poles are 1 / (1 + a h).
 
     Args:
         followed: z.
@@ -108,11 +124,13 @@ def observed(
         bandwidth_radps: a.
         tick_s: length of a tick.
     """
-    _, d1, d2, d3 = canonical(multiply(conjugate(followed), q_body_from_orbit))
-    d, a = scale(2.0, (d1, d2, d3)), bandwidth_radps
-    t1, t2, t3 = scale(0.5 * tick_s, add(rate_radps, scale(2.0 * a, d)))
-    turned = normalise(multiply(followed, (1.0, t1, t2, t3)))
-    return turned, add(rate_radps, scale(tick_s, add(change_radps2, scale(a * a, d))))
+    part = bandwidth_radps * tick_s
+    moved = multiply(followed, from_small_rotation(scale(tick_s, rate_radps)))
+    _, e1, e2, e3 = canonical(multiply(conjugate(moved), q_body_from_orbit))
+    d = scale(2.0 / (1.0 + part) ** 2, (e1, e2, e3))
+    faster = scale(tick_s, add(change_radps2, scale(bandwidth_radps**2, d)))
+    turned = multiply(moved, from_small_rotation(scale(part * (2.0 + part), d)))
+    return normalise(turned), add(rate_radps, faster)
 
 
 def sphere_output(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:

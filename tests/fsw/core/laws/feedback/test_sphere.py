@@ -86,6 +86,20 @@ def test_the_observer_finds_a_rate_that_it_was_not_told():
     assert w == pytest.approx(omega, rel=1e-3)
 
 
+@pytest.mark.parametrize("bandwidth_radps", [2e-3, 0.02, 0.3, 2.0, 20.0, 100.0])
+@pytest.mark.parametrize("tick_s", [0.1, 1.0, 10.0])
+def test_it_follows_with_any_bandwidth_at_any_tick(bandwidth_radps, tick_s):
+    """From an error of half a turn, a sphere that turns freely, orbit left out."""
+    q, z, w, omega = (0.0, 0.6, 0.8, 0.0), (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (1e-3, -2e-3, 3e-3)
+    half = 0.5 * tick_s * np.linalg.norm(omega)
+    turn = (np.cos(half), *(np.sin(half) * np.array(omega) / np.linalg.norm(omega)))
+    for _ in range(300 + int(60.0 / (bandwidth_radps * tick_s))):
+        q = normalise(multiply(q, turn))
+        z, w = observed(z, w, q, (0.0, 0.0, 0.0), bandwidth_radps, tick_s)
+    assert w == pytest.approx(omega, rel=1e-3)
+    assert abs(np.dot(z, q)) == pytest.approx(1.0, abs=1e-6)
+
+
 def test_it_knows_a_push_at_once():
     """Of a torque that it is told the rate has no lag."""
     q, z, w = (1.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
@@ -135,8 +149,9 @@ def test_what_the_coils_cannot_give_is_not_remembered(bench, turned):
 
 
 def test_gains_out_of_range_are_refused():
-    with pytest.raises(ValueError, match="axis_1"):
-        VerticalGains(0.0, 0.0, 0.0)
+    for axis_1 in (0.0, 1e-200, 1e200):
+        with pytest.raises(ValueError, match="axis_1"):
+            VerticalGains(axis_1, 0.0, 0.0)
     for bandwidth_radps in (0.0, -1.0, 101.0):
         with pytest.raises(ValueError, match="must be above 0 and at most 100"):
             ObserverGains(bandwidth_radps)
