@@ -15,6 +15,8 @@ from fsw.core.laws.wheel.effort import Effort, check_frequency, compensated_torq
 
 LEAST_DETERMINANT = 1e-15
 """Of the matrix scaled to a trace of one, below which it counts as singular."""
+MOST_RATIO = 100.0
+"""Full torque of the wheel over that of the coils across the field, from which the effort counts no more."""
 FLOORS = (0.05, 0.1, 0.2, 0.4, 0.8)
 """Values of the floor, as fractions of the torque that the coils can give across the field."""
 
@@ -114,7 +116,8 @@ def affordable(
 
     If they cannot, the floor rises through ``FLOORS`` until they can: what costs most, the torque along a
     field nearly normal to the wheel, is given up first. What even the highest floor leaves too large is
-    scaled down. None without a field.
+    scaled down. None without a field. In the effort a wheel counts as at most
+    ``MOST_RATIO`` times stronger than the coils: beyond that the matrix becomes singular.
 
     Args:
         torque_body_nm: T, body axes.
@@ -124,10 +127,11 @@ def affordable(
         most_nm: largest torque on the wheel.
     """
     most_across_nm = most_am2 * norm(b_body_t)
+    full_nm = min(most_nm, MOST_RATIO * most_across_nm)
     effort = None
     for floor in (0.0, *FLOORS):
         shares = least_effort(
-            torque_body_nm, b_body_t, (axis_body,), most_am2, (most_nm,), floor * most_across_nm
+            torque_body_nm, b_body_t, (axis_body,), most_am2, (full_nm,), floor * most_across_nm
         )
         if shares is None:
             continue

@@ -81,6 +81,26 @@ def test_what_is_affordable_is_within_the_limits(torque, field, axis, size):
     assert abs(wheel_nm) <= MOST_NM[0] * (1.0 + 1e-9)
 
 
+@pytest.mark.parametrize("most_nm", [2e-3, 0.05, 1.0, 50.0])
+@pytest.mark.parametrize("cosine", [1.0, 0.1, 0.003])
+def test_a_wheel_however_strong_and_weak_coils_give_the_whole_torque_if_they_can(most_nm, cosine):
+    """Coils of 1.6e-6 N m across the field, which they have to give 7e-7 N m of."""
+    along = np.array(B) / np.linalg.norm(B)
+    normal = np.cross(along, (1.0, 0.0, 0.0)) / np.linalg.norm(np.cross(along, (1.0, 0.0, 0.0)))
+    axis = tuple((cosine * along + np.sqrt(1.0 - cosine**2) * normal).tolist())
+    torque = tuple((5e-7 * cosine * along + 4e-7 * np.cross(along, normal) - 1e-7 * normal).tolist())
+    effort = affordable(torque, B, axis, 0.06, most_nm)
+    given = np.cross(effort.m_body_am2, B) - effort.wheel_torque_nm * np.array(axis)
+    assert np.linalg.norm(effort.m_body_am2) <= 0.06
+    assert given == pytest.approx(torque, abs=1e-11)
+
+
+def test_a_strong_wheel_is_used_up_to_its_own_limit():
+    along = np.array(B) / np.linalg.norm(B)
+    effort = affordable(tuple(0.04 * along), B, tuple(along), 0.06, 0.05)
+    assert effort.wheel_torque_nm == pytest.approx(-0.04, rel=1e-6)
+
+
 def test_what_costs_too_much_is_given_up_along_the_field_first():
     """The wheel nearly normal to the field: across it the torque is still almost all there."""
     along = np.array(B) / np.linalg.norm(B)
