@@ -35,11 +35,12 @@ from fsw.core.algebra.vector import (
     transpose,
 )
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
+from fsw.core.laws.motion import wheel_momentum
 from fsw.core.laws.optimal.lqr import (
     STEPS,
     LqrGains,
     dipole,
-    expected_torque,
+    exact_torque,
     latitude_argument,
     middles,
     node,
@@ -151,7 +152,7 @@ def lqr_disturbed(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: 
         return Demand(memory=memory)
     gains: DisturbedGains = config.gains["lqr_disturbed"]
     u_rad = latitude_argument(reference)
-    known = expected_torque(inputs, table)
+    known = exact_torque(inputs, reference, table, config)
     torques = _learn(inputs, _recalled(memory), u_rad, gains.learning, reference, config)
     gain = table.gains[node(u_rad)]
     given = dipole(gain[:, :9].ravel().tolist(), inputs.attitude, known)
@@ -220,7 +221,7 @@ def _expected_change(
         reference.radius_m,
         config.inertia_kgm2,
         config.inertia_inverse,
-        config.wheel_body_nms,
+        wheel_momentum(inputs, config),
     )
     shape = functions(u_rad)
     c1, c2, c3 = (sum(shape[k] * torques[3 * k + axis] for k in range(FUNCTIONS)) for axis in range(3))

@@ -18,11 +18,13 @@ from typing import Protocol
 import numpy as np
 
 from fsw.core.algebra.quaternion import Quaternion, dcm
-from fsw.core.algebra.vector import Mat3, Vec3, add, scale, transform, transpose
+from fsw.core.algebra.vector import Mat3, Vec3, add, cross, scale, transform, transpose
 from fsw.core.estimation.attitude import Attitude
 from fsw.core.laws.feedback.pd import pd_far
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
+from fsw.core.laws.motion import driven_momentum
 from fsw.core.laws.plan.riccati import (
+    E3,
     Array,
     NotHeldError,
     Problem,
@@ -205,6 +207,15 @@ def by_schedule(inputs: LawInput, table: Schedule | None, config: ControlConfig)
 def expected_torque(inputs: LawInput, table: Schedule) -> Vec3:
     """The constant torque that the plan allows for, body axes, N m."""
     return add(inputs.torque_body_nm, table.problem.resting_nm)
+
+
+def exact_torque(inputs: LawInput, reference: Reference, table: Schedule, config: ControlConfig) -> Vec3:
+    """The same with that of a driven wheel on the nominal attitude, -w0 e3 x h, body axes, N m.
+
+    For a law that has this wheel in its motion; in the tables there is only the one at constant speed.
+    """
+    turned_nm = scale(-reference.orbit_rate_radps, cross(E3, driven_momentum(inputs, config)))
+    return add(expected_torque(inputs, table), turned_nm)
 
 
 def without_memory(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:

@@ -26,10 +26,11 @@ import numpy as np
 from fsw.core.algebra.quaternion import Quaternion, canonical, dcm
 from fsw.core.algebra.vector import Mat3, Vec3, skew
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
+from fsw.core.laws.motion import wheel_momentum
 from fsw.core.laws.optimal.lqr import (
     STEPS,
     LqrGains,
-    expected_torque,
+    exact_torque,
     latitude_argument,
     node,
     within,
@@ -187,7 +188,7 @@ def sdre(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlCo
         return Demand()
     attitude, step_s = inputs.attitude, table.problem.step_s
     _, q1, q2, q3 = canonical(attitude.q_body_from_orbit)
-    torque = expected_torque(inputs, table)
+    torque = exact_torque(inputs, reference, table, config)
     state = np.array((*attitude.omega_body_orbit_radps, 2.0 * q1, 2.0 * q2, 2.0 * q3, *torque))
     step = _step(memory, inputs.tick, config.tick_s / step_s)
     if step is None:
@@ -196,7 +197,8 @@ def sdre(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlCo
         if ahead is None:
             return Demand()
         end = (node(latitude_argument(reference)) + HORIZON_STEPS) % STEPS
-        gains = solution(table, state[:6], torque, ahead.b_orbit_t, end, reference.orbit_rate_radps, config)
+        body = replace(config, wheel_body_nms=wheel_momentum(inputs, config))
+        gains = solution(table, state[:6], torque, ahead.b_orbit_t, end, reference.orbit_rate_radps, body)
         if gains is None:
             return Demand()
         memory, step = (float(inputs.tick), *gains.ravel().tolist()), 0

@@ -133,7 +133,7 @@ def case_of(
 
     return Tumbling(
         inertia_kgm2=array(config.inertia_kgm2),
-        wheel_body_nms=array(config.wheel_body_nms),
+        wheel_body_nms=array(moving.wheel_body_nms),
         omega_body_radps=array(moving.omega_body_radps),
         c_body_from_eci=array(dcm(moving.q_body_from_eci)),
         b_eci_t=array(reference.b_eci_t),

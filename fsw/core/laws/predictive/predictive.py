@@ -16,6 +16,7 @@ Source: Tavares et al. (ConSat, PoSAT-1), eq. 5 and 18.
 from fsw.core.algebra.quaternion import dcm
 from fsw.core.algebra.vector import Mat3, Vec3, add, cross, dot, scale, sub, transform, transpose
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
+from fsw.core.laws.motion import wheel_momentum
 from fsw.core.orbit.earth import MU_M3PS2
 from fsw.core.orbit.ephemeris import Reference
 
@@ -38,7 +39,7 @@ def free_rate_change(
         radius_m: distance from the Earth's centre.
         inertia_kgm2: J, body axes.
         inertia_inverse: J^-1.
-        wheel_body_nms: h, constant momentum of a wheel, body axes.
+        wheel_body_nms: h, momentum of wheels, body axes.
     """
     e1, _, e3 = transpose(c_body_from_orbit)
     omega = add(omega_body_orbit_radps, scale(orbit_rate_radps, e3))
@@ -57,7 +58,7 @@ def free_change(inputs: LawInput, reference: Reference, config: ControlConfig) -
         reference.radius_m,
         config.inertia_kgm2,
         config.inertia_inverse,
-        config.wheel_body_nms,
+        wheel_momentum(inputs, config),
     )
 
 

@@ -143,7 +143,7 @@ def spin_relay(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Con
     moving = motion(inputs, config)
     if moving is None:
         return Demand()
-    wanted_nms = _wanted_spin_nms(setpoint, gains, config)
+    wanted_nms = _wanted_spin_nms(moving, setpoint, gains, config)
     direction, body = _errors(moving, wanted_nms, gains)
     return Demand(relay_dipole(inputs.b_body_t, add(direction, body), config.mean_dipole_am2))
 
@@ -164,7 +164,7 @@ def three_term(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Con
     moving = motion(inputs, config)
     if moving is None:
         return Demand()
-    direction, body = _errors(moving, _wanted_spin_nms(setpoint, gains, config), gains)
+    direction, body = _errors(moving, _wanted_spin_nms(moving, setpoint, gains, config), gains)
     return Demand(
         three_term_dipole(
             inputs.b_body_t,
@@ -179,11 +179,13 @@ def three_term(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Con
     )
 
 
-def _wanted_spin_nms(setpoint: Setpoint, gains: SpinAxisGains, config: ControlConfig) -> float:
+def _wanted_spin_nms(
+    moving: InertialMotion, setpoint: Setpoint, gains: SpinAxisGains, config: ControlConfig
+) -> float:
     """h_ref = e . (J e w_ref + h_wheel)."""
     e = AXES[gains.number]
     spinning = scale(setpoint.spin_radps, transform(config.inertia_kgm2, e))
-    return dot(e, add(spinning, config.wheel_body_nms))
+    return dot(e, add(spinning, moving.wheel_body_nms))
 
 
 def _errors(moving: InertialMotion, wanted_nms: float, gains: SpinAxisGains) -> tuple[Vec3, Vec3]:
