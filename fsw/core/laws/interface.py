@@ -147,9 +147,9 @@ class Demand(NamedTuple):
     """The demand of a law: a mean dipole, an angular impulse to be given at the next opportunity, or a pulse.
 
     An impulse law leaves the dipole to the actuator, which chooses the one with the least energy left. A law
-    of pulses says in each tick which one is to be fired in answer to it; ``NO_PULSE``: none. With any of
-    them, ``wheel_torque_nm`` is the torque on the wheel about its axis, the opposite of that on the body;
-    None: the wheel coasts.
+    of pulses says in each tick which one is to be fired in answer to it; ``NO_PULSE``: none, and
+    no dipole of a continuous driver. With any of them, ``wheel_torque_nm`` is the torque on the wheel about
+    its axis, the opposite of that on the body; None: the wheel coasts.
     """
 
     m_body_am2: Vec3 = ZERO

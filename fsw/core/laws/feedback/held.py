@@ -4,8 +4,10 @@
     m = -(1 / share) b x (k_w Omega + k_a S),     share = act_s / (measure_s + act_s).
 
 ``pd_held`` has no time of measuring. ``pd_apart`` measures as long as it acts, by default, so that the field
-of the coils has died away when b is taken. On average a held dipole is half of ``act_s`` old. For each
-length of the cycle there are gains that are small enough (``sim/design/feedback/held.py``).
+of the coils has died away when b is taken. While it measures no pulse begins, none is owed, and the residual
+dipole is not taken off; one that began before is driven to its end. On average a held dipole is half of
+``act_s`` old. For each length of the cycle there are gains that are small enough
+(``sim/design/feedback/held.py``).
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Celani 2016a (the dipole constant over a control
 interval of several steps) and Celani 2016b (measuring and acting apart). The share, which keeps the mean
@@ -18,6 +20,7 @@ from fsw.core.algebra.quaternion import dcm
 from fsw.core.algebra.vector import ZERO, Vec3, scale
 from fsw.core.laws.feedback.pd import attitude_error, far_error, pd_dipole
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
+from fsw.core.laws.plan.pulse_model import NO_PULSE
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +90,8 @@ def _cycle(
         begun, computed, held = memory[0], memory[1], (memory[2], memory[3], memory[4])
     if not computed and (inputs.tick - begun) * config.tick_s >= measure_s:
         computed, held = 1.0, scale((measure_s + act_s) / act_s, _pd(inputs, setpoint, near=near))
-    return Demand(held, memory=(begun, computed, *held))
+    now = (begun, computed, *held)
+    return Demand(held, memory=now) if computed else Demand(memory=now, pulse=NO_PULSE)
 
 
 def _pd(inputs: LawInput, setpoint: Setpoint, *, near: bool) -> Vec3:

@@ -11,7 +11,7 @@ from fsw.core.laws import by_mode
 from fsw.core.laws.damping.damping import bdot, bdot_dipole, rate_damping, rate_damping_dipole
 from fsw.core.laws.feedback.pd import attitude_error, far_error, pd_dipole
 from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, LawInput, OwnLaw, Setpoint
-from fsw.core.laws.plan.pulse_model import Pulse
+from fsw.core.laws.plan.pulse_model import NO_PULSE, Pulse
 from fsw.core.laws.predictive.predictive import predictive
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.ephemeris import Reference
@@ -134,11 +134,21 @@ def with_a_residual_dipole(mode, law, attitude=KNOWN):
     return tuple(by_mode.demand(mode, case, (), setpoint, CONFIG) for case in (known, given))
 
 
-@pytest.mark.parametrize("law", [law for law in LAWS if law not in ("predictive", "phasing")])
+@pytest.mark.parametrize("law", [law for law in LAWS if law not in ("predictive", "phasing", "pd_apart")])
 @pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
 def test_from_every_dipole_the_residual_one_is_taken_off(law, mode):
     known, without = with_a_residual_dipole(mode, law)
     assert known == without._replace(m_body_am2=sub(without.m_body_am2, RESIDUAL_AM2))
+
+
+@pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
+@pytest.mark.parametrize("measuring", [True, False])
+def test_while_a_law_measures_its_coils_are_off_and_then_it_is_taken_off(mode, measuring):
+    setpoint = PD._replace(law="pd_apart")
+    memory = (0.0, 0.0 if measuring else 1.0, *(ZERO if measuring else (0.1, -0.2, 0.3)))
+    demand = by_mode.demand(mode, inputs()._replace(dipole_body_am2=RESIDUAL_AM2), memory, setpoint, CONFIG)
+    taken = ZERO if measuring else sub((0.1, -0.2, 0.3), RESIDUAL_AM2)
+    assert demand == Demand(taken, memory=memory, pulse=NO_PULSE if measuring else None)
 
 
 @pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])

@@ -3,7 +3,7 @@
 import pytest
 
 from fsw.core.laws.table import LAWS
-from fsw.wire.messages import CoilDipole, Mode
+from fsw.wire.messages import CoilDipole, CoilFire, Mode
 
 REVIEW = [name for name, row in LAWS.items() if 4 <= row.number < 40 or 100 <= row.number < 110]
 CONTINUOUS = {"driver": "continuous", "max_dipole_am2": 5.0, "on_fraction": 0.8}
@@ -40,3 +40,16 @@ def test_each_law_drives_the_coils(run, name):
 def test_a_law_that_remembers_when_knows_the_tick(run, name):
     world, _ = run(name)
     assert world.state.memory[0] == world.state.tick
+
+
+def test_while_pd_apart_measures_no_pulse_is_fired(make_world):
+    """Nor is what was asked for before it: pulses are owed for a long time otherwise."""
+    world = make_world(knowledge="perfect", control={"law": "pd_apart"}, coils={"backoff_s": 20.0})
+    fired = {True: 0, False: 0}
+    for _ in range(600):
+        sent = world.step()
+        if world.state.modes.mode in (Mode.ACQUIRE, Mode.POINT):
+            acting = world.state.memory[1] == 1.0
+            fired[acting] += sum(isinstance(message, CoilFire) for message in sent)
+    assert fired[True] > 5
+    assert fired[False] == 0

@@ -24,6 +24,7 @@ def dipoles(bench, turned):
             inputs = bench.inputs_at(orbit, tick, 1.0, c, np.array([1e-3, 2e-3, -1e-3]), None)
             demand = LAWS[name].point(inputs, memory, point, settings)
             memory = demand.memory
+            assert (demand.pulse is None) == (demand.memory[1] == 1.0)
             rows.append((demand.m_body_am2, pd(inputs, (), point, settings).m_body_am2))
         return rows
 
