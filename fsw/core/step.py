@@ -14,7 +14,7 @@ from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.estimation.estimator import anew, predict, update
 from fsw.core.estimation.orbital_attitude import orbital_attitude, perfect_attitude
 from fsw.core.estimation.parameters import NOTHING
-from fsw.core.estimation.samples import usable_field, usable_sun
+from fsw.core.estimation.samples import sun_direction, usable_field
 from fsw.core.fdir import fdir
 from fsw.core.fdir.fdir import Evidence
 from fsw.core.fdir.observation import Observation
@@ -210,7 +210,7 @@ def _law_input(
         b_body_t,
         sample,
         state.sample,
-        usable_sun(readings),
+        sun_direction(readings, config.estimator.mekf.cells),
         reference,
         constant_torque(parameters, reference),
         parameters.dipole_body_am2,

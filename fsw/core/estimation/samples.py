@@ -1,6 +1,6 @@
 """Which samples of the boards the filter may use."""
 
-from fsw.core.algebra.vector import Vec3, scale
+from fsw.core.algebra.vector import Vec3, scale, unit
 from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.cells.coarse_sun import coarse_sun
 from fsw.core.gate.readings import Readings
@@ -54,3 +54,9 @@ def usable_cells(readings: Readings, cells: CellSet | None) -> tuple[float | Non
 def sensed_sun(readings: Readings, cells: CellSet | None) -> Vec3 | None:
     """The direction of the Sun from its sensor, or the coarse one of the cells; None where there is none."""
     return usable_sun(readings) if cells is None else coarse_sun(usable_cells(readings, cells), cells)
+
+
+def sun_direction(readings: Readings, cells: CellSet | None) -> Vec3 | None:
+    """``sensed_sun`` for a law: where the Sun is, not how bright; the coarse one becomes a unit vector."""
+    sun = sensed_sun(readings, cells)
+    return sun if sun is None or cells is None else unit(sun)

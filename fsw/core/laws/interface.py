@@ -27,10 +27,11 @@ class LawInput(NamedTuple):
 
     ``b_body_t`` is the modelled field where the attitude is valid, otherwise the last measured one;
     ``sample`` and ``before`` are the last usable field sample of this tick and of the tick before;
-    ``sun_body`` is the measured Sun direction, None where there is none; ``reference`` is orbit, field and
-    Sun as modelled, None where no orbit is known; ``torque_body_nm`` is the estimated torque on the nominal
-    attitude, including that of an inertia other than the table's, and ``dipole_body_am2`` the estimated
-    residual dipole, which ``by_mode`` subtracts from a demanded dipole, not the law; ``tick`` is this tick;
+    ``sun_body`` is the measured Sun direction, with Sun cells the coarse one of three lit ones, None where
+    there is none; ``reference`` is orbit, field and Sun as modelled, None where no orbit is known;
+    ``torque_body_nm`` is the estimated torque on the nominal attitude, including that of an inertia other
+    than the table's, and ``dipole_body_am2`` the estimated residual dipole, which ``by_mode`` subtracts from
+    a demanded dipole, not the law; ``tick`` is this tick;
     ``ephemeris`` gives orbit and field at later times; ``wait_ticks`` are the ticks until each coil may be
     fired as far as is known, 0: in answer to this tick, ``NEVER``: it has a fault; ``wheel_nms`` is the
     momentum of a driven wheel relative to the body, along its axis, None where there is none or it is not

@@ -2,9 +2,10 @@
 
 import pytest
 
-from fsw.core.estimation.samples import coils_idle, usable_field, usable_sun
+from fsw.core.estimation.cells.cell_set import CellSet
+from fsw.core.estimation.samples import coils_idle, sun_direction, usable_field, usable_sun
 from fsw.core.gate.readings import NOTHING
-from fsw.wire.messages import CoilStatus, MagField, SunVector
+from fsw.wire.messages import CoilStatus, MagField, SunCells, SunVector
 
 IDLE = CoilStatus(0, 2, 0, 0, 98000, 0)
 FIELD, SUN = MagField(1, 17000.0, -23000.0, 31000.0), SunVector(1, 0.6, -0.48, 0.64)
@@ -68,3 +69,33 @@ def test_sun():
     assert usable_sun(readings_with(sun=SunVector(1, 0.6, -0.48, 0.64))) == (0.6, -0.48, 0.64)
     assert usable_sun(readings_with(sun=SunVector(0, 0.6, -0.48, 0.64))) is None
     assert usable_sun(readings_with(sun=None)) is None
+
+
+class TestSunDirection:
+    """Three cells, one along each axis, the second of half the current."""
+
+    CELLS = CellSet(
+        normals_body=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+        full_sun=(1.0, 0.5, 1.0),
+        shades=((), (), ()),
+        dark=0.05,
+        sigma=0.01,
+        excess_sigma=0.1,
+        gain_sigma=0.05,
+        light_sigma=0.1,
+        albedo=0.3,
+    )
+    LIT = SunCells(1, 0.6, 0.25, 0.7, 0.0, 0.0, 0.0)
+
+    def test_that_of_the_sensor_is_as_it_was_measured(self):
+        assert sun_direction(readings_with(), None) == (0.6, -0.48, 0.64)
+        assert sun_direction(readings_with(sun=None), None) is None
+
+    def test_that_of_three_cells_has_unit_length(self):
+        sun = sun_direction(readings_with(sun=None, cells=self.LIT), self.CELLS)
+        assert sun == pytest.approx(tuple(c / 1.1**0.5 for c in (0.6, 0.5, 0.7)), rel=1e-12)
+
+    def test_without_three_that_may_be_used_there_is_none(self):
+        assert sun_direction(readings_with(cells=self.LIT, unusable_cells=(1,)), self.CELLS) is None
+        assert sun_direction(readings_with(cells=self.LIT._replace(cell_1=0.0)), self.CELLS) is None
+        assert sun_direction(readings_with(cells=None), self.CELLS) is None

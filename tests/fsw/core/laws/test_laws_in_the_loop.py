@@ -9,16 +9,21 @@ REVIEW = [name for name, row in LAWS.items() if 4 <= row.number < 40 or 100 <= r
 CONTINUOUS = {"driver": "continuous", "max_dipole_am2": 5.0, "on_fraction": 0.8}
 
 
+AXES = [[sign * float(row == column) for column in range(3)] for row in range(3) for sign in (1.0, -1.0)]
+CELLS = {"sensors": {"cells": {"normals": AXES}}, "initial": {"axis": [0.5, -0.7, 0.4], "angle_deg": 70.0}}
+
+
 @pytest.fixture(scope="module")
 def run(make_world):
     """A world some ticks into ACQUIRE, and the dipoles asked for there."""
 
-    def fly(name, ticks=10):
+    def fly(name, ticks=10, **settings):
         world = make_world(
             knowledge="perfect",
             control={"law": name, "spin_radps": 0.001},
             coils=CONTINUOUS,
             body={"inertia_kgm2": [1.02, 1.85, 1.95], "wheel_nms": [0.0, 0.0, 0.05]},
+            **settings,
         )
         while world.state.modes.mode is not Mode.ACQUIRE:
             world.step()
@@ -33,6 +38,12 @@ def run(make_world):
 def test_each_law_drives_the_coils(run, name):
     world, dipoles = run(name)
     assert world.state.modes.mode is Mode.ACQUIRE
+    assert any((message.m_x, message.m_y, message.m_z) != (0.0, 0.0, 0.0) for message in dipoles)
+
+
+@pytest.mark.parametrize("name", ["sun_pointing", "sun_panels", "sun_critical"])
+def test_the_laws_to_the_sun_drive_the_coils_by_sun_cells_too(run, name):
+    _, dipoles = run(name, **CELLS)
     assert any((message.m_x, message.m_y, message.m_z) != (0.0, 0.0, 0.0) for message in dipoles)
 
 
