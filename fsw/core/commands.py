@@ -128,7 +128,8 @@ def _law(state: FlightState, message: TcLaw, situation: Situation) -> Outcome:
 
 
 def _can_fly(law: LawEntry, config: ControlConfig) -> bool:
-    return is_met(law.needs, config.pulsed, config.wheel_body_nms, config.wheel is not None)
+    axis_body = None if config.wheel is None else config.wheel.axis_body
+    return is_met(law.needs, config.pulsed, config.wheel_body_nms, axis_body)
 
 
 def _spin(state: FlightState, message: TcSpin, situation: Situation) -> Outcome:

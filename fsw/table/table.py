@@ -13,6 +13,7 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
+from fsw.core.algebra.vector import unit
 from fsw.core.laws.entry import LawEntry, Need, is_met
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.tle import tle_epoch_unix_s
@@ -65,6 +66,7 @@ UNMET = {
     Need.PULSES: "with coils.driver = 'continuous': it plans pulses; allowed is coils.driver = 'pulsed'",
     Need.MOMENTUM: "with body.wheel_nms[2] <= 0: it holds the axis of a wheel that turns along body axis 3",
     Need.DRIVEN_WHEEL: "without [wheel]: it asks for torques of a driven wheel",
+    Need.PITCH_WHEEL: "without a [wheel] along body axis 3: it asks for torques of one about that axis",
 }
 
 
@@ -147,7 +149,8 @@ class FlightTable(Section):
 
     def meets(self, law: LawEntry) -> bool:
         """Whether this satellite has what a law needs."""
-        return is_met(law.needs, self.coils.driver == "pulsed", self.body.wheel_nms, self.wheel is not None)
+        axis_body = None if self.wheel is None else unit(self.wheel.axis)
+        return is_met(law.needs, self.coils.driver == "pulsed", self.body.wheel_nms, axis_body)
 
     @property
     def epoch_unix_s(self) -> int:

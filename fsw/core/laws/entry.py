@@ -39,6 +39,12 @@ class Need(StrEnum):
     """It holds the axis of a wheel that turns at constant speed along body axis 3."""
     DRIVEN_WHEEL = "driven_wheel"
     """It asks for torques of a wheel."""
+    PITCH_WHEEL = "pitch_wheel"
+    """It asks for torques of a wheel along body axis 3."""
+
+
+LEAST_COSINE = 0.99
+"""Of the angle between a wheel along body axis 3 and that axis."""
 
 
 class LawEntry(NamedTuple):
@@ -57,19 +63,20 @@ class LawEntry(NamedTuple):
     open_loop: bool = False
 
 
-def is_met(need: Need, pulsed: bool, wheel_body_nms: Vec3, has_driven_wheel: bool) -> bool:
+def is_met(need: Need, pulsed: bool, wheel_body_nms: Vec3, driven_axis_body: Vec3 | None) -> bool:
     """Whether a satellite has what a law needs.
 
     Args:
         need: of the law.
         pulsed: whether its coils are pulsed.
         wheel_body_nms: constant momentum of a wheel, body axes.
-        has_driven_wheel: whether it has a wheel that can be driven.
+        driven_axis_body: unit vector along a wheel that can be driven; None: there is none.
     """
     met = {
         Need.NOTHING: True,
         Need.PULSES: pulsed,
         Need.MOMENTUM: wheel_body_nms[2] > 0.0,
-        Need.DRIVEN_WHEEL: has_driven_wheel,
+        Need.DRIVEN_WHEEL: driven_axis_body is not None,
+        Need.PITCH_WHEEL: driven_axis_body is not None and driven_axis_body[2] >= LEAST_COSINE,
     }
     return met[need]

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from fsw.core.algebra.vector import unit
 from fsw.core.laws.entry import Aim, is_met
 from fsw.core.laws.table import LAWS
 from fsw.input.schema import Nested
@@ -37,7 +38,8 @@ def is_suited(law: str, scenario: Scenario, driver: str = "pulsed") -> bool:
     if law not in LAWS:
         return True
     table = flight_table(scenario)
-    return is_met(LAWS[law].needs, driver == "pulsed", table.body.wheel_nms, table.wheel is not None)
+    axis_body = None if table.wheel is None else unit(table.wheel.axis)
+    return is_met(LAWS[law].needs, driver == "pulsed", table.body.wheel_nms, axis_body)
 
 
 def check_suited(laws: Sequence[str], name: str, over: Nested) -> None:

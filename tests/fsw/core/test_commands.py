@@ -37,7 +37,7 @@ from fsw.wire.messages import (
 )
 
 TICK = 40
-WHEEL = Wheel((0.0, 0.6, 0.8), 1e-4, 1e-3, 0.06, 1e-7, 1e-5, 1.0, 4)
+WHEEL = Wheel((0.0, 0.0, 1.0), 1e-4, 1e-3, 0.06, 1e-7, 1e-5, 1.0, 4)
 
 
 @pytest.fixture(scope="module")
@@ -153,6 +153,11 @@ class TestLaw:
     @pytest.mark.parametrize("law", ["dual_spin", "wheel_relay", "two_coils", "pitch_wheel"])
     def test_that_holds_or_drives_a_wheel_is_none_of_a_satellite_without(self, refused, law):
         refused(TcAckResult.UNKNOWN, TcLaw(LAWS[law].number))
+
+    def test_that_turns_the_body_about_axis_3_is_none_of_another_wheel(self, refused, config):
+        wheel = replace(WHEEL, axis_body=(0.0, 1.0, 0.0))
+        across = replace(config, control=replace(config.control, wheel=wheel))
+        refused(TcAckResult.UNKNOWN, TcLaw(LAWS["pitch_wheel"].number), config=across)
 
     @pytest.mark.parametrize("number", [*sorted(set(range(256)) - set(LAW_NAMES))[::23], 255])
     def test_that_is_not_there(self, refused, number):

@@ -34,6 +34,15 @@ def test_without_it_there_is_none():
     assert bare.crc != table().crc
 
 
+@pytest.mark.parametrize("axis", [[0.0, 3.0, 4.0], [0.0, 0.0, -1.0]])
+def test_a_law_that_turns_the_body_about_axis_3_needs_it_there(axis):
+    table({"axis": [0.0, 0.1, 1.0]}, control={"law": "pitch_wheel"})
+    with pytest.raises(
+        TableError, match=r"'pitch_wheel' is not allowed without a \[wheel\] along body axis 3"
+    ):
+        table({"axis": axis}, control={"law": "pitch_wheel"})
+
+
 @pytest.mark.parametrize("key", GIVEN)
 def test_every_key_counts_in_the_crc(key):
     changed = [0.0, 0.0, 1.0] if key == "axis" else 1.01 * GIVEN[key]

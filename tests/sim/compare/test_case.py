@@ -54,7 +54,7 @@ def test_laws_and_aims_by_name_in_the_order_of_the_table():
     sun = tuple(law for law, entry in LAWS.items() if entry.aim is Aim.SUN)
     assert "sun_pointing" in sun
     assert chosen_laws(scenario, "sun,bdot") == ("bdot", *sun)
-    wheels = (Need.MOMENTUM, Need.DRIVEN_WHEEL)
+    wheels = (Need.MOMENTUM, Need.DRIVEN_WHEEL, Need.PITCH_WHEEL)
     assert chosen_laws(scenario, "all") == tuple(law for law in LAWS if LAWS[law].needs not in wheels)
 
 

@@ -8,12 +8,10 @@ from math import sin
 
 from fsw.core.algebra.quaternion import dcm
 from fsw.core.algebra.vector import ZERO, Vec3, add, dot
+from fsw.core.laws.entry import LEAST_COSINE
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.wheel.dual_spin import pitch, pitch_dipole, twice_roll, wheel_axis_dipole
 from fsw.core.laws.wheel.effort import check_frequency
-
-LEAST_COSINE = 0.99
-"""Of the angle between the wheel and body axis 3."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,6 +23,6 @@ LAWS: dict[str, LawEntry] = {
         121, Aim.THREE_AXIS, wheel_allocation, wheel_allocation, AllocationGains, needs=Need.DRIVEN_WHEEL
     ),
     "pitch_wheel": LawEntry(
-        122, Aim.THREE_AXIS, pitch_wheel, pitch_wheel, PitchWheelGains, needs=Need.DRIVEN_WHEEL
+        122, Aim.THREE_AXIS, pitch_wheel, pitch_wheel, PitchWheelGains, needs=Need.PITCH_WHEEL
     ),
 }
