@@ -9,7 +9,7 @@ import numpy as np
 from fsw.core.laws.spin.relay_stages import StageGains
 from fsw.core.laws.spin.roll_precession import RollGains
 from fsw.core.laws.spin.spin import SpinGains
-from fsw.core.laws.spin.spin_axis import SpinAxisGains, ThreeTermGains
+from fsw.core.laws.spin.spin_axis import SpinAxisGains, TargetGains, ThreeTermGains
 from fsw.core.laws.spin.stepped_precession import StepGains
 from fsw.core.laws.spin.target_precession import PrecessionGains
 from sim.campaign.claim import Claim, Study
@@ -75,7 +75,7 @@ THOMSON = replace(
     k_w=6e6,
     orbits=4.0,
 )
-RELAY = replace(TUMBLING, law="spin_relay", gains=SpinAxisGains(3.0, *TARGET), orbits=2.5, most_am2=1.0)
+RELAY = replace(TUMBLING, law="spin_relay", gains=TargetGains(3.0, *TARGET), orbits=2.5, most_am2=1.0)
 THREE_TERM = replace(TUMBLING, law="three_term", gains=ThreeTermGains(3.0, *TARGET), orbits=2.0)
 STAGES = replace(TUMBLING, law="relay_stages", gains=StageGains(3.0, *TARGET), orbits=4.0, most_am2=3.0)
 

@@ -16,10 +16,17 @@ class SwitchedGains:
     Attributes:
         below_radps: apparent rate |db/dt| / |b| under which the gain is ``factor`` k_w, rad/s.
         factor: of the gain below that rate.
+
+    Raises:
+        ValueError: one of them is negative.
     """
 
     below_radps: float = 0.01
     factor: float = 5.0
+
+    def __post_init__(self) -> None:
+        if not (self.below_radps >= 0.0 and self.factor >= 0.0):
+            raise ValueError("below_radps and factor of bdot_switched must not be negative")
 
 
 def rate_damping_dipole(b_body_t: Vec3, omega_body_radps: Vec3, k_w: float) -> Vec3:

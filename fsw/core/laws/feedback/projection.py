@@ -18,11 +18,17 @@ NT = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class WeightGains:
-    """Weights of the torque error about the body axes; unless all are positive they are 1 / J_ii."""
+    """Weights of the torque error about the body axes, all positive; all 0: they are 1 / J_ii."""
 
     q1: float = 0.0
     q2: float = 0.0
     q3: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Raises ValueError: some weights without the others, or a negative one."""
+        weights = (self.q1, self.q2, self.q3)
+        if any(weights) and not min(weights) > 0.0:
+            raise ValueError("q1, q2 and q3 must all be positive, or all 0")
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +122,7 @@ def _weighted(inputs: LawInput, error: Vec3, setpoint: Setpoint, config: Control
     gains: WeightGains = config.gains["pd_weighted"]
     (j1, _, _), (_, j2, _), (_, _, j3) = config.inertia_kgm2
     weights = (gains.q1, gains.q2, gains.q3)
-    if min(weights) <= 0.0:
+    if not any(weights):
         weights = (1.0 / j1, 1.0 / j2, 1.0 / j3)
     torque = reference_torque(inputs.b_body_t, inputs.attitude.omega_body_orbit_radps, error, setpoint)
     return Demand(torque_dipole(weighted_projection(torque, inputs.b_body_t, weights), inputs.b_body_t))

@@ -19,10 +19,17 @@ class HandOverGains:
     Attributes:
         share_w: of k_w.
         share_a: of k_a.
+
+    Raises:
+        ValueError: one of them is negative.
     """
 
     share_w: float = 0.15
     share_a: float = 0.3
+
+    def __post_init__(self) -> None:
+        if not (self.share_w >= 0.0 and self.share_a >= 0.0):
+            raise ValueError("share_w and share_a of field_tracking_pd must not be negative")
 
 
 def field_tracking_dipole(error_t: Vec3, error_rate_tps: Vec3, k_w: float, k_a: float) -> Vec3:

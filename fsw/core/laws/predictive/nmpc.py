@@ -70,10 +70,18 @@ class NmpcReferenceGains(NmpcGains):
 
     Attributes:
         steepness: K of g = (2 m_max / pi) arctan(K b x omega), s / T.
+
+    Raises:
+        ValueError: it is negative, or what ``NmpcGains`` refuses.
     """
 
     weight: float = 1e-4
     steepness: float = 3e6
+
+    def __post_init__(self) -> None:
+        NmpcGains.__post_init__(self)
+        if not self.steepness >= 0.0:
+            raise ValueError(f"steepness must not be negative, not {self.steepness:g}")
 
 
 def nmpc_damping(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:

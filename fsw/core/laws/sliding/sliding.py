@@ -24,9 +24,11 @@ from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Set
 LEAST_REACH = 1e-6
 
 
-def _check_reach(reach: float) -> None:
+def _check(reach: float, slope: float) -> None:
     if reach < LEAST_REACH:
         raise ValueError(f"reach must be at least {LEAST_REACH:g}")
+    if not slope > 0.0:
+        raise ValueError("slope must be greater than 0")
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +39,8 @@ class SlidingGains:
     slope: float = 0.5
 
     def __post_init__(self) -> None:
-        """Raises ValueError: no way to the surface."""
-        _check_reach(self.reach)
+        """Raises ValueError: no way to the surface, or one on which the attitude does not decay."""
+        _check(self.reach, self.slope)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,8 +53,10 @@ class SlidingIntegralGains:
     lost: float = 0.0
 
     def __post_init__(self) -> None:
-        """Raises ValueError: no way to the surface, on which the bound of the integrals depends."""
-        _check_reach(self.reach)
+        """Raises ValueError: as for ``SlidingGains``, on which the bounds depend, or a negative integral."""
+        _check(self.reach, self.slope)
+        if not (self.integral >= 0.0 and self.lost >= 0.0):
+            raise ValueError("integral and lost must not be less than 0")
 
 
 def surface(momentum_nms: Vec3, attitude: Vec3, stiffness_nms: float) -> Vec3:

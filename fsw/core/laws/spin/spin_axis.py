@@ -50,9 +50,17 @@ class SpinAxisGains(TargetGains):
 
     Attributes:
         k_h: 1 / (T^2 s): the error decays at about k_h |b|^2.
+
+    Raises:
+        ValueError: a gain that is not positive, or what ``TargetGains`` refuses.
     """
 
     k_h: float = 1.0e6
+
+    def __post_init__(self) -> None:
+        TargetGains.__post_init__(self)
+        if not self.k_h > 0.0:
+            raise ValueError(f"k_h must be positive, not {self.k_h:g}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,9 +69,17 @@ class ThreeTermGains(SpinAxisGains):
 
     Attributes:
         k_spin: gain of the momentum about the axis, 1 / (T^2 s).
+
+    Raises:
+        ValueError: it is negative, or what ``SpinAxisGains`` refuses.
     """
 
     k_spin: float = 1.0e6
+
+    def __post_init__(self) -> None:
+        SpinAxisGains.__post_init__(self)
+        if not self.k_spin >= 0.0:
+            raise ValueError(f"k_spin of three_term must not be negative, not {self.k_spin:g}")
 
 
 def relay_dipole(b_body_t: Vec3, error_body_nms: Vec3, m_am2: float) -> Vec3:
@@ -139,7 +155,7 @@ def three_term_dipole(
 
 def spin_relay(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The relay law on L1 + L2, each coil at the mean dipole it can give."""
-    gains: SpinAxisGains = config.gains["spin_relay"]
+    gains: TargetGains = config.gains["spin_relay"]
     moving = motion(inputs, config)
     if moving is None:
         return Demand()
@@ -180,7 +196,7 @@ def three_term(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Con
 
 
 def _wanted_spin_nms(
-    moving: InertialMotion, setpoint: Setpoint, gains: SpinAxisGains, config: ControlConfig
+    moving: InertialMotion, setpoint: Setpoint, gains: TargetGains, config: ControlConfig
 ) -> float:
     """h_ref = e . (J e w_ref + h_wheel)."""
     e = AXES[gains.number]
@@ -188,7 +204,7 @@ def _wanted_spin_nms(
     return dot(e, add(spinning, moving.wheel_body_nms))
 
 
-def _errors(moving: InertialMotion, wanted_nms: float, gains: SpinAxisGains) -> tuple[Vec3, Vec3]:
+def _errors(moving: InertialMotion, wanted_nms: float, gains: TargetGains) -> tuple[Vec3, Vec3]:
     """L1 and L2, body axes."""
     target_body = rotate(moving.q_body_from_eci, gains.target_eci)
     direction = sub(scale(abs(wanted_nms), target_body), moving.momentum_body_nms)

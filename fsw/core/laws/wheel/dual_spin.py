@@ -18,10 +18,17 @@ class DualSpinGains:
     Attributes:
         pitch_rad: angle about the orbit normal, body from orbit.
         stiffness: gain of that angle over 2 k_a.
+
+    Raises:
+        ValueError: a negative stiffness.
     """
 
     pitch_rad: float = 0.0
     stiffness: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not self.stiffness >= 0.0:
+            raise ValueError(f"stiffness of dual_spin must not be negative, not {self.stiffness:g}")
 
 
 def wheel_axis_dipole(

@@ -90,6 +90,9 @@ def test_beyond_it_they_are_refused(gain, value):
         ("sliding", "reach", 0.0),
         ("sliding_integral", "reach", 0.0),
         ("sliding_integral", "reach", -1.0),
+        ("sliding", "slope", 0.0),
+        ("sliding", "slope", -0.5),
+        ("sliding_integral", "slope", -0.5),
         ("output_feedback", "bandwidth_radps", -1.0),
         ("output_feedback", "bandwidth_radps", 1e15),
         ("sphere_output", "bandwidth_radps", 1e15),
@@ -98,3 +101,30 @@ def test_beyond_it_they_are_refused(gain, value):
 def test_what_a_law_cannot_fly_with_is_refused(law, gain, value):
     with pytest.raises(TableError, match=f"{law}: {gain} must be"):
         control(law, gains={law: {gain: value}})
+
+
+@pytest.mark.parametrize(
+    ("law", "gain"),
+    [
+        ("bdot_switched", "below_radps"),
+        ("bdot_switched", "factor"),
+        ("field_tracking_pd", "share_w"),
+        ("field_tracking_pd", "share_a"),
+        ("reorientation", "k_h"),
+        ("target_precession", "k_h"),
+        ("three_term", "k_h"),
+        ("three_term", "k_spin"),
+        ("sliding_integral", "integral"),
+        ("sliding_integral", "lost"),
+        ("dual_spin", "stiffness"),
+        ("nmpc_reference", "steepness"),
+    ],
+)
+def test_a_gain_that_would_drive_the_satellite_away_is_refused(law, gain):
+    with pytest.raises(TableError, match=rf"{law}: .*{gain}\b.* must"):
+        control(law, gains={law: {gain: -0.5}})
+
+
+def test_a_gain_that_a_law_does_not_use_is_no_key():
+    with pytest.raises(TableError, match="k_h"):
+        control("spin_relay", gains={"spin_relay": {"k_h": 1e6}})

@@ -112,10 +112,15 @@ def test_with_equal_weights_or_no_lambda_the_law_is_pd(bench, settings, inputs):
     assert bare.m_body_am2 == pytest.approx(plain, rel=1e-9)
 
 
-@pytest.mark.parametrize("given_in_part", [(), (1.0, 0.0, 0.0), (1.0, 2.0, -1.0)])
-def test_unless_all_weights_are_given_they_are_the_inverse_moments(bench, settings, inputs, given_in_part):
+@pytest.mark.parametrize("weights", [(10.0, 0.0, 0.0), (1.0, 2.0, -1.0), (-1.0, -1.0, -1.0)])
+def test_some_weights_without_the_others_are_refused(weights):
+    with pytest.raises(ValueError, match="q1, q2 and q3 must all be positive, or all 0"):
+        WeightGains(*weights)
+
+
+def test_unless_weights_are_given_they_are_the_inverse_moments(bench, settings, inputs):
     point = bench.setpoint(k_w=K_W, k_a=K_A)
-    own = weighted(inputs, (), point, settings("pd_weighted", WeightGains(*given_in_part)))
+    own = weighted(inputs, (), point, settings("pd_weighted", WeightGains()))
     given_ = weighted(inputs, (), point, settings("pd_weighted", WeightGains(1.0, 0.1, 1.0 / 10.5)))
     other = weighted(inputs, (), point, settings("pd_weighted", WeightGains(1.0, 1.0, 1.0)))
     assert own.m_body_am2 == pytest.approx(given_.m_body_am2, rel=1e-12)

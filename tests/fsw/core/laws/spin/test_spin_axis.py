@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from fsw.core.laws.interface import FieldSample
 from fsw.core.laws.spin.spin_axis import (
     SpinAxisGains,
+    TargetGains,
     ThreeTermGains,
     relay_dipole,
     reorientation,
@@ -22,7 +23,7 @@ TARGET = (0.3, -0.5, 0.8)
 INERTIA = np.diag([2.0, 1.0, 1.0])
 AIM = {"axis": 1.0, "target_1": TARGET[0], "target_2": TARGET[1], "target_3": TARGET[2]}
 GAINS = {
-    "spin_relay": SpinAxisGains(**AIM),
+    "spin_relay": TargetGains(**AIM),
     "reorientation": SpinAxisGains(**AIM, k_h=3e6),
     "three_term": ThreeTermGains(**AIM),
 }
