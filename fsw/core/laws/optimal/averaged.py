@@ -1,17 +1,18 @@
-"""Asymptotic periodic regulator: one cost matrix for the whole orbit, and the field as it is measured.
+"""Asymptotic periodic regulator: one cost matrix for the whole orbit, and the field as it is now.
 
 As effort becomes costly, the periodic solution of the Riccati equation tends to a constant one, that of the
 averaged reach of the coils,
 
     P = Q + F^T P (E + R P)^-1 F,     R = mean over an orbit of N N^T / effort,   N(b) = -G [b x].
 
-The law puts the measured field into N: nothing is tabulated over the orbit, and nothing depends on where the
-satellite is,
+The law puts the present field into N: nothing is tabulated over the orbit, and nothing but that field depends
+on where the satellite is,
 
     m = -(N^T P N + effort E)^-1 N^T (P (F x + G d) + S d),   S = Fc^T (S + P G),   Fc = (E + R P)^-1 F.
 
 x = (Omega, theta) and the torque d in orbital axes, as in ``riccati``. The source has the integral of the
-error as states; here the torque that the filter estimates takes its place.
+error as states; here the torque that the filter estimates takes its place. The field is
+the modelled one, as for every law with a valid attitude.
 
 Source: Psiaki 2001, as in Ovchinnikov, Roldugin 2019, section 3.2, where the functional is damaged; the
 discrete form is derived here from the step of ``riccati``.

@@ -36,7 +36,7 @@ class NmpcGains:
     """Horizon and weights of the plan.
 
     Attributes:
-        horizon_s: how far it looks at most, s; the dipole is held over a twelfth of it.
+        horizon_s: how far it looks at most, or twelve ticks, s; the dipole is held over a twelfth of that.
         weight: of the energy along the plan, relative to that at its end.
         effort: of |m|^2, J / (A m^2)^2.
         gamma: of |omega|^2 in the rule, J s^2, relative to the mean moment of inertia; negative: no rule.
@@ -108,7 +108,8 @@ def _planned(
         return Demand()
     horizon_s = gains.horizon_s
     if rate_radps * horizon_s > STEPS * pi:
-        horizon_s = STEPS * max(config.tick_s, pi / rate_radps)
+        horizon_s = STEPS * (pi / rate_radps)
+    horizon_s = max(horizon_s, STEPS * config.tick_s)
     step_s = horizon_s / STEPS
     known = len(memory) == 2 + 3 * STEPS
     age_s = (inputs.tick - memory[0]) * config.tick_s if known else inf

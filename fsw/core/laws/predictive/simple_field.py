@@ -4,7 +4,7 @@
 
     B(u) = b0 + b1 cos u + b2 sin u + b3 cos 2u + b4 sin 2u,   u the orbit angle from now on,
 
-in orbital axes, and the plan is made along the fit. ``mpc_held``: the measured field, in orbital axes, is
+in orbital axes, and the plan is made along the fit. ``mpc_held``: the present field, in orbital axes, is
 held over a short horizon with the disturbance, and no model of the field ahead is needed; the plan is renewed
 at each step. Both end in the cost of the periodic regulator; equations and feedback are those of ``mpc``.
 

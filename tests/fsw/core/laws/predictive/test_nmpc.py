@@ -1,6 +1,7 @@
 """Nonlinear prediction for damping: it damps, and its rule saves most of the search."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -92,6 +93,13 @@ def test_a_dipole_is_given_for_a_step_and_then_planned_anew(asked, law, name, ki
     memory = asked(law, name, kind).memory
     assert asked(law, name, kind, memory, tick=13).memory == memory
     assert asked(law, name, kind, memory, tick=14).memory[0] == 14
+
+
+@BOTH
+def test_no_step_of_a_plan_is_shorter_than_a_tick(asked, law, name, kind):
+    """The dipole cannot change within it: a horizon of a second is one of twelve ticks of a second."""
+    short, whole = (asked(law, name, partial(kind, horizon_s=horizon_s)) for horizon_s in (1.0, 12.0))
+    assert short == whole
 
 
 def test_the_reference_begins_at_the_damping_laws_course(flight, monkeypatch):
