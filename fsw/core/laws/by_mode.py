@@ -46,7 +46,11 @@ def _forms(setpoint: Setpoint, config: ControlConfig) -> LawEntry | OwnLaw:
 
 
 def _net(wanted: Demand, inputs: LawInput) -> Demand:
-    """The dipole wanted, less the residual dipole, which turns the satellite as the coils do."""
+    """The dipole wanted, less the residual dipole, which turns the satellite as the coils do.
+
+    So too where a law wants none for lack of what it needs: nothing is gained by leaving the residual dipole
+    to act.
+    """
     if wanted.impulse_body_nms is not None or wanted.pulse is not None or not inputs.attitude.valid:
         return wanted
     return wanted._replace(m_body_am2=sub(wanted.m_body_am2, inputs.dipole_body_am2))

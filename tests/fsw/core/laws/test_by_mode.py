@@ -142,6 +142,13 @@ def test_from_every_dipole_the_residual_one_is_taken_off(law, mode):
 
 
 @pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
+def test_it_is_taken_off_too_where_a_law_lacks_what_it_needs_beside_the_attitude(mode):
+    in_the_shadow = inputs()._replace(sun_body=None, dipole_body_am2=RESIDUAL_AM2)
+    demand = by_mode.demand(mode, in_the_shadow, (), PD._replace(law="sun_pointing"), CONFIG)
+    assert demand == Demand(sub(ZERO, RESIDUAL_AM2))
+
+
+@pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
 @pytest.mark.parametrize("measuring", [True, False])
 def test_while_a_law_measures_its_coils_are_off_and_then_it_is_taken_off(mode, measuring):
     setpoint = PD._replace(law="pd_apart")
