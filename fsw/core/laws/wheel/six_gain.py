@@ -41,8 +41,8 @@ def six_gain_dipole(b_body_t: Vec3, motion: RollYaw, k1: float, k3: float, gains
         m3 = k1 (b2 roll + k2 b1 yaw) - k3 (b1 roll' - k4 b2 yaw') - k1 k5 (b1 roll - k6 b2 yaw)
 
     The first part turns the momentum back, the second takes energy away, the third is a spring: with k6 = 1
-    its torque has a potential. k2 = k5 = 0, k4 = 1 is the law of ``dual_spin``. For yaw unknown, as with a
-    horizon sensor alone, k2 = k6 = 0.
+    its torque has a potential. k2 = k5 = 0, k4 = 1 is that of ``dual_spin`` at pitch zero. For yaw unknown,
+    as with a horizon sensor alone, k2 = k6 = 0.
 
     Args:
         b_body_t: field in body axes, T.
