@@ -162,6 +162,8 @@ class CoilDriver:
         request = Request(fire.coil, fire.level, fire.duration_ms, fire.seq, fire.tick)
         if reason := self._guard.ask(request, self._answered):
             self._refuse(fire, reason)
+        else:  # a pulse may end before the next tick, in which all coils are off again
+            self._held, self._held_ticks = (fire.coil, fire.level), 0
 
     def drive(self) -> Drive:
         """What is driven over the tick that has begun; ends the time for requests that answer it."""
@@ -190,8 +192,8 @@ class CoilDriver:
         driven = (guard.coil, guard.level) if guard.on else None
         if driven == self._held:
             self._held_ticks += elapsed
-        else:  # a pulse begins with a tick, but may end within one
-            self._held, self._held_ticks = driven, elapsed if driven else 0
+        else:  # a pulse ends, and may end within a tick
+            self._held, self._held_ticks = driven, 0
         if read_back is None or self._held_ticks * UNITS_PER_TICK < self._limits.units(read_back.settle_ms):
             return frames
         level = guard.level if guard.on else 0

@@ -186,6 +186,31 @@ def test_a_driver_that_is_stuck_on_is_named_and_nothing_more_is_accepted(rig, fi
     assert rig.drive.level == 2, "once the current is gone it is obeyed again"
 
 
+@pytest.mark.parametrize("duration_ms", [1000, 400], ids=["a tick", "less"])
+def test_the_current_of_a_pulse_that_ends_with_its_first_tick_is_no_short(read, rig_with, duration_ms):
+    """It is read before the switch-off, and until it has settled nothing is said of it."""
+    rig = Rig(read)
+    rig.board = CoilDriver(CoilLimits(1, backoff_ms=0), ReadBack(NOMINAL_A))
+    rig.run_to(20)
+    for seq in range(3):
+        pulse = rig_with(CoilLimits(1), rig.tick + 1).fire(level=3, duration_ms=duration_ms, seq=seq)
+        rig.step(pulse.encode())
+        assert rig.drive.level == 3, "the request before it has left no fault"
+        rig.step(physics=lambda nominal_a: 0.3)
+        rig.step()
+    assert rig.events == []
+    rig.step(physics=lambda nominal_a: 0.3)
+    assert rig.events == [(29, OFF, 300)], "a current that stays is one"
+
+
+def test_a_pulse_that_the_dead_man_ends_in_its_first_tick_is_no_short(rig, fire):
+    rig.run_to(100)
+    rig.step(fire(100))
+    rig.board.silence()
+    rig.step(physics=lambda nominal_a: 0.2)
+    assert rig.events == [(101, CoilEventCode.DEAD_MAN, 0)]
+
+
 def test_a_fault_is_in_the_heartbeat(rig):
     rig.run_to(60, physics=lambda nominal_a: 0.2)
     (beat,) = [m for m in rig.step(physics=lambda nominal_a: 0.2) if isinstance(m, CoilHeartbeat)]
