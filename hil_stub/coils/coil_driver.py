@@ -153,11 +153,11 @@ class CoilDriver:
         if frame.can_id != CoilFire.ID:
             return
         fire = CoilFire.decode(frame.data)
-        if self._answered is None:
-            self._refuse(fire, CoilRefusedReason.WRONG_TICK)
-            return
         if self._shorted:
             self._refuse(fire, CoilRefusedReason.COIL_ON)
+            return
+        if self._answered is None:
+            self._refuse(fire, CoilRefusedReason.WRONG_TICK)
             return
         request = Request(fire.coil, fire.level, fire.duration_ms, fire.seq, fire.tick)
         if reason := self._guard.ask(request, self._answered):

@@ -211,6 +211,15 @@ def test_a_pulse_that_the_dead_man_ends_in_its_first_tick_is_no_short(rig, fire)
     assert rig.events == [(101, CoilEventCode.DEAD_MAN, 0)]
 
 
+def test_of_a_board_that_is_shorted_no_request_is_told_another_reason(rig, fire):
+    """Neither that it answers another tick, nor that it comes when none can be answered."""
+    rig.run_to(200, physics=lambda nominal_a: 0.2)
+    rig.step(fire(150), physics=lambda nominal_a: 0.2)
+    rig.board.receive(fire(200))
+    said = rig.step(physics=lambda nominal_a: 0.2)
+    assert [m.reason for m in said if hasattr(m, "reason")] == [Reason.COIL_ON] * 2
+
+
 def test_a_fault_is_in_the_heartbeat(rig):
     rig.run_to(60, physics=lambda nominal_a: 0.2)
     (beat,) = [m for m in rig.step(physics=lambda nominal_a: 0.2) if isinstance(m, CoilHeartbeat)]
