@@ -53,6 +53,12 @@ def test_every_orbit_and_body_has_a_finite_schedule(inclination_deg, inertia):
         assert np.abs(found.gains).max() > 0.0
 
 
+@pytest.mark.parametrize("momentum_nms", [0.15, 1.0, 20.0])
+def test_the_momentum_of_an_ordinary_wheel_keeps_no_table_from_loading(momentum_nms):
+    found = schedules(body={"wheel_nms": [0.0, 0.0, momentum_nms]})
+    assert all(np.isfinite(one.gains).all() for one in found.values())
+
+
 def test_the_scheduled_laws_are_laws_with_the_weights_they_need():
     for law in SCHEDULERS:
         assert {"rate", "effort"} <= {field.name for field in fields(LAWS[law].gains)}

@@ -19,7 +19,7 @@ section 3.2. The review has no equation: the factors are derived here from the r
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import sqrt
+from math import sqrt, tau
 
 import numpy as np
 
@@ -36,7 +36,7 @@ from fsw.core.laws.optimal.lqr import (
     within,
 )
 from fsw.core.laws.plan.orbit_ahead import orbit_ahead
-from fsw.core.laws.plan.riccati import E1, E3, TAYLOR, Array, Problem, Schedule, backward
+from fsw.core.laws.plan.riccati import E1, E3, Array, Problem, Schedule, backward, stepped
 
 SEQUENCE = 3
 """Number of solutions, each along the motion of the one before."""
@@ -89,17 +89,6 @@ def _skew(v: object) -> Array:
     return np.array(skew((x, y, z)))
 
 
-def stepped(motion: Array, step_s: float) -> Array:
-    """(F G), 6 x 9, of a constant A over a step, as ``riccati.free_step``."""
-    change = np.zeros((9, 9))
-    change[:6] = motion
-    term = whole = np.eye(9)
-    for power in range(1, TAYLOR):
-        term = term @ change * (step_s / power)
-        whole = whole + term
-    return np.asarray(whole[:6], dtype=np.float64)
-
-
 def solution(
     table: Schedule,
     start: Array,
@@ -111,7 +100,8 @@ def solution(
 ) -> Array | None:
     """Gains of the first steps, from (Omega, theta, d) to the dipole, body axes, (APPLIED_STEPS, 3, 9).
 
-    None where there is no solution: the motion from far off, under gains for another, may diverge.
+    None where there is no solution: the body turns around within a step, for which A is held, or the motion,
+    which begins under gains for another, diverges.
 
     Args:
         table: the periodic regulator, whose cost is the terminal cost.
@@ -122,6 +112,8 @@ def solution(
         orbit_rate_radps: w0.
         config: the body and the bound of the dipole.
     """
+    if float(np.linalg.norm(start[:3])) * table.problem.step_s > tau:
+        return None
     with np.errstate(over="ignore", invalid="ignore"):
         gains, last = _sequence(table, start, torque_nm, b_orbit_t, end_node, orbit_rate_radps, config)
     return gains[:APPLIED_STEPS] if np.isfinite(last).all() else None

@@ -20,6 +20,7 @@ The joining of steps in pairs and the doubling: Chu, Fan, Lin, Wang 2004 (period
 """
 
 from dataclasses import dataclass, field
+from math import frexp
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,8 +34,8 @@ DOUBLINGS = 8
 """The periodic solution is reached from 2^8 orbits ahead."""
 SETTLED = 1e-6
 """Largest relative change over an orbit."""
-TAYLOR = 14
-"""Terms of the exponential of a step, which is short against the free motion."""
+TAYLOR, SHORT_RAD = 14, 1.0
+"""Terms of the exponential of a step, and by how much a rate may turn in it at most."""
 
 
 class NotHeldError(Exception):
@@ -109,14 +110,29 @@ def free_step(inertia_kgm2: Mat3, wheel_body_nms: Vec3, orbit_rate_radps: float,
     e1, e3 = np.array(skew(E1)), np.array(skew(E3))
     gyroscopic = w0 * (skews(j[:, 2]) - e3 @ j) + np.array(skew(wheel_body_nms))
     gravity = 3.0 * w0**2 * (e1 @ j - skews(j[:, 0])) @ e1
-    change = np.zeros((9, 9))
-    change[:3] = np.linalg.solve(j, np.hstack([gyroscopic, w0 * gyroscopic @ e3 + gravity, np.eye(3)]))
-    change[:3, :3] -= w0 * e3
-    change[3:6, :3] = np.eye(3)
+    motion = np.zeros((6, 9))
+    motion[:3] = np.linalg.solve(j, np.hstack([gyroscopic, w0 * gyroscopic @ e3 + gravity, np.eye(3)]))
+    motion[:3, :3] -= w0 * e3
+    motion[3:, :3] = np.eye(3)
+    return stepped(motion, step_s)
+
+
+def stepped(motion: Array, step_s: float) -> Array:
+    """(F G), 6 x 9, of a constant A over a step, from d(Omega, theta)/dt = A (Omega, theta, d), 6 x 9.
+
+    Where a rate turns by more than ``SHORT_RAD``, as beside the momentum of a wheel, the series is that of a
+    half, a quarter, ... of the step, and is squared.
+    """
+    change = np.vstack([motion, np.zeros((3, 9))])
+    turn_rad = step_s * float(np.abs(motion[:3, :3]).sum(axis=1).max())
+    halvings = max(0, frexp(turn_rad / SHORT_RAD)[1])
+    short_s = step_s / 2.0**halvings
     term = whole = np.eye(9)
     for power in range(1, TAYLOR):
-        term = term @ change * (step_s / power)
+        term = term @ change * (short_s / power)
         whole = whole + term
+    for _ in range(halvings):
+        whole = whole @ whole
     return np.asarray(whole[:6], dtype=np.float64)
 
 

@@ -6,8 +6,8 @@ import pytest
 from fsw.core.algebra.quaternion import dcm, normalise
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.optimal.lqr import lqr
-from fsw.core.laws.optimal.sdre import factors, sdre, solution, stepped
-from fsw.core.laws.plan.riccati import free_step, resting_torque
+from fsw.core.laws.optimal.sdre import factors, sdre, solution
+from fsw.core.laws.plan.riccati import free_step, resting_torque, stepped
 from fsw.core.laws.predictive.predictive import free_rate_change
 from fsw.core.orbit.earth import MU_M3PS2
 

@@ -23,6 +23,7 @@ BODY = Body("off-diagonal", INERTIA, 800.0, 98.6)
 W0, B0 = BODY.rate_radps, BODY.field_t
 NO_WHEEL = (0.0, 0.0, 0.0)
 WHEEL = (0.001, -0.002, 0.003)
+FAST_WHEEL = (0.05, -0.1, 2.0)
 
 
 def orbit_field(steps, body=BODY):
@@ -50,13 +51,30 @@ def rolled(given, field, gains, x, d, change=0.0):
     return cost, x
 
 
-@pytest.mark.parametrize("wheel", [NO_WHEEL, WHEEL])
+@pytest.mark.parametrize("wheel", [NO_WHEEL, WHEEL, (0.0, 0.0, 0.02), (0.0, 0.0, 0.1), FAST_WHEEL])
 def test_a_free_step_is_the_exponential_of_the_linearised_motion(wheel):
+    """Beside a fast wheel too, with which a rate turns by many revolutions in the step."""
     to_si = np.diag([W0] * 3 + [1.0] * 3)
     motion = W0 * to_si @ linear.free_motion(Body("b", INERTIA, 800.0, 98.6, wheel)) @ np.linalg.inv(to_si)
     both = np.zeros((9, 9))
     both[:6, :6], both[:3, 6:] = motion, np.linalg.inv(np.array(INERTIA))
     assert free_step(INERTIA, wheel, W0, 100.0) == pytest.approx(expm(100.0 * both)[:6], rel=1e-10, abs=1e-12)
+
+
+@pytest.mark.parametrize("momentum_nms", [0.15, 1.0])
+def test_beside_the_momentum_of_an_ordinary_wheel_the_attitude_is_held(momentum_nms):
+    """Its motion dies away over an orbit, as much as with steps of half the length."""
+
+    def left(steps):
+        given = orbit_problem(steps, wheel=(0.0, 0.0, momentum_nms))
+        field = orbit_field(steps)
+        closed = np.eye(6)
+        for gain, b in zip(periodic(given, field)[0], field, strict=True):
+            closed = (given.free[:, :6] + given.free[:, 6:] @ np.cross(gain[:, :6].T, b).T) @ closed
+        return np.abs(np.linalg.eigvals(closed)).max()
+
+    assert left(48) < 0.97
+    assert left(48) == pytest.approx(left(96), rel=1e-3)
 
 
 @pytest.mark.parametrize("wheel", [NO_WHEEL, WHEEL])
