@@ -108,7 +108,7 @@ class CoilTable(Section):
     """The coil driver: levels per polarity and limits, or the full scale of a continuous one.
 
     ``on_fraction`` is the fraction of a tick for which a continuous driver drives, ``dipole_per_ampere_am2``
-    the dipole of a healthy coil, in A m^2 per A.
+    the dipole of a healthy coil, in A m^2 per A; the currents of pulses are at most 2047 mA.
     """
 
     driver: Literal["pulsed", "continuous"] = "pulsed"

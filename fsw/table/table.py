@@ -61,6 +61,8 @@ LATER_STEPS = (
     ("cells", "quantum_percent"),
 )
 """Steps of readings, which they do not have either."""
+MOST_READ_MA, READ_STEP_MA = 2047.0, 1.0
+"""The largest current that ``COIL_STATUS`` carries, and its step."""
 
 UNMET = {
     Need.PULSES: "with coils.driver = 'continuous': it plans pulses; allowed is coils.driver = 'pulsed'",
@@ -106,6 +108,19 @@ class FlightTable(Section):
                 2.0 * bound_nm, "from one bound of the torque, uncertainty.torque_nm, to the other"
             )
         check_bounds(self.uncertainty, ceilings)
+        return self
+
+    @model_validator(mode="after")
+    def _currents_can_be_read(self) -> Self:
+        """Otherwise the reading of a sound coil, saturated or rounded, would make it a weak one."""
+        low_ma, _, high_ma = self.coils.levels_ma
+        least_ma = 0.5 * READ_STEP_MA / (1.0 - self.fdir.weak_coil_part)
+        if self.coils.driver == "pulsed" and not least_ma <= low_ma < high_ma <= MOST_READ_MA:
+            raise ValueError(
+                f"coils.levels_am2 at coils.dipole_per_ampere_am2 = {self.coils.dipole_per_ampere_am2:g} are "
+                f"currents of {low_ma:.6g} to {high_ma:.6g} mA: allowed is {least_ma:.3g} to "
+                f"{MOST_READ_MA:g} mA, of which COIL_STATUS shows, in whole mA, that a coil is sound"
+            )
         return self
 
     @property

@@ -140,8 +140,7 @@ def _currents(scenario: Scenario) -> Iterator[str]:
     if low < LEAST_CURRENT_MA or high > MOST_CURRENT_MA:
         yield (
             f"coils.dipole_per_ampere_am2 = {scenario.coils.dipole_per_ampere_am2:g} makes the levels "
-            f"{low:.3g} to {high:.3g} mA: the read-back counts whole mA, and coils take some 10 mA to 1 A; "
-            "is it A m^2 per A?"
+            f"{low:.3g} to {high:.3g} mA: coils take some 10 mA to 1 A; is it A m^2 per A?"
         )
 
 

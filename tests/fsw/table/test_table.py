@@ -14,6 +14,7 @@ from fsw.table.config import flight_config
 from fsw.table.sections import parse_utc
 from fsw.table.table import (
     DEFAULT_EPOCH_UTC,
+    MOST_READ_MA,
     FlightTable,
     default_values,
     flight_table,
@@ -21,6 +22,7 @@ from fsw.table.table import (
     load_flight_table,
 )
 from fsw.table.uncertainty import UncertaintyTable, bounds
+from fsw.wire.messages import CoilStatus
 
 
 def default_text():
@@ -303,6 +305,33 @@ class TestEpoch:
             file = tmp_path / "t.toml"
             file.write_text(f"[time]\nepoch_utc = {written}\n", encoding="utf-8")
             assert load_flight_table(str(file)).epoch_unix_s == self.unix(2025, 3, 20, 12)
+
+
+@pytest.mark.parametrize(
+    ("coils", "allowed"),
+    [
+        ({"levels_am2": [10.0, 20.0, 40.94]}, True),
+        ({"levels_am2": [10.0, 20.0, 40.96]}, False),
+        ({"levels_am2": [0.034, 2.0, 8.0]}, True),
+        ({"levels_am2": [0.033, 2.0, 8.0]}, False),
+        ({"levels_am2": [10.0, 20.0, 90.0], "driver": "continuous", "max_dipole_am2": 90.0}, True),
+    ],
+)
+def test_currents_of_pulses_fit_into_their_report(coils, allowed):
+    """2047 mA at most; and at least so much that, rounded to 1 mA, a sound coil has 0.7 of it: 1.67 mA."""
+    if allowed:
+        assert flight_table({"coils": coils}, "table.toml").coils.levels_am2 == tuple(coils["levels_am2"])
+        return
+    said = fault({"coils": coils})
+    assert said.startswith(
+        "table.toml: coils.levels_am2 at coils.dipole_per_ampere_am2 = 20 are currents of "
+    )
+    assert "allowed is 1.67 to 2047 mA" in said
+
+
+def test_the_largest_current_is_that_of_the_report():
+    most = CoilStatus(0, 0, 0, 10**6, 0, 0, 0).encode()
+    assert CoilStatus.decode(most.data).current_ma == MOST_READ_MA
 
 
 def test_no_spin_unless_it_is_asked_for():

@@ -20,7 +20,10 @@ def test_no_scenario_that_ships_is_doubted(scenario):
     [
         ("body.inertia_kgm2=[6.7,33,33.5]", ["body.inertia_kgm2 is too large", "g m^2"]),
         ("body.inertia_kgm2=[6.7e-6,33e-6,33.5e-6]", ["body.inertia_kgm2 is too small", "kg m^2"]),
-        ("coils.levels_am2=[3,12,48]", ["too small for coils.levels_am2", "mA m^2"]),
+        (
+            "coils.levels_am2=[3,12,48] coils.dipole_per_ampere_am2=50",
+            ["too small for coils.levels_am2", "mA m^2"],
+        ),
         (
             "disturbance.torque_nm=[1e-7,0,0]",
             ["balancing the disturbance of 1e-07 N m takes 4", "A m^2 would do"],
@@ -37,7 +40,6 @@ def test_no_scenario_that_ships_is_doubted(scenario):
         ("sensors.magnetometer.saturation_nt=30000", ["saturation_nt = 30000", "field over the poles"]),
         ("initial.rate_degps=[60,0,0]", ["initial.rate_degps is 60 deg/s"]),
         ("control.leak_s=30", ["control.leak_s = 30", "103 s"]),
-        ("coils.dipole_per_ampere_am2=0.0005", ["coils.dipole_per_ampere_am2 = 0.0005", "mA"]),
         ("disturbance.residual_dipole_am2=[0.002,0,0]", ["residual_dipole_am2 is off by 0.002", "= 0"]),
         ("sensors.magnetometer.bias_nt=[0,5000,0]", ["bias_nt is off by 5e+03", "= 500"]),
         ("coils.dipole_scale=[1,1.2,1]", ["coils.dipole_scale is off by 0.2", "coil_gain_percent"]),
@@ -46,8 +48,17 @@ def test_no_scenario_that_ships_is_doubted(scenario):
     ids=lambda value: value if isinstance(value, str) else "",
 )
 def test_a_mistake_is_named_with_key_and_figure(setting, words):
-    told = found("cubesat3u", setting)
+    told = found("cubesat3u", *setting.split())
     assert any(all(word in doubt for word in words) for doubt in told), told
+
+
+def test_currents_that_no_coil_takes():
+    """Of a continuous driver; those of pulses must fit into their report."""
+    continuous = ("coils.driver=continuous", "coils.max_dipole_am2=0.1")
+    told = found("cubesat3u", *continuous, "coils.dipole_per_ampere_am2=0.0005")
+    assert any("coils.dipole_per_ampere_am2 = 0.0005 makes" in doubt and "mA" in doubt for doubt in told), (
+        told
+    )
 
 
 def test_a_magnetometer_beyond_its_range_by_its_offset():

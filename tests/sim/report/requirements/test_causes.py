@@ -79,7 +79,7 @@ FOUND = {
     "any_law": replace(sound(), torque_nm=(3e-7, 3e-7, 3e-7)),
     "disturbance": sound(*DIPOLE, "coils.levels_am2=[0.5,2,11]"),
     "unstable": sound("control.law=pd", "control.k_w=1e9"),
-    "coarse": replace(sound("coils.levels_am2=[20,40,80]"), levels=(40, 5, 0)),
+    "coarse": replace(sound("coils.levels_am2=[20,30,40]"), levels=(40, 5, 0)),
     "weak": replace(sound("coils.levels_am2=[0.25,1.0,4.0]"), levels=(0, 3, 50)),
     "not_settled": replace(sound(), trend=(16.0, 11.0, 8.0, 5.6, 4.0, 2.8)),
     "never_in_point": replace(sound(), in_mode=STUCK, first_in_point=None),
@@ -129,7 +129,7 @@ class TestWhatWouldDo:
     def test_a_level_that_is_fine_enough_is_no_longer_too_coarse(self):
         coarse = FOUND["coarse"]
         told = float(text(coarse).rpartition(";")[2].split()[0])
-        finer = replace(sound(f"coils.levels_am2=[{told},40,80]"), levels=coarse.levels)
+        finer = replace(sound(f"coils.levels_am2=[{told},30,40]"), levels=coarse.levels)
         assert names(finer) == ["unknown"]
 
     def test_a_level_that_is_strong_enough_balances_the_disturbance(self):

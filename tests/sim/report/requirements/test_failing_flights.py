@@ -38,7 +38,7 @@ FLIGHTS = {
     "weak coils": Flight(
         (PERFECT, "coils.levels_am2=[0.05,0.1,0.2]", *UNDISTURBED), 1.5, "weak", quick=False
     ),
-    "coarse levels": Flight((PERFECT, "coils.levels_am2=[20.0,40.0,80.0]"), 1.5, "coarse", quick=False),
+    "coarse levels": Flight((PERFECT, "coils.levels_am2=[20.0,30.0,40.0]"), 1.5, "coarse", quick=False),
     "unstable gains": Flight((PERFECT, "control.k_a=1.6e6"), 0.5, "unstable", scenario="kalman-50kg"),
     "wrong inertia": Flight(
         ("flight.body.inertia_kgm2=[1.95,1.85,1.02]",), 1.0, "mismatch", WRONG_TABLE, quick=False
