@@ -21,6 +21,7 @@ sys.path.insert(0, str(ROOT))  # the tree in which this stands, not the one that
 from fsw.core.events import SEVERITY, Event
 from fsw.core.fdir.faults import CoilFault, Sensor, SensorFault
 from fsw.core.monitors import Monitor
+from fsw.wire.coil_current import OFF_PART
 from fsw.wire.frame import crc8
 from fsw.wire.messages import CoilFire, CoilRefusedReason, CoilStatus
 from hil_stub import bench, node
@@ -41,6 +42,7 @@ VALUES = {
     "max_refusals": coil_driver.MAX_REFUSALS,
     "heartbeat_s": node.HEARTBEAT_S,
     "deadman_ms": bench.DEADMAN_MS,
+    "off_percent": f"{100.0 * OFF_PART:g}",
     "settle_ms": read_back.ReadBack((0.1, 0.2, 0.3)).settle_ms,
     "current_while_off": f"`{events.CoilEventCode.CURRENT_WHILE_OFF.name.lower()}`",
 }

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from fsw.core.actuation.actuator import ActuatorConfig
 from fsw.core.actuation.own_field import OwnField
+from fsw.core.actuation.read_back import ReadBackConfig
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.fdir.fdir import FdirConfig
 from fsw.core.gate.calibration import NO_CALIBRATION, Calibration
@@ -26,6 +27,7 @@ class FlightConfig:
     estimator: EstimatorConfig
     control: ControlConfig
     coils: ActuatorConfig
+    read_back: ReadBackConfig
     fdir: FdirConfig
     modes: ModeConfig
     rates: RateTable

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from fsw.core import telemetry
-from fsw.core.actuation import own_field, pulses, wheel
+from fsw.core.actuation import own_field, pulses, read_back, wheel
 from fsw.core.actuation.actuator import actuate, update_view, wait_ticks
 from fsw.core.actuation.driven import driven
 from fsw.core.actuation.wheel import WheelView
@@ -103,6 +103,7 @@ def _gate(
     tick = inbox.tick
     readings, gate = admit(inbox.frames, state.gate)
     readings = calibration.calibrated(readings, config.calibration)
+    readings = read_back.without_offset(readings, state.coil, tick, config.read_back)
     view = update_view(state.coil, readings, tick, config.coils)
     view, readings = own_field.taken_off(view, readings, config.estimator.blank_ticks, config.own_field)
     expected_s = config.epoch_unix_s + tick // config.tick_hz

@@ -7,6 +7,7 @@ from typing import Any
 from fsw.core.actuation.actuator import ActuatorConfig
 from fsw.core.actuation.dipoles import DipoleConfig
 from fsw.core.actuation.pulses import PulseConfig, pulse_timing
+from fsw.core.actuation.read_back import ReadBackConfig
 from fsw.core.algebra.vector import inverse, product, transpose
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.mekf_config import MekfConfig
@@ -33,6 +34,7 @@ from fsw.table.schedules import planned_pulses, schedules
 from fsw.table.sections import CoilTable, ModesTable, OrbitTable, TelemetryTable
 from fsw.table.table import FlightTable
 from fsw.table.wheel import driven_wheel
+from fsw.wire.coil_current import OFF_PART
 
 CHATTER_S = 10.0
 """Longest time between signs of a second sender of reports."""
@@ -58,6 +60,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
             estimator=estimator,
             control=_control(table, orbit),
             coils=ActuatorConfig(timing, _dipoles(table)),
+            read_back=ReadBackConfig(OFF_PART * table.coils.levels_ma[0], _stuck_ticks(table)),
             calibration=calibration(table.calibration),
             own_field=own_field(table.calibration.coils, table.coils, tick_hz),
             fdir=_fdir(table, timing, estimator.mekf),
@@ -165,13 +168,18 @@ def _fdir(table: FlightTable, timing: PulseConfig, mekf: MekfConfig) -> FdirConf
             current_ma=table.coils.levels_ma,
             weak=weak_test(given.weak_coil_part, budget.threshold, mekf),
             stuck_ma=max(1.0, 0.5 * table.coils.levels_ma[0]),
-            stuck_ticks=_ticks(table.coils.pulse_s + STUCK_S, tick_hz) + 1,
+            stuck_ticks=_stuck_ticks(table),
             pulses=timing,
             mekf=mekf,
             retest_ticks=_ticks(given.coil_retest_s, tick_hz),
             stray_axes=stray_axes(table.calibration.coils),
         ),
     )
+
+
+def _stuck_ticks(table: FlightTable) -> int:
+    """Ticks from a request until nothing of its pulse flows any more."""
+    return _ticks(table.coils.pulse_s + STUCK_S, table.time.tick_hz) + 1
 
 
 def _second_sender(table: FlightTable) -> SecondSenderConfig:

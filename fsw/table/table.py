@@ -52,6 +52,7 @@ from fsw.table.uncertainty import (
     check_bounds,
 )
 from fsw.table.wheel import WheelTable, check_wheel_inertia
+from fsw.wire.coil_current import MOST_MA, STEP_MA
 
 LATER_BOUNDS = ("torque_variation_nm", "cell_gain_percent", "cell_light_percent")
 """Keys of ``[uncertainty]`` that earlier tables do not have."""
@@ -61,8 +62,6 @@ LATER_STEPS = (
     ("cells", "quantum_percent"),
 )
 """Steps of readings, which they do not have either."""
-MOST_READ_MA, READ_STEP_MA = 2047.0, 1.0
-"""The largest current that ``COIL_STATUS`` carries, and its step."""
 
 UNMET = {
     Need.PULSES: "with coils.driver = 'continuous': it plans pulses; allowed is coils.driver = 'pulsed'",
@@ -114,12 +113,12 @@ class FlightTable(Section):
     def _currents_can_be_read(self) -> Self:
         """Otherwise the reading of a sound coil, saturated or rounded, would make it a weak one."""
         low_ma, _, high_ma = self.coils.levels_ma
-        least_ma = 0.5 * READ_STEP_MA / (1.0 - self.fdir.weak_coil_part)
-        if self.coils.driver == "pulsed" and not least_ma <= low_ma < high_ma <= MOST_READ_MA:
+        least_ma = 0.5 * STEP_MA / (1.0 - self.fdir.weak_coil_part)
+        if self.coils.driver == "pulsed" and not least_ma <= low_ma < high_ma <= MOST_MA:
             raise ValueError(
                 f"coils.levels_am2 at coils.dipole_per_ampere_am2 = {self.coils.dipole_per_ampere_am2:g} are "
                 f"currents of {low_ma:.6g} to {high_ma:.6g} mA: allowed is {least_ma:.3g} to "
-                f"{MOST_READ_MA:g} mA, of which COIL_STATUS shows, in whole mA, that a coil is sound"
+                f"{MOST_MA:g} mA, of which COIL_STATUS shows, in whole mA, that a coil is sound"
             )
         return self
 

@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 from math import copysign
 
+from fsw.wire.coil_current import OFF_PART
 from hil_stub.coils.events import CoilEventCode
 
 _NONE = 0.1
-"""A current below this fraction of the nominal one counts as none."""
+"""A current of a driven coil below this fraction of the nominal one counts as none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +40,7 @@ class ReadBack:
         A read-back that is not a number is wrong at every level.
         """
         if level == 0:
-            in_order = abs(current_a) <= _NONE * self.nominal_a[0]
+            in_order = abs(current_a) <= OFF_PART * self.nominal_a[0]
             return None if in_order else CoilEventCode.CURRENT_WHILE_OFF
         part = current_a / copysign(self.nominal_a[abs(level) - 1], level)
         if abs(part - 1.0) <= self.tolerance:

@@ -5,6 +5,7 @@ from math import cos, log, pi, radians, sqrt
 import numpy as np
 import pytest
 
+from fsw.core.actuation.read_back import ReadBackConfig
 from fsw.core.fdir.sensors.plausibility import PlausibilityConfig
 from fsw.core.laws.interface import Setpoint
 from fsw.core.modes import TABLE
@@ -152,6 +153,7 @@ def test_control_and_coils():
     pulses = config.coils.pulses
     assert (pulses.shared, pulses.levels_am2, pulses.leak_s) == (False, (1.0, 2.5, 9.0), 250.0)
     assert config.coils.dipoles is None
+    assert config.read_back == ReadBackConfig(pytest.approx(0.1 * 50.0), 5 * (3 + 1) + 1)
     assert config.control.pulsed
     assert config.control.wheel_body_nms == config.estimator.mekf.rotor.wheel_body_nms == (0.0, 0.0, 0.0)
 

@@ -14,7 +14,6 @@ from fsw.table.config import flight_config
 from fsw.table.sections import parse_utc
 from fsw.table.table import (
     DEFAULT_EPOCH_UTC,
-    MOST_READ_MA,
     FlightTable,
     default_values,
     flight_table,
@@ -22,7 +21,6 @@ from fsw.table.table import (
     load_flight_table,
 )
 from fsw.table.uncertainty import UncertaintyTable, bounds
-from fsw.wire.messages import CoilStatus
 
 
 def default_text():
@@ -327,11 +325,6 @@ def test_currents_of_pulses_fit_into_their_report(coils, allowed):
         "table.toml: coils.levels_am2 at coils.dipole_per_ampere_am2 = 20 are currents of "
     )
     assert "allowed is 1.67 to 2047 mA" in said
-
-
-def test_the_largest_current_is_that_of_the_report():
-    most = CoilStatus(0, 0, 0, 10**6, 0, 0, 0).encode()
-    assert CoilStatus.decode(most.data).current_ma == MOST_READ_MA
 
 
 def test_no_spin_unless_it_is_asked_for():
