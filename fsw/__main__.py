@@ -25,7 +25,7 @@ def main(table: str | None, bus: str, disarmed: bool, bench: bool, parent: int |
     except TableError as error:
         click.echo(f"fsw: {error_text(error)}", err=True)
         sys.exit(2)
-    sys.exit(fly(loaded, bus, disarmed, bench, parent))
+    sys.exit(fly(loaded, bus, disarmed, bench, parent, source=table or "flight table"))
 
 
 if __name__ == "__main__":

@@ -23,6 +23,7 @@ def fly(
     bench: bool = False,
     parent: int | None = None,
     quiet: bool = False,
+    source: str = "flight table",
 ) -> int:
     """Run the flight software on a bus until the run ends: the exit code.
 
@@ -33,9 +34,10 @@ def fly(
         bench: no PLANT_END ends it.
         parent: process that started this one; when it is gone the run is over.
         quiet: print failures only.
+        source: of the table, for the sentence that says why it cannot be flown.
     """
     try:
-        node = FlightNode(flight_config(table))
+        node = FlightNode(flight_config(table, source))
         link: Bus = open_bus(spec)
         link = Disarmed(link) if disarmed else link
     except (TableError, BusError) as error:

@@ -42,11 +42,11 @@ STUCK_S = 1.0
 """Time beyond a pulse after which a level or current that nobody asked for counts as stuck."""
 
 
-def flight_config(table: FlightTable) -> FlightConfig:
+def flight_config(table: FlightTable, source: str = "flight table") -> FlightConfig:
     """Prepare everything a step needs.
 
     Raises:
-        TableError: the table is consistent but cannot be used (orbit decayed, pulse below a tick).
+        TableError: the table is consistent but cannot be used (orbit decayed); the sentence names ``source``.
     """
     tick_hz = table.time.tick_hz
     try:
@@ -71,7 +71,7 @@ def flight_config(table: FlightTable) -> FlightConfig:
             stale_after_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
         )
     except ValueError as error:
-        raise TableError(f"flight table: {error}") from None
+        raise TableError(f"{source}: {error}") from None
 
 
 def onboard_ephemeris(table: FlightTable) -> EphemerisModel:
@@ -129,19 +129,8 @@ def _control(table: FlightTable, orbit: Orbit) -> ControlConfig:
 
 
 def _gains(given: Mapping[str, Mapping[str, float]]) -> dict[str, Any]:
-    """Each law's own gains: defaults except for those given.
-
-    Raises:
-        ValueError: a law does not take them; the sentence names its section.
-    """
-    gains = {}
-    for name, law in LAWS.items():
-        if law.gains is not None:
-            try:
-                gains[name] = law.gains(**given.get(name, {}))
-            except ValueError as error:
-                raise ValueError(f"control.gains.{name}: {error}") from None
-    return gains
+    """Each law's own gains: defaults except for those given, which the table has checked."""
+    return {name: law.gains(**given.get(name, {})) for name, law in LAWS.items() if law.gains is not None}
 
 
 def _dipoles(table: FlightTable) -> DipoleConfig | None:

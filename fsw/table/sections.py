@@ -210,11 +210,13 @@ class ControlTable(Section):
                 allowed = ", ".join(name for name, row in LAWS.items() if row.gains is not None)
                 raise ValueError(f"gains.{law}: no such law has gains of its own (allowed: {allowed})")
             names = [field.name for field in fields(own)]
-            strange = sorted(set(given) - set(names))
-            if strange:
-                raise ValueError(
-                    f"gains.{law}: {', '.join(strange)} is not known (allowed: {', '.join(names)})"
-                )
+            odd = sorted(set(given) - set(names))
+            if odd:
+                raise ValueError(f"gains.{law}: {', '.join(odd)} is not known (allowed: {', '.join(names)})")
+            try:
+                own(**given)
+            except ValueError as error:
+                raise ValueError(f"gains.{law}: {error}") from None
         return self
 
 

@@ -8,6 +8,7 @@ import json
 import tomllib
 import zlib
 from importlib import resources
+from math import ceil
 from pathlib import Path
 from typing import Literal, Self
 
@@ -16,6 +17,7 @@ from pydantic import model_validator
 from fsw.core.algebra.vector import unit
 from fsw.core.laws.entry import LawEntry, Need, is_met
 from fsw.core.laws.table import LAWS
+from fsw.core.orbit.igrf_coefficients import EPOCHS_UNIX_S
 from fsw.core.orbit.tle import tle_epoch_unix_s
 from fsw.input.own_code import short_name
 from fsw.input.schema import (
@@ -62,6 +64,8 @@ LATER_STEPS = (
     ("cells", "quantum_percent"),
 )
 """Steps of readings, which they do not have either."""
+TIMES_UNIX_S = (0, 2**32 - 1)
+"""What ``SYNC`` carries."""
 
 UNMET = {
     Need.PULSES: "with coils.driver = 'continuous': it plans pulses; allowed is coils.driver = 'pulsed'",
@@ -89,6 +93,30 @@ class FlightTable(Section):
     telemetry: TelemetryTable
     calibration: CalibrationTable = CalibrationTable()
     wheel: WheelTable | None = None
+
+    @model_validator(mode="after")
+    def _begins_when_models_hold(self) -> Self:
+        times_s = EPOCHS_UNIX_S if self.field.model == "igrf14" else TIMES_UNIX_S
+        if not times_s[0] <= self.epoch_unix_s <= times_s[-1]:
+            raise ValueError(
+                f"time.epoch_utc, or without it the epoch of orbit.tle, is Unix time {self.epoch_unix_s} s: "
+                "IGRF-14 holds from 2015 to 2030, and another field.model, as the time on the bus, from 1970 "
+                "to 2106"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _lasts_a_tick(self) -> Self:
+        """A shorter pulse cannot be timed, and a shorter leak would change the sign of what is owed."""
+        least_s = ceil(1000.0 / self.time.tick_hz) / 1000.0
+        times_s = {"coils.pulse_s": self.coils.pulse_s, "control.leak_s": self.control.leak_s}
+        for key, value_s in times_s.items():
+            if value_s < least_s - 1e-9:
+                raise ValueError(
+                    f"{key} = {value_s:g} is not allowed: at least a tick, {least_s:g} with time.tick_hz = "
+                    f"{self.time.tick_hz}"
+                )
+        return self
 
     @model_validator(mode="after")
     def _bounds_can_hold(self) -> Self:

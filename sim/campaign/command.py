@@ -113,7 +113,7 @@ def campaign(
     chosen = load_campaign(source, over, settings)
     nominal = scenario_of(chosen.base, source)
     if nominal.own_law is not None:
-        flight_config(flight_table(nominal))  # a fault of it would be that of every run
+        flight_config(flight_table(nominal), source)  # a fault of it would be that of every run
     for doubt in doubts(nominal):
         warn(doubt)
     folder = out or Path("campaigns") / f"{chosen.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"

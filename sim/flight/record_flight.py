@@ -48,7 +48,7 @@ def check_can_fly(scenario: Scenario, seed: int) -> None:
     """
     from fsw.table.config import flight_config  # noqa: PLC0415  (the plant's process has no flight software)
 
-    flight_config(flight_table(scenario))
+    flight_config(flight_table(scenario), f"scenario {scenario.name}")
     check_plant(scenario, seed)
 
 

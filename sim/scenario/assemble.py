@@ -33,7 +33,7 @@ def plant_config(scenario: Scenario, seed: int) -> PlantConfig:
     try:
         return _config(scenario, seed)
     except ValueError as error:
-        raise TableError(f"the scenario's plant: {error}") from None
+        raise TableError(f"scenario {scenario.name}: the plant: {error}") from None
 
 
 def _config(scenario: Scenario, seed: int) -> PlantConfig:

@@ -31,4 +31,4 @@ def fsw(scenario: str, bus: str, settings: tuple[str, ...], disarmed: bool, benc
     from sim.scenario.schema import flight_table
 
     table = flight_table(load_scenario(scenario, settings))
-    return fly(table, bus, disarmed, bench, quiet=current().quiet)
+    return fly(table, bus, disarmed, bench, quiet=current().quiet, source=f"scenario {scenario}")

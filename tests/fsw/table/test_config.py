@@ -17,6 +17,7 @@ from fsw.table.table import flight_table
 
 FULL = [[1.02, 0.03, -0.02], [0.03, 1.85, 0.05], [-0.02, 0.05, 1.95]]
 CIRCULAR = {"altitude_km": 700.0, "inclination_deg": 98.2, "raan_deg": 10.0, "u0_deg": 20.0}
+DIPOLE = {"model": "direct_dipole"}
 
 
 def configured(**sections):
@@ -195,23 +196,50 @@ def test_both_kinds_of_orbit():
 @pytest.mark.parametrize(
     ("sections", "told"),
     [
-        ({"coils": {"pulse_s": 0.9}}, "a pulse of 900 ms is shorter than one tick at 1 Hz"),
-        ({"time": {"epoch_utc": "2031-01-01T00:00:00Z"}}, "IGRF-14 holds from 2015 to 2030"),
+        ({"coils": {"pulse_s": 0.9}}, "coils.pulse_s = 0.9 is not allowed: at least a tick, 1 with"),
         (
-            {"time": {"epoch_utc": "2010-01-01T00:00:00Z"}, "orbit": CIRCULAR},
-            "IGRF-14 holds from 2015 to 2030",
+            {"time": {"tick_hz": 3}, "coils": {"pulse_s": 0.333}},
+            "at least a tick, 0.334 with time.tick_hz = 3",
+        ),
+        ({"control": {"leak_s": 0.5}}, "control.leak_s = 0.5 is not allowed: at least a tick, 1 with"),
+        (
+            {"time": {"epoch_utc": "2031-01-01T00:00:00Z"}},
+            "time.epoch_utc, or without it the epoch of orbit.tle, is Unix time 1924992000 s: IGRF-14 holds",
+        ),
+        ({"time": {"epoch_utc": "2010-01-01T00:00:00Z"}, "orbit": CIRCULAR}, "from 2015 to 2030"),
+        (
+            {"time": {"epoch_utc": "2107-01-01T00:00:00Z"}, "orbit": CIRCULAR, "field": DIPOLE},
+            "time.epoch_utc, .*from 1970 to 2106",
+        ),
+        (
+            {"control": {"gains": {"stepped_precession": {"hold_s": 0.0}}}},
+            "control: gains.stepped_precession",
         ),
     ],
 )
 def test_a_table_that_cannot_be_flown_is_told_in_one_sentence(sections, told):
-    with pytest.raises(TableError, match=told) as caught:
+    """With where it is from, the key and what is allowed."""
+    with pytest.raises(TableError, match=f"^table.toml: .*{told}") as caught:
         configured(**sections)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "sections",
+    [
+        {"time": {"tick_hz": 3}, "coils": {"pulse_s": 0.334}, "control": {"leak_s": 0.334}},
+        {"coils": {"pulse_s": 1.0}, "control": {"leak_s": 1.0}},
+        {"time": {"epoch_utc": "2106-01-01T00:00:00Z"}, "orbit": CIRCULAR, "field": DIPOLE},
+    ],
+)
+def test_a_pulse_and_a_leak_of_a_tick_and_another_field_can_be_flown(sections):
+    assert configured(**sections).coils.pulses.pulse_ticks >= 1
 
 
 def test_elements_that_have_decayed_at_the_epoch_are_told():
     draggy = "1 22826U 93061D   15086.11593543  .00000251  00000-0  99999+0 0  9992"
     second = "2 22826  98.6946  36.4208 0008932 173.8349 186.2944 14.30166407121352"
     sections = {"orbit": {"tle": [draggy, second]}, "time": {"epoch_utc": "2015-06-01T00:00:00Z"}}
-    with pytest.raises(TableError, match="decayed"):
-        configured(**sections)
+    table = flight_table(sections, "mine.toml")
+    with pytest.raises(TableError, match=r"^mine\.toml: .*decayed"):
+        flight_config(table, "mine.toml")
