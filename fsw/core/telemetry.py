@@ -37,6 +37,8 @@ from fsw.wire.messages import (
 )
 
 CONTRACT_VERSION = 1
+LEAST_ARGUMENT, MOST_ARGUMENT = -(2**31), 2**31 - 1
+"""Of an event."""
 COUNTED = (
     CoilFire.ID,
     CoilDipole.ID,
@@ -218,9 +220,10 @@ def _plant(before: FlightState, after: FlightState, readings: Readings, leap_tic
 
 
 def event_message(happening: Happening, tick: int) -> CountedMessage:
-    """FSW_EVENT."""
+    """FSW_EVENT; an argument out of range, as of a time, saturates."""
     event, argument = happening
-    return FswEvent(severity=SEVERITY[event], event=event, tick=tick, argument=argument)
+    within = max(LEAST_ARGUMENT, min(argument, MOST_ARGUMENT))
+    return FswEvent(severity=SEVERITY[event], event=event, tick=tick, argument=within)
 
 
 def number(messages: list[CountedMessage], sent: tuple[int, ...]) -> tuple[list[Frame], tuple[int, ...]]:

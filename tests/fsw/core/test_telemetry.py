@@ -287,3 +287,12 @@ class TestEvents:
     def test_on_the_bus(self, argument):
         message = decoded(telemetry.event_message(Happening(Event.TIME_MISMATCH, argument), tick=70003))
         assert message == FswEvent(Severity.WARNING, Event.TIME_MISMATCH, 70003 & 0xFF, argument)
+
+    @pytest.mark.parametrize(
+        ("argument", "told"),
+        [(2867542878, 2**31 - 1), (2**31, 2**31 - 1), (2**32 - 1, 2**31 - 1), (-(2**31) - 1, -(2**31))],
+    )
+    def test_an_argument_out_of_range_saturates(self, argument, told):
+        """A time is off by up to 136 years; the wrapped number would be one of the other sign."""
+        message = decoded(telemetry.event_message(Happening(Event.TIME_MISMATCH, argument), tick=7))
+        assert message.argument == told
