@@ -18,8 +18,14 @@ MOST_LEVELS = 32
 LEAST, MOST = 1e-18, 1e15
 """Bounds of the magnitude of every number but 0, in the units of the file."""
 
-_PART = r"""(?:[A-Za-z0-9_-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
-_LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MOST_LEVELS}}}")
+# Each alternative takes something, and a text without an end all to the end of its line or of the document.
+# So that is read once, whatever is in it, and what stands in a text or a comment is no key.
+_TEXTS = r'''"""(?:[^"\\]|\\.|"(?!""))*+(?:"{3,5}+|\\?\Z)|'{3}(?:[^']|'(?!\'\'))*+(?:'{3,5}+|\Z)'''
+_PART = r"""(?:[A-Za-z0-9_-]++|"(?:[^"\\\n]|\\[^\n])*+"?|'[^'\n]*+'?)"""
+_MORE = rf"[ \t]*+\.[ \t]*+{_PART}"
+_PIECE = re.compile(
+    rf"{_TEXTS}|#[^\n]*+|{_PART}(?P<long>(?:{_MORE}){{{MOST_LEVELS}}})?(?:{_MORE})*+|.", re.DOTALL
+)
 
 
 class BoundsError(ValueError):
@@ -43,7 +49,7 @@ def parse_toml(text: str) -> dict[str, Any]:
         TOMLDecodeError: the text is not TOML.
         BoundsError: it is nested deeper than ``MOST_LEVELS``, or a number is outside ``LEAST`` to ``MOST``.
     """
-    if _LONG_KEY.search(text):
+    if any(piece["long"] for piece in _PIECE.finditer(text)):
         raise BoundsError(f"a key has more than {MOST_LEVELS} parts")
     try:
         values = tomllib.loads(text)

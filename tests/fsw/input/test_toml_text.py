@@ -45,6 +45,56 @@ def test_so_has_a_key(part, line):
     assert time.process_time() - began < 2.0
 
 
+DOTTED = ".".join(["a"] * 40)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"a = 1  # {DOTTED}",
+        f'a = "{DOTTED}"',
+        f"a = '{DOTTED}'",
+        f'a = """\n{DOTTED} = 1\n"""',
+        f"a = '''\n{DOTTED} = 1\n'''",
+        f'a = "\\"{DOTTED}"',
+        f'a = """\\"""{DOTTED}""""\nb = """"c"""""',
+        f"a = ''''{DOTTED}'''''",
+        f"# an apostrophe's\na = 1 # {DOTTED}",
+    ],
+)
+def test_texts_and_comments_are_no_keys(text):
+    assert parse_toml(text) == tomllib.loads(text)
+
+
+@pytest.mark.parametrize(
+    "before",
+    [
+        'a = """x""""\n',
+        "a = '''x'''''\n",
+        'a = "#"\n',
+        'a = "\\\\"\n',
+        "# it's\n",
+        'a = """\\""""""\n',
+        "a = 'x\\'\n",
+        'a = ""\n',
+    ],
+)
+def test_a_long_key_after_a_text_is_found(before):
+    assert tomllib.loads(before) is not None
+    assert "parts" in fault(f"{before}{DOTTED} = 1")
+
+
+PIECES = ['\\"', '"""\\', '"', "'''x", "a.", "a .", "\\", '"\\', "'", "a.'"]
+
+
+@pytest.mark.parametrize("piece", PIECES)
+def test_a_text_of_any_kind_is_read_once(piece):
+    began = time.process_time()
+    with pytest.raises((tomllib.TOMLDecodeError, BoundsError)):
+        parse_toml("a = " + piece * (MOST_BYTES // len(piece) // 4))
+    assert time.process_time() - began < 3.0
+
+
 @pytest.mark.parametrize("number", ["9" * 6000, "-" + "9" * 6000])
 def test_digits_are_counted(number):
     assert fault(f"a = {number}").startswith(
