@@ -76,9 +76,11 @@ def open_bus(spec: str) -> Bus:
 def _port(argument: str, spec: str) -> int:
     if not argument and ":" not in spec:
         return DEFAULT_LOOP_PORT
-    if argument.isascii() and argument.isdigit() and 0 < int(argument) < 2**16:
+    if argument.isascii() and argument.isdigit() and len(argument) <= 5 and 0 < int(argument) < 2**16:
         return int(argument)
-    raise BusError(f"bus '{spec}' names no TCP port: write loop or loop:PORT with a port from 1 to 65535")
+    raise BusError(
+        f"bus '{spec[:40]}' names no TCP port: write loop or loop:PORT with a port from 1 to 65535"
+    )
 
 
 def _interface_is_up(name: str) -> bool:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from importlib.metadata import version
+from math import isfinite
 from platform import python_version
 from typing import Any, TextIO
 
@@ -10,6 +11,7 @@ import click
 from fsw.bus.interface import BusError
 from fsw.bus.open_bus import KINDS, open_bus, resolve
 from fsw.input.near import did_you_mean
+from fsw.wire.coil_current import MOST_MA
 from fsw.wire.messages import MagField, SunCells, SunVector
 from hil_stub.bench import (
     DEADMAN_MS,
@@ -29,6 +31,16 @@ from hil_stub.sensors.stimulus import StimulusError, currents, direction, scaled
 from hil_stub.sensors.sun_cells import CELLS
 
 NT = 1e-9
+LEAST_DEADMAN_S = 0.001
+"""The board's clock counts milliseconds."""
+
+
+def _finite(ctx: click.Context, param: click.Parameter, seconds: float) -> float:
+    """A time that is a number: NaN is on no side of the bounds of its range."""
+    if not isfinite(seconds):
+        raise click.BadParameter(f"{seconds} is not a finite number.", ctx, param)
+    return seconds
+
 
 _bus = click.option("--bus", "spec", required=True, help=f"auto, {KINDS}.")
 _tick_hz = click.option(
@@ -84,11 +96,17 @@ def board(parent: int | None, quiet: bool, verbose: bool) -> None:
     help="What a pulse locks out: all coils, or its own.",
 )
 @click.option(
-    "--pulse-s", type=click.FloatRange(0.001, 3.0), default=3.0, show_default=True, help="Longest pulse."
+    "--pulse-s",
+    type=click.FloatRange(0.001, 3.0),
+    callback=_finite,
+    default=3.0,
+    show_default=True,
+    help="Longest pulse.",
 )
 @click.option(
     "--backoff-s",
     type=click.FloatRange(0.0, 160.0),
+    callback=_finite,
     default=100.0,
     show_default=True,
     help="From the end of a pulse to the next start.",
@@ -103,6 +121,7 @@ def board(parent: int | None, quiet: bool, verbose: bool) -> None:
 @click.option(
     "--deadman-s",
     type=click.FloatRange(0.0, 3600.0),
+    callback=_finite,
     default=DEADMAN_MS / 1000.0,
     show_default=True,
     help="Silence of SYNC after which all is off and locked out in full; 0: no dead-man.",
@@ -132,8 +151,10 @@ def coil(
 ) -> None:
     """The coil driver with its interlock, locked out at the start."""
     limits = CoilLimits(tick_hz, round(1000.0 * pulse_s), round(1000.0 * backoff_s), backoff == "shared")
-    if not 0.0 < levels_ma[0] < levels_ma[1] < levels_ma[2]:
-        raise click.UsageError("--levels-ma must be three rising currents above 0")
+    if not 0.0 < levels_ma[0] < levels_ma[1] < levels_ma[2] <= MOST_MA:
+        raise click.UsageError(f"--levels-ma must be three rising currents above 0, at most {MOST_MA:g}")
+    if 0.0 < deadman_s < LEAST_DEADMAN_S:
+        raise click.UsageError(f"--deadman-s must be 0, for no dead-man, or at least {LEAST_DEADMAN_S:g}")
     level_a = three(scaled(levels_ma, 1e-3))
     _serve(spec, lambda: CoilBoard(limits, level_a), deadman_s, clock, pins)
 

@@ -46,6 +46,7 @@ def test_auto_is_vcan0_where_it_is_up_and_else_loop(monkeypatch, up, full):
         ("loop:", "names no TCP port"),
         ("loop:0", "names no TCP port"),
         ("loop:65536", "names no TCP port"),
+        ("loop:" + "9" * 5000, "names no TCP port"),
         ("loop:-1", "names no TCP port"),
         ("loop:²", "names no TCP port"),
         ("loop:here", "names no TCP port"),
