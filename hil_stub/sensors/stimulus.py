@@ -11,6 +11,8 @@ Values = tuple[float, ...]
 """Three components of a vector, or the currents of six cells."""
 COUNTS = {3: "three", 6: "six"}
 """Numbers of a reading, in words."""
+STEP_KEYS = ("t_s", "field_nt", "sun", "cells")
+"""Keys of a step of a script, which may hold readings of several sensors."""
 
 
 class Reading(NamedTuple):
@@ -74,7 +76,7 @@ def scripted(
     Args:
         steps: tables with ``t_s``, the time from which they hold, rising from 0; numbers under ``key``, or
             false for an invalid sample.
-        key: the sensor's.
+        key: the sensor's; other keys than ``STEP_KEYS`` are refused.
         tick_hz: ticks a second.
         convert: the numbers of the script into a reading.
         count: how many numbers.
@@ -90,6 +92,10 @@ def scripted(
         t_s = _time(step)
         if t_s is None or t_s <= last_s:
             raise StimulusError(f"step {number}: t_s must be a time in seconds, later than the step before")
+        if strange := sorted(set(step) - set(STEP_KEYS)):
+            raise StimulusError(
+                f"step {number}: {', '.join(strange)} is not known: {', '.join(STEP_KEYS)} are"
+            )
         last_s = t_s
         if key in step:
             reading = _reading(step[key], convert, count, f"step {number}: {key}")

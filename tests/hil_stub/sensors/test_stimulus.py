@@ -104,6 +104,10 @@ class TestScript:
             ([{"t_s": float("nan")}], "step 1: t_s"),
             ([{"t_s": 0}, {"t_s": 0}], "step 2: t_s"),
             ([{"t_s": 0, "field_nt": [1, 2]}], "step 1: field_nt"),
+            (
+                [{"t_s": 0}, {"t_s": 1, "feild_nt": [1, 2, 3]}],
+                "step 2: feild_nt is not known: t_s, field_nt, sun",
+            ),
             ([{"t_s": 0, "field_nt": True}], "step 1: field_nt"),
             ([{"t_s": 0, "field_nt": [1, 2, float("inf")]}], "step 1: field_nt"),
             ([{"t_s": 0, "field_nt": [1, 2, True]}], "step 1: field_nt"),
