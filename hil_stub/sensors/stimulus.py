@@ -1,7 +1,7 @@
 """The stimulus of a sensor on a bench, tick by tick: a constant, a recorded log, or a script."""
 
 from collections.abc import Callable, Iterable
-from math import ceil, hypot, isfinite
+from math import ceil, hypot, inf, isfinite
 from typing import NamedTuple
 
 from fsw.wire.candump_line import LineReader
@@ -127,11 +127,11 @@ def direction(vector: Values) -> Values:
     """The unit vector along ``vector``.
 
     Raises:
-        StimulusError: it is zero.
+        StimulusError: it is zero, or so large that its length is infinite.
     """
     length = hypot(*vector)
-    if length == 0.0:
-        raise StimulusError("must be a direction: give three numbers that are not all 0")
+    if not 0.0 < length < inf:
+        raise StimulusError("must be a direction: give three numbers that are not all 0, nor near 1e308")
     return tuple([component / length for component in vector])
 
 

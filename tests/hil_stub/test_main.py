@@ -181,6 +181,7 @@ def test_with_a_clock_of_its_own_fast_ticks_do_not_end_the_lockout(bus, start):
         (["coil", "--bus", "loop", "--stimulus", "1", "0", "0"], "--stimulus"),
         (["sun", "--bus", "loop", "--stimulus", "0", "0", "0"], "--stimulus"),
         (["sun", "--bus", "loop", "--stimulus", "nan", "0", "0"], "--stimulus"),
+        (["sun", "--bus", "loop", "--stimulus", "1.7e308", "1.7e308", "0"], "must be a direction"),
         (["magnetometer", "--bus", "loop", "--stimulus", "inf", "0", "0"], "--stimulus"),
         (["magnetometer", "--bus", "loop", "--stimulus", "x", "0", "0"], "--stimulus"),
         (["magnetometer", "--bus", "loop", "--stimulus", "1", "0"], "--stimulus"),
