@@ -220,10 +220,11 @@ def _plant(before: FlightState, after: FlightState, readings: Readings, leap_tic
 
 
 def event_message(happening: Happening, tick: int) -> CountedMessage:
-    """FSW_EVENT; an argument out of range, as of a time, saturates."""
+    """FSW_EVENT; a time out of range saturates, and the number of a tick wraps."""
     event, argument = happening
-    within = max(LEAST_ARGUMENT, min(argument, MOST_ARGUMENT))
-    return FswEvent(severity=SEVERITY[event], event=event, tick=tick, argument=within)
+    if event == Event.TIME_MISMATCH:
+        argument = max(LEAST_ARGUMENT, min(argument, MOST_ARGUMENT))
+    return FswEvent(severity=SEVERITY[event], event=event, tick=tick, argument=argument)
 
 
 def number(messages: list[CountedMessage], sent: tuple[int, ...]) -> tuple[list[Frame], tuple[int, ...]]:

@@ -292,7 +292,7 @@ class TestEvents:
         ("argument", "told"),
         [(2867542878, 2**31 - 1), (2**31, 2**31 - 1), (2**32 - 1, 2**31 - 1), (-(2**31) - 1, -(2**31))],
     )
-    def test_an_argument_out_of_range_saturates(self, argument, told):
+    def test_a_time_out_of_range_saturates(self, argument, told):
         """A time is off by up to 136 years; the wrapped number would be one of the other sign."""
         message = decoded(telemetry.event_message(Happening(Event.TIME_MISMATCH, argument), tick=7))
         assert message.argument == told
