@@ -240,7 +240,7 @@ class PlantConfig:
         sun_sensor: its errors; or the cells in its place.
         coils: the coils.
         limits: what the coil driver's interlock enforces.
-        max_substep_s: longest integration step.
+        max_substep_s: longest integration step; a fast motion is integrated in shorter ones.
         perfect_knowledge: whether the plant sends its true attitude and rate.
         wheel: a reaction wheel that is driven; None: there is none.
 

@@ -1,6 +1,5 @@
 """The plant: physics and boards, tick by tick, with frames as output and input."""
 
-from math import ceil
 from typing import Literal
 from zlib import crc32
 
@@ -12,8 +11,8 @@ from sim.plant.config import PlantConfig
 from sim.plant.dynamics import torques
 from sim.plant.dynamics.disturbances import bias_torque, effects, residual_dipole, torque_noise
 from sim.plant.dynamics.rigid_body import Motion, RigidBody, Torque
-from sim.plant.environment.surroundings import Environment, Surroundings
-from sim.plant.errors import PlantError
+from sim.plant.dynamics.substeps import Substeps, lost
+from sim.plant.environment.surroundings import Surroundings
 from sim.plant.hardware.actuators import Actuator, CoilDrive, make_actuator
 from sim.plant.hardware.coils import Coils
 from sim.plant.hardware.sensors import MagnetometerPhysics
@@ -59,10 +58,8 @@ class Plant:
         self, config: PlantConfig, actuator: Actuator | None = None, own: OwnEffects = NO_EFFECTS
     ) -> None:
         self._config = config
-        self.substeps = ceil(1.0 / (config.tick_hz * config.max_substep_s))
-        """Integration steps a tick."""
-        self._step_s = 1.0 / (config.tick_hz * self.substeps)
-        self._environment = Environment(config, self.substeps)
+        self._substeps = Substeps(config)
+        self._environment = self._substeps.environment
         inertia, wheel = config.body.inertia_kgm2, config.wheel
         own_inertia = inertia if wheel is None else wheel.rest_of(inertia)
         self._body = RigidBody(own_inertia, config.body.wheel_body_nms)
@@ -162,9 +159,12 @@ class Plant:
         driven_a, fraction, held_a = self.coil_drive
         if self._noise:
             self._noise_body_nm = next(self._noise)
-        substeps, step_s, motion, wheel = self.substeps, self._step_s, self.motion, self._wheel
+        motion, wheel = self.motion, self._wheel
+        wheel_nms = 0.0
         if wheel is not None:
             wheel.drive()
+            wheel_nms = wheel.momentum_nms(motion.omega_body_radps)
+        substeps, step_s, stages = self._substeps.of(self._tick, motion.omega_body_radps, wheel_nms)
         sx = sy = sz = 0.0
         for substep in range(substeps):
             on_s = step_s * min(max(fraction * substeps - substep, 0.0), 1.0)
@@ -174,10 +174,10 @@ class Plant:
             if wheel is not None:
                 momenta, reaction_nm = wheel.advance(motion.omega_body_radps, step_s)
                 self._reactions_nm = (reaction_nm,)
-            torque, around = self._torque((mx, my, mz)), self._around[2 * substep : 2 * substep + 3]
+            torque, around = self._torque((mx, my, mz)), stages[2 * substep : 2 * substep + 3]
             motion = self._body.step(motion, torque, around, step_s, momenta)
-            if not motion.sound:
-                raise PlantError(f"the motion diverges in tick {self._tick}: too fast for the integration")
+            if not motion.sound(step_s):
+                raise lost(self._tick)
         self.motion = motion
         self._mean_dipole_am2 = (sx / substeps, sy / substeps, sz / substeps)
         self._tick += 1
@@ -188,7 +188,7 @@ class Plant:
         sample, disturbance = self._sample, self._config.disturbance
         q_body_from_orbit, omega_body_orbit_radps = self._relative()
         b_body_t, inertia = self._b_body_t, self._config.body.inertia_kgm2
-        around = self._around[0]
+        around = self._around
         e_body = transform(self._body_from_eci, around.e_eci)
         return TruthRow(
             t_s=self.t_s,
@@ -260,7 +260,7 @@ class Plant:
     def _observe(self) -> None:
         """Update the environment of this tick, and field and Sun in body axes at its instant."""
         self._sample = sample = self._environment.sample(self._tick)
-        self._around = self._environment.stages(self._tick)
+        self._around = self._environment.stages(self._tick)[0]
         self._body_from_eci = matrix(self.motion.q_body_from_eci)
         self._b_body_t = transform(self._body_from_eci, sample.b_eci_t)
         self._sun_body = transform(self._body_from_eci, sample.sun_eci)

@@ -81,7 +81,7 @@ class InitialState(Section):
 
 
 class PlantSection(Section):
-    """Integration of the plant."""
+    """Integration of the plant: in steps of ``max_substep_s`` at most, in shorter ones of a fast motion."""
 
     max_substep_s: float = Field(default=1.0, ge=0.001, le=5.0)
 

@@ -18,11 +18,10 @@ class Motion(NamedTuple):
     omega_body_radps: Vec3
     """Inertial rate, body axes."""
 
-    @property
-    def sound(self) -> bool:
-        """Whether attitude and rate are finite, and the quaternion is near unit norm."""
+    def sound(self, step_s: float) -> bool:
+        """Whether attitude and rate are finite, and a step of ``step_s`` turns it by less than a radian."""
         (q0, q1, q2, q3), (x, y, z) = self
-        return isfinite(x + y + z) and 0.5 < q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3 < 2.0
+        return isfinite(q0 + q1 + q2 + q3) and (x * x + y * y + z * z) * step_s * step_s < 1.0
 
 
 class RigidBody:

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from plant_flights import fire, fly
 
-from sim.plant.config import DisturbanceConfig, FieldConfig, InitialConfig, OrbitConfig
+from sim.plant.config import BodyConfig, DisturbanceConfig, FieldConfig, InitialConfig, OrbitConfig
 from sim.plant.dynamics import torques
 from sim.plant.errors import PlantError
 from sim.plant.rotation import matrix
+from sim.plant.wheel_config import WheelConfig
 
 DAY = 86400
 CIRCLE = OrbitConfig(None, 800e3, 1.72, 0.6, 0.35)
@@ -115,11 +116,46 @@ def test_shorter_substeps_hardly_move_the_motion(make_plant, rotation_angle):
     assert whole.r_eci_m == pytest.approx(fine.r_eci_m, abs=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("tick_hz", "max_substep_s", "steps"), [(1, 1.0, 1), (1, 0.3, 4), (4, 1.0, 1), (4, 0.1, 3), (10, 0.1, 1)]
-)
-def test_substeps_a_tick(make_plant, tick_hz, max_substep_s, steps):
-    assert make_plant(tick_hz=tick_hz, max_substep_s=max_substep_s).substeps == steps
+def test_a_fast_tumble_keeps_energy_and_momentum(make_plant, make_config):
+    """200 deg/s about no principal axis for 100 s, at one tick a second."""
+    inertia = np.array(make_config().body.inertia_kgm2)
+    fast = InitialConfig(omega_body_orbit_radps=(2.1, 2.2, 1.7))
+    plant = make_plant(orbit=CIRCLE, disturbance=DisturbanceConfig(), initial=fast)
+    energy, momentum = [], []
+    for _ in range(100):
+        w, c = np.array(plant.motion.omega_body_radps), np.array(matrix(plant.motion.q_body_from_eci))
+        energy.append(w @ inertia @ w)
+        momentum.append(c.T @ inertia @ w)
+        plant.begin_tick()
+        plant.end_tick()
+    assert energy[-1] == pytest.approx(energy[0], rel=1e-4)
+    assert momentum[-1] == pytest.approx(momentum[0], abs=1e-4 * np.linalg.norm(momentum[0]))
+
+
+@pytest.mark.parametrize("driven", [False, True])
+def test_the_nutation_by_a_wheel_goes_on(make_plant, driven):
+    """A sphere with momentum h along axis 3: the rate across it turns at h / J and keeps its size."""
+    j_kgm2, h_nms, rotor_kgm2, ticks = 0.03, 0.01, 1e-5, 600
+    along_kgm2 = j_kgm2 + rotor_kgm2 if driven else j_kgm2
+    body = BodyConfig(
+        ((j_kgm2, 0.0, 0.0), (0.0, j_kgm2, 0.0), (0.0, 0.0, along_kgm2)), (0.0, 0.0, 0.0 if driven else h_nms)
+    )
+    wheel = WheelConfig((0.0, 0.0, 1.0), rotor_kgm2, 1e-3, 0.02, momentum_nms=h_nms) if driven else None
+    plant = make_plant(
+        orbit=CIRCLE,
+        disturbance=DisturbanceConfig(),
+        body=body,
+        wheel=wheel,
+        initial=InitialConfig(omega_body_orbit_radps=(0.005, 0.0, 0.0)),
+    )
+    x0, y0, _ = plant.motion.omega_body_radps
+    for _ in range(ticks):
+        plant.begin_tick()
+        plant.end_tick()
+    x, y, _ = plant.motion.omega_body_radps
+    turned, angle = complex(x, y) / complex(x0, y0), h_nms / j_kgm2 * ticks
+    assert abs(turned) == pytest.approx(1.0, abs=1e-3)
+    assert turned == pytest.approx(np.exp(1j * angle), abs=2e-3)
 
 
 def test_nothing_is_known_of_the_field_after_the_table_ends(make_config, make_plant):
