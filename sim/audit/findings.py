@@ -142,7 +142,7 @@ class AuditReport:
         mismatches: what run.json contradicts, if the log has one beside it, a sentence each.
         dipoles: what a continuous driver has driven; None of a pulsed one.
         unreported_s: all stretches without COIL_STATUS that are as long as the longest pulse and a tick.
-        doubt: why a pulse may have gone unreported in one of them, a clause; empty: none has.
+        doubt: why a pulse may have gone unreported, in one of them or not, a clause; empty: none has.
     """
 
     limits: AuditLimits
@@ -175,7 +175,7 @@ class AuditReport:
     def exit_code(self) -> int:
         """0 if the limits were kept over a complete, unaltered log that belongs to its run, otherwise 1.
 
-        1 too where a whole pulse may have gone unreported.
+        1 too where a pulse may have gone unreported.
         """
         kept = self.ok and self.complete and self.genuine and not self.mismatches and not self.doubt
         return 0 if kept else 1

@@ -1,7 +1,9 @@
 """Stretches of a log in which the board reports nothing: whether a whole pulse may have gone unreported.
 
 The status after such a stretch has the ``seq`` of the last request that the board accepted. Where it is that
-of the status before, and no coil was on then, nothing was accepted in between and nothing was driven.
+of the status before, and no coil was on then, nothing was accepted in between and nothing was driven. Where
+it is another, that request was driven: its first status shows a level, or a pulse has gone unreported, in a
+stretch however short.
 """
 
 from collections.abc import Iterator
@@ -30,7 +32,7 @@ class UnreportedTime:
         self.total = 0
         """In instants."""
         self.doubt = ""
-        """Why a pulse may have gone unreported in the first stretch in which one may have, a clause."""
+        """Why a pulse may have gone unreported, for the first that may have, a clause."""
 
     def begin(self, instant: int) -> None:
         """The first tick of a log, or of another run in it, ends at ``instant``."""
@@ -53,8 +55,12 @@ class UnreportedTime:
         """The statuses of the tick that ends at ``instant``."""
         if not statuses:
             return
-        self._close(instant - self._clock.period, statuses[0].seq)
-        self._last, self._seq, self._is_first = instant, statuses[-1].seq, False
+        until = instant - self._clock.period
+        self._close(until, statuses[0].seq)
+        for status in statuses:
+            self._compare(until, status)
+            self._seq = status.seq
+        self._last, self._is_first = instant, False
         self._under_way = any(status.level and status.remaining_ms for status in statuses)
         self._syncs = 0
 
@@ -82,6 +88,17 @@ class UnreportedTime:
         synced = self._clock.epoch_s is None or self._syncs * self._clock.period >= self._least
         if synced and not self.doubt and (seq is None or seq != self._seq or self._under_way):
             self.doubt = self._doubt(self._last, until, seq, why)
+
+    def _compare(self, until: int, status: CoilStatus) -> None:
+        """Whether a status is the first of a request, and shows none of its pulse."""
+        if self.doubt or self._last is None or self._seq in (None, status.seq) or status.level:
+            return
+        if self._clock.epoch_s is None or self._syncs * self._clock.period >= until - self._last:
+            at = seconds_text(self._clock.seconds(until + self._clock.period))
+            self.doubt = (
+                f"a pulse may have gone unreported before t={at} s: "
+                f"seq is {self._seq} before and {status.seq} then, with no coil on"
+            )
 
     def _doubt(self, begun: int, until: int, seq: int | None, why: str) -> str:
         seconds = self._clock.seconds

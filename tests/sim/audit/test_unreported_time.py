@@ -56,11 +56,35 @@ def test_a_silence_shorter_than_the_longest_pulse_and_a_tick_is_only_counted(
     judge, bus_log, fired, ticks, exit_code, tick_hz
 ):
     count = ticks if tick_hz == 1 else 27 + ticks
-    log = silent(bus_log(tick_hz, 300, [fired(0, 100, 1000)]), range(101, 101 + count))
+    log = silent(bus_log(tick_hz, 300, [fired(0, 100)]), range(102, 102 + count))
     report = judge(log)
     assert report.exit_code == exit_code
     assert (report.unreported_s > 0) is bool(exit_code)
     assert f"{count} ticks without COIL_STATUS" in report.notes
+
+
+@pytest.mark.parametrize("sync", [True, False])
+@pytest.mark.parametrize(("missing", "duration_ms"), [(1, 1000), (3, 3000)])
+def test_a_pulse_that_fits_into_a_short_silence_is_told_by_seq(bus_log, fired, missing, duration_ms, sync):
+    log = bus_log(1, 300, [fired(2, 100), fired(1, 204, duration_ms)], sync=sync)
+    report = audit(silent(log, range(205, 205 + missing)).entries(), AuditLimits())
+    assert (report.violations, report.unreported_s, report.exit_code) == ((), 0, 1)
+    assert "unreported before t=20" in report.doubt
+    assert "seq is 1 before and 2 then, with no coil on" in report.doubt
+
+
+def test_of_a_pulse_one_status_is_enough(judge, bus_log, fired):
+    log = bus_log(1, 300, [fired(2, 100), fired(1, 204)])
+    assert judge(silent(log, (205, 206))).exit_code == 0
+
+
+def test_a_board_that_reports_every_tick_but_not_its_pulse_is_told(judge, bus_log, fired):
+    log = bus_log(1, 300, [fired(2, 100), fired(1, 204)])
+    for tick in (205, 206, 207):
+        log.change(tick, level=0, remaining_ms=0)
+    report = judge(log)
+    assert (report.exit_code, report.unreported_s) == (1, 0)
+    assert "unreported before t=205.000 s: seq is 1 before and 2 then" in report.doubt
 
 
 def test_a_silence_that_begins_within_a_pulse_hides_its_end(judge, bus_log, fired):
@@ -89,6 +113,14 @@ def test_ticks_that_sync_skips_have_no_status_to_miss(bus_log, fired):
     report = audit(entries, AuditLimits())
     assert report.exit_code == 0
     assert report.unreported_s == 31
+
+
+def test_a_short_pulse_within_ticks_that_sync_skips_has_no_status_to_miss(bus_log, fired):
+    log = silent(bus_log(1, 300, [fired(0, 100)]), (101, 102, 103))
+    skipped = audit(log.entries(without_sync=(101, 102, 103)), AuditLimits())
+    assert (skipped.exit_code, skipped.doubt) == (0, "")
+    assert audit(log.entries(without_sync=(101,)), AuditLimits()).exit_code == 0
+    assert audit(log.entries(), AuditLimits()).exit_code == 1
 
 
 def test_each_of_two_runs_in_one_log_begins_anew(bus_log):
