@@ -1,10 +1,11 @@
 """Independent audit of the actuator limits, from the coil driver board's own report of what it drove.
 
 Judged are the COIL_STATUS frames of a log: no pulse longer than allowed; no pulse sooner after another one,
-or after a boot of the board, than the back-off; no level out of range; never two coils at once; no pulse
-announced that would break a limit; no COIL_STATUS with a wrong CRC or length. The status of tick k reports
-the interval that ends at k, so a pulse begins one tick before the first status that shows it. A pulsed driver
-reports no driven COIL_DIPOLE_STATUS, and a continuous one, which has no limits on pulses, no level.
+or after a boot of the board, than the back-off, and none that goes on over a boot; no level out of range;
+never two coils at once; no pulse announced that would break a limit; no COIL_STATUS with a wrong CRC or
+length. The status of tick k reports the interval that ends at k, so a pulse begins one tick before the first
+status that shows it. A pulsed driver reports no driven COIL_DIPOLE_STATUS, and a continuous one, which has no
+limits on pulses, no level.
 
 There are two clocks: the ticks of SYNC, and the timestamps, where they are simulated time or where the
 log has no usable SYNC. Each limit must hold by both of them, and where both count they must agree.

@@ -22,6 +22,7 @@ class _Drive:
     announced: int  # the end that the last status announces
     latest: int  # the latest end announced so far
     reported_levels: set[int] = field(default_factory=set)
+    reported_boot: bool = False
 
 
 class PulseJudge:
@@ -70,6 +71,7 @@ class PulseJudge:
                     status.coil, status.seq, status.level, before, now, start_tick, line, announced, announced
                 )
                 self._start(drive, stopped)
+            self._judge_on_since_boot(drive, status, now, tick, line)
             if abs(status.level) > self._limits.max_level and status.level not in drive.reported_levels:
                 drive.reported_levels.add(status.level)
                 highest = self._limits.max_level
@@ -135,7 +137,20 @@ class PulseJudge:
 
     def _judge_boot(self, drive: _Drive) -> None:
         if self._booted is not None and 0 <= drive.start - self._booted < self._backoff:
+            drive.reported_boot = True
             self._add_backoff(ViolationKind.BOOT, drive, drive.start - self._booted, "the boot of the board")
+
+    def _judge_on_since_boot(
+        self, drive: _Drive, status: CoilStatus, now: int, tick: int | None, line: int
+    ) -> None:
+        """A coil that was on when the board booted is off from then on."""
+        booted = self._booted
+        if booted is None or drive.reported_boot or drive.start >= booted:
+            return
+        if now > booted or (now == booted and status.remaining_ms):
+            drive.reported_boot = True
+            sentence = "on after the boot of the board, though it began before it"
+            self._add(ViolationKind.BOOT, now, tick, drive.coil, line, sentence)
 
     def _add_backoff(self, kind: ViolationKind, drive: _Drive, gap: int, event: str) -> None:
         seconds = self._clock.seconds

@@ -201,6 +201,27 @@ def test_a_pulse_that_a_boot_cuts_off_did_not_start_after_it(judge, bus_log, fir
     assert judge(bus_log(1, 200, [fired(0, 110, 1000)], boots=[111])).ok
 
 
+@pytest.mark.parametrize("sync", [True, False])
+@pytest.mark.parametrize(("boot", "seen"), [(111, 111), (112, 112), (113, None), (114, None)])
+def test_a_coil_that_is_on_after_a_boot_is_named_once(judge, bus_log, fired, boot, seen, sync):
+    """The pulse shows at 111, 112 and 113, and is over then."""
+    report = judge(bus_log(1, 300, [fired(2, 110)], boots=[boot], sync=sync))
+    tick = seen if sync else None
+    assert found(report) == ([] if seen is None else [(ViolationKind.BOOT, seen, tick, 2)])
+    assert all("on after the boot of the board" in str(violation) for violation in report.violations)
+
+
+def test_a_coil_that_is_on_when_the_first_boot_of_a_log_comes(judge, bus_log, fired):
+    report = judge(bus_log(1, 300, [fired(1, -1)], boots=[0]))
+    assert found(report) == [(ViolationKind.BOOT, 0, 0, 1)]
+
+
+def test_a_coil_that_is_driven_on_over_a_boot_after_the_status_of_its_tick(bus_log, fired):
+    log = bus_log(1, 300, [fired(0, 150)])
+    log.statuses[151].append(CoilBoot(0, 1, 0).encode())
+    assert found(audit(log.entries(), AuditLimits())) == [(ViolationKind.BOOT, 152, 152, 0)]
+
+
 def test_a_boot_that_cannot_be_trusted_is_noted(judge, bus_log):
     log = bus_log(ticks=20)
     log.statuses[5].insert(0, Frame(CoilBoot.ID, bytes(CoilBoot.LENGTH)))
