@@ -41,8 +41,8 @@ class Score:
         error_rms: of that error over the last orbit, deg or deg/s.
         error_max: its largest.
         rate_rms_degps: rate relative to the orbital frame, less the spin reference, over the last orbit.
-        dipole_squared_a2m4s: integral of |m|^2 over the flight; times resistance over (dipole an ampere)^2
-            it is the energy lost in the coils.
+        dipole_squared_a2m4s: integral over the flight of |m|^2, m what the currents nominally give; times
+            resistance over (dipole an ampere)^2 it is the energy lost in the coils.
         pulses: None for a continuous driver, which has none.
         duty: fraction of time for which any coil was driven.
         mode_final: of the controller.

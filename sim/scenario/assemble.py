@@ -49,7 +49,7 @@ def _config(scenario: Scenario, seed: int) -> PlantConfig:
         disturbance=_disturbance(scenario),
         magnetometer=_magnetometer(scenario),
         sun_sensor=_sun_sensor(scenario) if cells is None else _sun_cells(cells),
-        coils=_coils(scenario),
+        coils=coil_config(scenario),
         limits=coil_limits(scenario.coils, tick_hz),
         max_substep_s=scenario.plant.max_substep_s,
         perfect_knowledge=scenario.knowledge == "perfect",
@@ -116,7 +116,8 @@ def _disturbance(scenario: Scenario) -> DisturbanceConfig:
     )
 
 
-def _coils(scenario: Scenario) -> CoilConfig:
+def coil_config(scenario: Scenario) -> CoilConfig:
+    """The physics of a scenario's coils."""
     coils = scenario.coils
     first, second, third = coils.misalignment_deg
     continuous = None

@@ -24,7 +24,7 @@ class Coils:
         self._config = config
         self._tau_s = config.time_constant_s
         self._dipole_per_ampere = [config.dipole_per_ampere_am2 * scale for scale in config.dipole_scale]
-        self._body_from_coils = _body_from_coils(config.misalignment_rad, config.wiring)
+        self._body_from_coils = body_from_coils(config.misalignment_rad, config.wiring)
         self._scales: tuple[list[float], ...] = ([], [], [])
         self._remanence = Remanence(config.remanence_part)
         self._current_a = [0.0, 0.0, 0.0]
@@ -107,7 +107,7 @@ class Coils:
         return target_a * time_s - gap_a * self._tau_s * expm1(-x), target_a + gap_a * exp(-x)
 
 
-def _body_from_coils(turns_rad: Mat3, wiring: Wiring) -> Mat3 | None:
+def body_from_coils(turns_rad: Mat3, wiring: Wiring) -> Mat3 | None:
     """The matrix whose columns are the coils' axes, in body axes; None where they are the body axes."""
     if turns_rad == (ZERO, ZERO, ZERO) and wiring == AS_NAMED:
         return None

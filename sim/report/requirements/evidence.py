@@ -11,6 +11,7 @@ from fsw.wire.messages import Mode
 from sim.audit.findings import AuditReport
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
+from sim.report.figures.coil_effort import nominal_dipole_am2
 from sim.report.figures.controlled import error_vectors
 from sim.report.figures.estimate_error import knowledge_errors, within_3sigma
 from sim.report.figures.mean import Mean
@@ -232,5 +233,6 @@ def _saturated(scenario: Scenario, truth: Histories) -> NDArray[np.bool_]:
     if coils.driver != "continuous":
         return np.zeros(len(truth["t_s"]), dtype=bool)
     full_scale_am2 = coils.on_fraction * coils.largest_am2
-    result: NDArray[np.bool_] = np.abs(truth["m_body_am2"]).max(axis=1) > 0.98 * full_scale_am2
+    given_am2 = np.abs(nominal_dipole_am2(scenario, truth["m_body_am2"])).max(axis=1)
+    result: NDArray[np.bool_] = given_am2 > 0.98 * full_scale_am2
     return result
