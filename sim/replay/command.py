@@ -31,6 +31,7 @@ from sim.scenario.assemble import plant_config
 from sim.scenario.law_named import with_law_named
 from sim.scenario.own_effects import own_effects
 from sim.scenario.schema import Scenario, flight_table
+from sim.scenario.telecommands import uplink
 
 LONGEST_PAUSE_S = 86_400.0
 """In a log that is played onto a bus: a longer pause means that it was not recorded in one piece."""
@@ -154,6 +155,7 @@ def through_plant(log: Path, run: LoggedRun) -> ReplayReport:
         raise HarnessError(f"{log}: the run has effects of its own ({named}): --effects executes them")
     effects = own_effects(run.scenario.effect)
     plant = make_plant(plant_config(run.scenario, run.record["seed"]), run.scenario.fault, effects)
+    commands_of = uplink(run.scenario.telecommand, run.scenario.time.tick_hz)
     ticks = 0
     with progress("replaying", run.ticks) as watch:
         for logged, is_last in _by_time(log):
@@ -169,7 +171,7 @@ def through_plant(log: Path, run: LoggedRun) -> ReplayReport:
             if difference is not None:
                 _, lines = _binding(log, run)
                 return ReplayReport(False, (f"differs: tick {ticks}: {difference}", *lines))
-            for frame in logged[:begin] + logged[end:]:
+            for frame in _without_own(logged[:begin], commands_of(ticks)) + logged[end:]:
                 plant.receive(frame)
             plant.slips += not has_answer(logged, ticks)
             plant.end_tick()
@@ -193,6 +195,12 @@ def _beginning(logged: list[Frame], sent: list[Frame]) -> int:
     any_sync = [index for index, frame in enumerate(logged) if frame.can_id == Sync.ID]
     sync = next(iter(own + any_sync), len(sent))
     return max(0, sync + 1 - len(sent))
+
+
+def _without_own(before: list[Frame], commands: list[Frame]) -> list[Frame]:
+    """The frames before those of the plant, without the scenario's telecommands, which it sends with them."""
+    first = len(before) - len(commands)
+    return before[:first] if first >= 0 and before[first:] == commands else before
 
 
 def _difference(sent: list[Frame], logged: list[Frame]) -> str | None:

@@ -55,3 +55,16 @@ def test_a_log_has_as_many_ticks_as_its_complete_run(run, through, complete, flo
     assert report.ok is ok
     told = "differs: the log ends after 300 ticks, and run.json names 301" in report.lines
     assert told is not ok
+
+
+def test_telecommands_of_the_scenario_go_up_and_not_to_the_boards(fly_run):
+    """A fault that draws a random number for each frame to the boards draws as many in the replay."""
+    folder = fly_run(
+        120,
+        telecommand=[{"message": "TC_FREEZE", "at_s": at_s, "frozen": True} for at_s in (50.0, 50.0, 70.0)],
+        fault=[{"kind": "loss", "at_s": 10.0, "parameters": {"part": 0.2}}],
+    )
+    record = json.loads((folder / run_dir.RUN).read_text())
+    logged = LoggedRun(run_dir.read_scenario(folder), record, Binding({}))
+    report = through_plant(folder / run_dir.BUS_LOG, logged)
+    assert report.ok, report.lines
