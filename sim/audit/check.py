@@ -49,11 +49,13 @@ def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> Audi
     limits = stated or AuditLimits()
     if backoff is not None:
         limits = replace(limits, shared=is_shared(backoff, "--backoff"))
+    versions = _Versions(log)
     with binding.beside_errors():
-        report = audit(_of_this_contract(log), limits, expect_end=stated is not None)
+        report = audit(versions.entries(), limits, expect_end=stated is not None)
+        foreign = versions.check()
     voucher = check_against_index(log)
     usual = f"judged by the usual limits: {SCENARIO_NAME} is not the run's" if mismatched else ""
-    notes = (voucher.sentence, binding.note, usual)
+    notes = (voucher.sentence, binding.note, usual, foreign)
     return replace(
         report,
         notes=(*report.notes, *(note for note in notes if note)),
@@ -63,17 +65,46 @@ def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> Audi
     )
 
 
-def _of_this_contract(log: Path) -> Iterator[LogEntry]:
-    """The entries of a log; every boot message in it must be of this version of the contract."""
-    for entry in read_log(log):
-        if entry.frame.can_id in _BOOTS and intact(entry.frame):
-            version = _BOOTS[entry.frame.can_id].decode(entry.frame.data).version
-            if version != CONTRACT_VERSION:
-                raise HarnessError(
-                    f"{log}: line {entry.line} is of version {version} of the bus contract, "
-                    f"and only version {CONTRACT_VERSION} can be read"
-                )
-        yield entry
+class _Versions:
+    """The versions of the bus contract that the boot messages of a log name, gathered while it is read."""
+
+    def __init__(self, log: Path) -> None:
+        self._log = log
+        self._known: set[int] = set()  # identifiers of boot messages of this version
+        self._foreign: dict[int, tuple[int, int]] = {}  # first line and version of the others, by identifier
+        self._count = 0
+
+    def entries(self) -> Iterator[LogEntry]:
+        """The entries of the log."""
+        for entry in read_log(self._log):
+            can_id = entry.frame.can_id
+            if can_id in _BOOTS and intact(entry.frame):
+                version = _BOOTS[can_id].decode(entry.frame.data).version
+                if version == CONTRACT_VERSION:
+                    self._known.add(can_id)
+                else:
+                    self._count += 1
+                    self._foreign.setdefault(can_id, (entry.line, version))
+            yield entry
+
+    def check(self) -> str:
+        """A note on boot messages of another version, if there are any; one that is astray proves nothing.
+
+        Raises:
+            HarnessError: no node, or not the coil driver, has booted with this version.
+        """
+        if not self._foreign:
+            return ""
+        line, version = min(self._foreign.values())
+        if CoilBoot.ID in self._foreign and CoilBoot.ID not in self._known:
+            line, version = self._foreign[CoilBoot.ID]
+        elif self._known:
+            many = f"{self._count} boot messages are" if self._count > 1 else "a boot message is"
+            return f"{many} of another version of the bus contract, first line {line}, of version {version}"
+        raise HarnessError(
+            f"{self._log}: line {line} is of version {version} of the bus contract, "
+            f"and only version {CONTRACT_VERSION} can be read"
+        )
 
 
 def limits_beside(log: Path) -> AuditLimits | None:

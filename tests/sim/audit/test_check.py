@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 
 from fsw.core import telemetry
-from fsw.wire.messages import CLASSES
+from fsw.wire.messages import CLASSES, CoilBoot
 from hil_stub import node
 from sim.audit.auditor import AuditLimits, ViolationKind, audit
 from sim.audit.check import CONTRACT_VERSION, check, limits_beside, render
@@ -184,6 +184,28 @@ def test_a_log_of_another_bus_contract(run, bus_log, boot):
     values = dict.fromkeys(boot._fields, 0) | {"version": CONTRACT_VERSION + 1}
     log.statuses[7].insert(0, boot(**values).encode())
     with pytest.raises(HarnessError, match="line 22 is of version 2 of the bus contract, and only version 1"):
+        check(run(log), None)
+
+
+@pytest.mark.parametrize("boot", BOOTS, ids=lambda boot: boot.__name__)
+def test_a_stray_boot_message_of_another_contract_is_a_note(run, bus_log, boot):
+    log = bus_log(ticks=200, boots=[0])
+    values = dict.fromkeys(boot._fields, 0) | {"version": 65}
+    log.statuses[7].insert(0, boot(**values).encode())
+    report = check(run(log), None)
+    assert report.ok
+    note = "a boot message is of another version of the bus contract, first line 23, of version 65"
+    assert note in report.notes
+    log.statuses[9].insert(0, boot(**values).encode())
+    assert any(note.startswith("2 boot messages are of another") for note in check(run(log), None).notes)
+
+
+def test_a_coil_driver_of_another_contract_is_refused_whatever_the_others_are(run, bus_log):
+    log = bus_log(ticks=20)
+    for number, boot in enumerate(BOOTS):
+        version = CONTRACT_VERSION + (boot is CoilBoot)
+        log.statuses[number].insert(0, boot(**dict.fromkeys(boot._fields, 0) | {"version": version}).encode())
+    with pytest.raises(HarnessError, match="is of version 2 of the bus contract, and only version 1"):
         check(run(log), None)
 
 
