@@ -14,11 +14,11 @@ from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, CoilRefused, PlantEnd
-from sim.audit.auditor import AuditReport, audit
+from sim.audit.auditor import AuditReport
 from sim.audit.limits import limits_in
 from sim.audit.whole_entries import JUDGED
 from sim.campaign.frame_digest import FrameDigest
-from sim.faults.section import break_frames, make_plant
+from sim.faults.section import make_plant
 from sim.flight.flight_loop import fly
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.flight.virtual import VirtualBus
@@ -28,7 +28,7 @@ from sim.record.estimates import EstimateRecorder, Estimates
 from sim.record.run_dir import Json
 from sim.record.run_record import FlightRecord
 from sim.record.truth import Histories
-from sim.report.conclude import without_broken_frames
+from sim.report.conclude import audit_flight
 from sim.report.figures.performance import perform
 from sim.report.summary import BusTally, summarise
 from sim.scenario.assemble import plant_config
@@ -155,9 +155,7 @@ def record_scenario(scenario: Scenario, seed: int, orbits: float | None = None) 
     run = FlightRecord(
         seed=seed, flown={"ticks": outcome.ticks, "slips": outcome.slips, "wall_s": outcome.wall_s}
     )
-    report = audit(log.entries, limits_in(scenario.model_dump(mode="json"), scenario.name))
-    if break_frames(scenario.fault):
-        report = without_broken_frames(report)
+    report = audit_flight(log.entries, limits_in(scenario.model_dump(mode="json"), scenario.name), scenario)
     estimates = truth.recorder.estimates()
     return RecordedFlight(scenario, run, truth.histories, estimates, report, tally, log.digest)
 

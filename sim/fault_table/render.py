@@ -49,10 +49,10 @@ stop a real process.
 
 A scenario schedules faults of its own; without `lasts_s` a fault is permanent. The log holds the frames on
 the bus of the flight software, so that such a run replays to the last bit. `torquer check` judges the log: a
-COIL_STATUS that was corrupted on its way is a violation there, and the silence of a coil driver in which a
-pulse may have gone unreported fails ([runs.md](runs.md#the-audit)). A scheduled fault alone does not make
-`torquer sil` fail: with such a scenario it does not count broken frames, and no stranger of the fault as a
-second sender, but limits, replay and completeness must hold.
+COIL_STATUS that was corrupted on its way is a violation there, as is a forged SYNC, and the silence of a coil
+driver in which a pulse may have gone unreported fails ([runs.md](runs.md#the-audit)). A scheduled fault alone
+does not make `torquer sil` fail: with such a scenario it counts neither broken frames nor forged SYNCs, and
+no stranger of the fault as a second sender, but limits, replay and completeness must hold.
 
     [[fault]]
     kind = "mag_bias"

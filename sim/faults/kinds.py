@@ -29,6 +29,7 @@ class FaultKind(NamedTuple):
     ``by_signal``: it needs the flight software as a process of its own.
     ``by_clock``: it needs a coil board with a clock of its own.
     ``breaks``: COIL_STATUS may arrive corrupt, though the board keeps its limits.
+    ``forges_sync``: a stranger sends SYNC, of other ticks or times than the plant's.
     ``forges``: a stranger sends intact frames under identifiers of the flight software.
     ``sensor``: what it acts on, "sun" or "cells", of which a satellite has one; empty: on anything else.
     """
@@ -39,6 +40,7 @@ class FaultKind(NamedTuple):
     by_signal: bool = False
     by_clock: bool = False
     breaks: bool = False
+    forges_sync: bool = False
     forges: bool = False
     sensor: Literal["", "sun", "cells"] = ""
 
@@ -83,6 +85,7 @@ KINDS: dict[str, FaultKind] = {
             "count": Parameter(1.0, 1.0, 10.0),
             "step": Parameter(1.0, 0.0, 1.0),
         },
+        forges_sync=True,
     ),
     "end_forged": FaultKind(forged.ForgedEnd),
     "done_forged": FaultKind(forged.ForgedTickDone, ALWAYS, forges=True),

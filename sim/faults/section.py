@@ -83,6 +83,11 @@ def break_frames(faults: Sequence[FaultSection]) -> bool:
     return any(KINDS[fault.kind].breaks for fault in faults)
 
 
+def forge_sync(faults: Sequence[FaultSection]) -> bool:
+    """Whether a fault of the scenario sends SYNC."""
+    return any(KINDS[fault.kind].forges_sync for fault in faults)
+
+
 def forge_answers(faults: Sequence[FaultSection]) -> bool:
     """Whether a fault of the scenario sends under identifiers of the flight software."""
     return any(KINDS[fault.kind].forges for fault in faults)

@@ -1,15 +1,16 @@
 """Conclude a run: audit, replay, summary and report; only then is the run complete."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from fsw.core.state import FlightState
 from fsw.table.config import flight_config
-from sim.audit.auditor import AuditReport, ViolationKind, audit
+from fsw.wire.messages import Sync, intact
+from sim.audit.auditor import AuditLimits, AuditReport, ViolationKind, audit
 from sim.audit.check import limits_beside
 from sim.errors import HarnessError
-from sim.faults.section import break_frames, forge_answers
+from sim.faults.section import break_frames, forge_answers, forge_sync
 from sim.record import binding, run_dir
 from sim.record.candump import LogEntry, More, read_log
 from sim.record.destination import check_folder
@@ -127,9 +128,7 @@ def _write_results(path: Path, scenario: Scenario, replayed: _Replayed) -> Json:
     tally = BusTally(scenario.epoch_unix_s * 1_000_000)
     limits = limits_beside(log)
     assert limits is not None
-    report = audit(_tally_entries(read_log(log), tally), limits, expect_end=True)
-    if break_frames(scenario.fault):
-        report = without_broken_frames(report)
+    report = audit_flight(_tally_entries(read_log(log), tally), limits, scenario, expect_end=True)
     summary = summarise(scenario, run, replayed.performance, report, tally)
     summary["replay"] = _replay_json(replayed.result)
     senders = run.get("second_senders")
@@ -175,10 +174,38 @@ def _tally_entries(entries: Iterator[LogEntry], tally: BusTally) -> Iterator[Log
         yield entry
 
 
-def without_broken_frames(report: AuditReport) -> AuditReport:
-    """The report without broken frames, where the scenario injects them: they say nothing about the board."""
+def audit_flight(
+    entries: Iterable[LogEntry], limits: AuditLimits, scenario: Scenario, expect_end: bool = False
+) -> AuditReport:
+    """The audit of a flight without what faults of its scenario send or break: no word of the board.
+
+    Args:
+        entries: the log, in simulated time.
+        limits: what to judge by.
+        scenario: of the flight.
+        expect_end: as for ``audit``.
+    """
+    report = audit(_without_forged_sync(entries, scenario), limits, expect_end)
+    if not break_frames(scenario.fault):
+        return report
     others = tuple(violation for violation in report.violations if violation.kind is not ViolationKind.FRAME)
     return replace(report, violations=others)
+
+
+def _without_forged_sync(entries: Iterable[LogEntry], scenario: Scenario) -> Iterable[LogEntry]:
+    """The entries; where a fault forges SYNC, without each that is not of the tick of its timestamp."""
+    if not forge_sync(scenario.fault):
+        return entries
+    epoch_s, hz = scenario.epoch_unix_s, scenario.time.tick_hz
+
+    def is_own(entry: LogEntry) -> bool:
+        if entry.frame.can_id != Sync.ID or not intact(entry.frame):
+            return True
+        tick, unix_time_s = Sync.decode(entry.frame.data)
+        at_us = epoch_s * 1_000_000 + tick * 1_000_000 // hz
+        return (entry.timestamp_us, unix_time_s) == (at_us, epoch_s + tick // hz)
+
+    return filter(is_own, entries)
 
 
 def _replay_json(replay_result: ReplayResult) -> Json:

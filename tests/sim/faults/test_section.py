@@ -8,7 +8,7 @@ from fsw.input.schema import TableError
 from fsw.wire.messages import MagField
 from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.faults.kinds import KINDS, make
-from sim.faults.section import break_frames, forge_answers, make_plant
+from sim.faults.section import break_frames, forge_answers, forge_sync, make_plant
 from sim.plant.plant import Plant
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import load
@@ -180,17 +180,18 @@ def test_each_fault_of_each_seed_has_random_numbers_of_its_own():
 
 
 @pytest.mark.parametrize(
-    ("kind", "breaks", "forges"),
+    ("kind", "breaks", "forges_sync", "forges"),
     [
-        ("loss", False, False),
-        ("corruption", True, False),
-        ("wrong_length", True, False),
-        ("random_frames", True, True),
-        ("second_sender", False, True),
-        ("done_forged", False, True),
-        ("sync_forged", False, False),
+        ("loss", False, False, False),
+        ("corruption", True, False, False),
+        ("wrong_length", True, False, False),
+        ("random_frames", True, False, True),
+        ("second_sender", False, False, True),
+        ("done_forged", False, False, True),
+        ("sync_forged", False, True, False),
     ],
 )
-def test_what_a_fault_may_do_to_statuses_and_in_the_place_of_fsw(kind, breaks, forges):
+def test_what_a_fault_may_do_to_statuses_and_in_the_place_of_others(kind, breaks, forges_sync, forges):
     chosen = load("microsat", {"fault": [{"kind": "mag_frozen", "at_s": 1.0}, {"kind": kind, "at_s": 1.0}]})
-    assert (break_frames(chosen.fault), forge_answers(chosen.fault)) == (breaks, forges)
+    found = break_frames(chosen.fault), forge_sync(chosen.fault), forge_answers(chosen.fault)
+    assert found == (breaks, forges_sync, forges)
