@@ -28,8 +28,7 @@ from sim.record.binding import bind
 from sim.record.bus_log import BusLog
 from sim.record.destination import check_folder
 from sim.record.pace import Pace
-from sim.scenario.assemble import plant_config
-from sim.scenario.own_effects import own_effects
+from sim.scenario.assemble import effects_of, plant_config
 from sim.scenario.schema import Scenario
 from sim.scenario.telecommands import uplink
 
@@ -241,7 +240,7 @@ def _tick_source(settings: HilSettings, stubs: dict[str, BenchProcess]) -> TickS
         return SyncOnly(scenario.epoch_unix_s, scenario.time.tick_hz)
     pipes = {name: stubs[name].popen.stdin for name in SENSORS if name in stubs}
     lines = {name: line_to(pipe.fileno()) for name, pipe in pipes.items() if pipe is not None}
-    config, own = plant_config(scenario, settings.seed), own_effects(scenario.effect)
+    config, own = plant_config(scenario, settings.seed), effects_of(scenario)
     return PlantTicks(config, lines, own)
 
 

@@ -31,8 +31,7 @@ from sim.record.truth import Histories
 from sim.report.conclude import audit_flight
 from sim.report.figures.performance import perform
 from sim.report.summary import BusTally, summarise
-from sim.scenario.assemble import plant_config
-from sim.scenario.own_effects import own_effects
+from sim.scenario.assemble import effects_of, plant_config
 from sim.scenario.schema import Scenario, flight_table, load
 from sim.scenario.telecommands import uplink
 
@@ -138,7 +137,7 @@ def record_scenario(scenario: Scenario, seed: int, orbits: float | None = None) 
     ticks = ticks_of(scenario, orbits, MOST_IN_MEMORY)
     node = FlightNode(flight_config(flight_table(scenario)))
     log, truth = _Frames(), _Truth(ticks, node)
-    plant = make_plant(plant_config(scenario, seed), scenario.fault, own_effects(scenario.effect))
+    plant = make_plant(plant_config(scenario, seed), scenario.fault, effects_of(scenario))
     outcome = fly(
         plant,
         VirtualBus(node),

@@ -14,8 +14,7 @@ from sim.record import run_dir
 from sim.record.bus_log import BusLog
 from sim.record.pace import Pace
 from sim.record.truth import TruthFile
-from sim.scenario.assemble import plant_config
-from sim.scenario.own_effects import own_effects
+from sim.scenario.assemble import effects_of, plant_config
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 from sim.scenario.telecommands import uplink
 
@@ -54,7 +53,7 @@ def check_can_fly(scenario: Scenario, seed: int) -> None:
 
 def check_plant(scenario: Scenario, seed: int) -> None:
     """The same for the plant alone."""
-    make_plant(plant_config(scenario, seed), scenario.fault, own_effects(scenario.effect))
+    make_plant(plant_config(scenario, seed), scenario.fault, effects_of(scenario))
 
 
 def record_flight(
@@ -83,7 +82,7 @@ def record_flight(
     """
     run = run_dir.read_run(path)
     log_name = run_dir.COMPRESSED_LOG if run.get("compressed") else run_dir.BUS_LOG
-    plant = make_plant(plant_config(scenario, run["seed"]), scenario.fault, own_effects(scenario.effect))
+    plant = make_plant(plant_config(scenario, run["seed"]), scenario.fault, effects_of(scenario))
     pace = Pace(run["pace_factor"])
     senders = SenderWatch(lockstep=pace.factor is None)
     identity, wheel = run_dir.identity(scenario, run["seed"]), scenario.wheel is not None

@@ -27,9 +27,8 @@ from sim.record.log_index import check_against_index
 from sim.record.run_record import RunRecord
 from sim.record.signature import PublicKey
 from sim.replay.log_replay import ReplayResult, replay
-from sim.scenario.assemble import plant_config
+from sim.scenario.assemble import effects_of, plant_config
 from sim.scenario.law_named import with_law_named
-from sim.scenario.own_effects import own_effects
 from sim.scenario.schema import Scenario, flight_table
 from sim.scenario.telecommands import uplink
 
@@ -153,7 +152,7 @@ def through_plant(log: Path, run: LoggedRun) -> ReplayReport:
     if run.scenario.effect and not run.effects:
         named = ", ".join(display(effect.use) for effect in run.scenario.effect)
         raise HarnessError(f"{log}: the run has effects of its own ({named}): --effects executes them")
-    effects = own_effects(run.scenario.effect)
+    effects = effects_of(run.scenario)
     plant = make_plant(plant_config(run.scenario, run.record["seed"]), run.scenario.fault, effects)
     commands_of = uplink(run.scenario.telecommand, run.scenario.time.tick_hz)
     ticks = 0

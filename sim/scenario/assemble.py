@@ -1,4 +1,4 @@
-"""The plant's configuration from a scenario, its units converted to SI."""
+"""The plant's configuration and effects from a scenario, units converted to SI."""
 
 from math import cos, hypot, radians, sin
 
@@ -14,9 +14,11 @@ from sim.plant.config import (
     PlantConfig,
     PlateConfig,
 )
+from sim.plant.own_effects import OwnEffects
 from sim.plant.sensor_config import AS_NAMED, CellConfig, MagnetometerConfig, SunCellsConfig, SunSensorConfig
 from sim.plant.wheel_config import WheelConfig
 from sim.scenario.coil_limits import coil_limits
+from sim.scenario.own_effects import own_effects
 from sim.scenario.schema import Scenario
 from sim.scenario.sections import CellsSection, ScenarioWheel
 
@@ -114,6 +116,15 @@ def _disturbance(scenario: Scenario) -> DisturbanceConfig:
         torque_daily_part=section.torque_daily_part,
         residual_dipole_eclipse_body_am2=section.residual_dipole_eclipse_am2,
     )
+
+
+def effects_of(scenario: Scenario) -> OwnEffects:
+    """The effects of one's own of a scenario; their sources are executed.
+
+    Raises:
+        TableError: as for ``own_effects``.
+    """
+    return own_effects(scenario.effect, with_cells=scenario.sensors.cells is not None)
 
 
 def coil_config(scenario: Scenario) -> CoilConfig:

@@ -43,11 +43,16 @@ def with_digests(values: Nested, folder: Path) -> Nested:
     return {**values, "effect": [_with_digest(entry, folder) for entry in entries]}
 
 
-def own_effects(sections: Sequence[EffectSection] | None) -> OwnEffects:
+def own_effects(sections: Sequence[EffectSection] | None, with_cells: bool = False) -> OwnEffects:
     """The effects of a scenario; their sources are executed.
 
+    Args:
+        sections: of the scenario.
+        with_cells: its satellite has Sun cells in place of the Sun sensor.
+
     Raises:
-        TableError: one cannot be loaded, is not an effect, or a parameter is not allowed.
+        TableError: one cannot be loaded, is not an effect, acts on a sensor that is not there, or a parameter
+            is not allowed.
     """
     if not sections:
         return NO_EFFECTS
@@ -56,7 +61,7 @@ def own_effects(sections: Sequence[EffectSection] | None) -> OwnEffects:
             OwnEffect(
                 f"own_{number}_{_snake(own_code.short_name(section.use))}",
                 own_code.display(section.use),
-                _effect(section, f"effect.{number}.parameters"),
+                _effect(section, f"effect.{number}.parameters", with_cells),
             )
             for number, section in enumerate(sections)
         ]
@@ -69,12 +74,16 @@ def _snake(name: str) -> str:
     return re.sub(r"[^a-z0-9_]", "_", words)[:LONGEST_NAME]
 
 
-def _effect(section: EffectSection, key: str) -> object:
+def _effect(section: EffectSection, key: str, with_cells: bool) -> object:
     kind = own_code.load(section.use, section.sha256, GROUP)
     if not isinstance(kind, type) or not is_dataclass(kind):
         raise TableError(f"{section.use} is no effect: not a frozen dataclass")
     if not any(callable(getattr(kind, action, None)) for action in ACTIONS):
         raise TableError(f"{section.use} is no effect: it has none of {', '.join(ACTIONS)}")
+    if with_cells and callable(getattr(kind, "sun_body", None)):
+        raise TableError(
+            f"{section.use}: its sun_body acts on the Sun sensor, in whose place there is sensors.cells"
+        )
     return with_values(kind, section.parameters, key, section.use)
 
 

@@ -7,6 +7,7 @@ import pytest
 import torquer
 from fsw.input.schema import TableError
 from sim.record.truth import read_truth
+from sim.scenario.assemble import effects_of
 from sim.scenario.own_effects import own_effects
 from sim.scenario.schema import load, shipped
 
@@ -146,3 +147,25 @@ def test_it_flies_and_its_run_is_replayed_through_the_plant_only_on_demand(folde
 def test_one_that_fails_ends_the_flight_with_a_sentence(folder, scenario_with):
     with pytest.raises(torquer.Error, match=r"the effect Fails of leak\.py, 5 s: it fails: Zero"):
         torquer.fly(scenario_with(("leak.py:Fails",)), out=folder / "run")
+
+
+BENT = """
+from dataclasses import dataclass
+
+@dataclass(frozen=True)
+class Bent:
+    def sun_body(self, sun_body, moment):
+        return sun_body
+"""
+
+
+def test_what_acts_on_the_sun_sensor_is_refused_where_there_are_cells(folder):
+    (folder / "bent.py").write_text(BENT)
+    bent = {"effect": [{"use": f"{folder / 'bent.py'}:Bent"}]}
+    assert effects_of(load("microsat", bent)).any
+    with pytest.raises(
+        TableError, match=r"bent\.py:Bent: its sun_body acts on the Sun sensor, in whose place"
+    ):
+        effects_of(load("cubesat-cells", bent))
+    leak = {"effect": [{"use": f"{folder / 'leak.py'}:GasLeak"}]}
+    assert effects_of(load("cubesat-cells", leak)).any
