@@ -138,14 +138,13 @@ def history(record: RecordedFlight, by: Controlled) -> History:
 
 def error_of(record: RecordedFlight, by: Controlled) -> Array:
     """The error of what a flight is judged by, at each tick."""
-    vectors = error_vectors(by.what, record.truth, record.scenario.control.spin_radps)
+    vectors = error_vectors(by.what, record.truth, record.scenario)
     result: Array = np.linalg.norm(vectors, axis=1)
     return result
 
 
 def _rate_error_degps(scenario: Scenario, truth: Histories) -> Array:
-    wanted = np.array([scenario.control.spin_radps, 0.0, 0.0])
-    result: Array = np.degrees(np.linalg.norm(truth["omega_body_orbit_radps"] - wanted, axis=1))
+    result: Array = np.linalg.norm(error_vectors("rate", truth, scenario), axis=1)
     return result
 
 

@@ -185,12 +185,17 @@ Telecommand = Annotated[
 Telecommands = Annotated[tuple[Telecommand, ...], Strict(False)]
 
 
+def first_tick(telecommand: TelecommandSection, tick_hz: int) -> int:
+    """The tick in which it is sent, the first at or after its time."""
+    return ceil(telecommand.at_s * tick_hz - 1e-9)
+
+
 def uplink(telecommands: Sequence[TelecommandSection], tick_hz: int) -> Uplink:
     """The frames of each tick, with a counter for each kind of message."""
     frames: dict[int, list[Frame]] = {}
     counters: Counter[int] = Counter()
     for telecommand in sorted(telecommands, key=lambda telecommand: telecommand.at_s):
-        tick = ceil(telecommand.at_s * tick_hz - 1e-9)
+        tick = first_tick(telecommand, tick_hz)
         for message in telecommand.messages():
             frames.setdefault(tick, []).append(message._replace(counter=counters[message.ID] & 0xF).encode())
             counters[message.ID] += 1

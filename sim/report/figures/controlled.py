@@ -1,5 +1,6 @@
 """The quantity that a scenario's modes and law control, its errors by tick, and when it has settled."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -7,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fsw.core.laws.entry import Aim
+from fsw.core.laws.interface import MAX_SPIN_RADPS
 from fsw.core.laws.table import LAWS
 from fsw.table.own_law import declared
 from fsw.table.sections import ControlTable
@@ -14,6 +16,7 @@ from sim.record.truth import Histories
 from sim.report.figures.attitude_arrays import axis1_errors, errors
 from sim.report.figures.mean import Mean
 from sim.scenario.schema import Scenario, flight_table
+from sim.scenario.telecommands import SendSpin, first_tick
 from sim.statistics.settling import Settling
 
 Array = NDArray[np.float64]
@@ -49,7 +52,27 @@ def _aim(control: ControlTable) -> Aim:
     return LAWS[control.law].aim
 
 
-def error_vectors(what: str, truth: Histories, spin_radps: float) -> Array:
+def spin_reference_radps(scenario: Scenario, t_s: Array) -> Array:
+    """The spin about body axis 1 that is asked for, rad/s, at times t, (n,).
+
+    That of ``control.spin_radps``, and of each TC_SPIN of the scenario within the range from its tick on.
+    """
+    hz = scenario.time.tick_hz
+    tick = np.rint(t_s * hz)
+    reference = np.full(len(t_s), scenario.control.spin_radps)
+    for telecommand in _spins(scenario):
+        reference[tick >= first_tick(telecommand, hz)] = telecommand.spin_radps
+    return reference
+
+
+def _spins(scenario: Scenario) -> Iterator[SendSpin]:
+    """Those that the flight software follows, in their order."""
+    for telecommand in sorted(scenario.telecommand, key=lambda telecommand: telecommand.at_s):
+        if isinstance(telecommand, SendSpin) and abs(telecommand.spin_radps) <= MAX_SPIN_RADPS:
+            yield telecommand
+
+
+def error_vectors(what: str, truth: Histories, scenario: Scenario) -> Array:
     """The error of what is controlled, (n, 3) or (n, 1), deg or deg/s, body axes.
 
     ``attitude``: the rotation vector from nominal; ``axis``: that from body axis 1 to the vertical;
@@ -59,7 +82,9 @@ def error_vectors(what: str, truth: Histories, spin_radps: float) -> Array:
         return np.degrees(errors(truth["q_body_from_orbit"]))
     if what == "axis":
         return np.degrees(axis1_errors(truth["q_body_from_orbit"]))
-    rate: Array = np.degrees(truth["omega_body_orbit_radps"] - np.array([spin_radps, 0.0, 0.0]))
+    reference_radps = np.zeros((len(truth["t_s"]), 3))
+    reference_radps[:, 0] = spin_reference_radps(scenario, truth["t_s"])
+    rate: Array = np.degrees(truth["omega_body_orbit_radps"] - reference_radps)
     return rate[:, :1] if what == "spin" else rate
 
 
@@ -68,13 +93,13 @@ class ControlledError:
     """The error of what is controlled over the last orbit, and the tick at which it has settled."""
 
     of: Controlled
-    spin_radps: float
+    scenario: Scenario
     settling: Settling
     last_orbit: Mean = field(default_factory=Mean)
 
     def take(self, truth: Histories, recent: slice) -> Array:
         """The next block, of which ``recent`` is in the last orbit; returns the errors' magnitudes."""
-        error: Array = np.linalg.norm(error_vectors(self.of.what, truth, self.spin_radps), axis=1)
+        error: Array = np.linalg.norm(error_vectors(self.of.what, truth, self.scenario), axis=1)
         self.last_orbit.take(error[recent])
         self.settling.take(error < self.of.threshold)
         return error

@@ -13,7 +13,7 @@ from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures import parameters
 from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad
-from sim.report.figures.controlled import SETTLED_DEG, ControlledError, controlled
+from sim.report.figures.controlled import SETTLED_DEG, ControlledError, controlled, spin_reference_radps
 from sim.report.figures.estimate_error import (
     CONVERGED_DEG,
     CONVERGED_FOR_S,
@@ -139,13 +139,18 @@ class _Convergence:
 class _Spin:
     """The spin about body axis 1 against its reference, and the tick at which it has settled at that."""
 
-    reference_radps: float
     settling: Settling
+    reference_radps: float = 0.0
+    """The latest."""
+    asked: bool = False
+    """Whether it was ever other than 0."""
     last_orbit: Mean = field(default_factory=Mean)
     deviation: Mean = field(default_factory=Mean)
 
-    def take(self, spin_radps: Array, recent: slice) -> None:
-        deviation = np.abs(spin_radps - self.reference_radps)
+    def take(self, spin_radps: Array, reference_radps: Array, recent: slice) -> None:
+        deviation = np.abs(spin_radps - reference_radps)
+        self.reference_radps = float(reference_radps[-1])
+        self.asked |= bool(reference_radps.any())
         self.last_orbit.take(spin_radps[recent])
         self.deviation.take(deviation[recent])
         self.settling.take(deviation < SPIN_SETTLED_RADPS)
@@ -168,9 +173,8 @@ class Performance:
         held = held_ticks(self._hz)
         self._pointing, self._axis1 = _Angle(Settling(held)), _Angle(Settling(held))
         self._convergence = _Convergence(round(CONVERGED_FOR_S * self._hz))
-        spin_radps = scenario.control.spin_radps
-        self._spin = _Spin(spin_radps, Settling(held))
-        self._controlled = ControlledError(controlled(scenario), spin_radps, Settling(held))
+        self._spin = _Spin(Settling(held))
+        self._controlled = ControlledError(controlled(scenario), scenario, Settling(held))
         self.judgement = Judgement(scenario, ticks)
         """By the requirements of the scenario."""
         self._last: tuple[Histories, Estimates] | None = None
@@ -185,7 +189,8 @@ class Performance:
         self._pointing.take(np.degrees(angle_rad(q)), recent)
         self._axis1.take(np.degrees(axis1_angle_rad(q)), recent)
         self._convergence.take(truth, estimates, first)
-        self._spin.take(truth["omega_body_orbit_radps"][:, 0], recent)
+        reference_radps = spin_reference_radps(self._scenario, truth["t_s"])
+        self._spin.take(truth["omega_body_orbit_radps"][:, 0], reference_radps, recent)
         self._controlled.take(truth, recent)
         self.judgement.take(truth, estimates)
         self._last = truth, estimates
@@ -216,7 +221,7 @@ class Performance:
     def spin(self) -> Json | None:
         """How the spin follows its reference; None without a reference, or without a tick."""
         spin = self._spin
-        if spin.reference_radps == 0.0 or self._last is None:
+        if not spin.asked or self._last is None:
             return None
         result: Json = {
             "reference": spin.reference_radps,

@@ -116,9 +116,8 @@ class EvidenceGatherer:
         first, rows = self._taken, len(truth["t_s"])
         self._taken += rows
         recent = slice(max(0, self._last_from - first), rows)
-        spin = self._scenario.control.spin_radps
-        self._take_trend(first, magnitudes(error_vectors(self._what, truth, spin)))
-        self._take_rate(first, magnitudes(error_vectors("rate", truth, spin)), recent)
+        self._take_trend(first, magnitudes(error_vectors(self._what, truth, self._scenario)))
+        self._take_rate(first, magnitudes(error_vectors("rate", truth, self._scenario)), recent)
         self._take_mode(first, estimates.mode[:rows])
         self._modes += np.bincount(estimates.mode[:rows], minlength=len(self._modes))
         self._note("valid", first, estimates.valid[:rows])

@@ -78,7 +78,7 @@ class Gathered:
     def take(self, truth: Histories, estimates: Estimates) -> None:
         """The next block."""
         first, rows = self._settling.taken, len(truth["t_s"])
-        error = error_vectors(self.what, truth, self._scenario.control.spin_radps)
+        error = error_vectors(self.what, truth, self._scenario)
         broken = self._settling.take(magnitudes(error) < self.threshold)
         if broken and self.section.window == "settled":
             self.statistic = Statistic(self.section.probability)
@@ -114,7 +114,7 @@ class Gathered:
         if index == "ake":
             error = np.degrees(knowledge_errors(truth, estimates))
         elif index == "rate":
-            error = error_vectors("rate", truth, self._scenario.control.spin_radps)
+            error = error_vectors("rate", truth, self._scenario)
         values = magnitudes(error[rows])
         self.statistic.take(values[truth["lit"][rows] > 0.5] if self.section.sunlit else values)
 
