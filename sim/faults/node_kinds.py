@@ -98,14 +98,21 @@ class TickRepetition(TickHold):
 
 
 class TickJumps(Fault):
-    """The tick in SYNC is off by ``ticks``; so is its time if ``with_time`` is not 0."""
+    """The tick in SYNC is off by ``ticks``; its time is that of its tick if ``with_time`` is not 0."""
+
+    _tick_hz = 1
+
+    def begin(self, plant: Plant) -> None:
+        """Time goes by its ticks."""
+        self._tick_hz = plant.tick_hz
 
     def sync(self, tick: int, frame: Frame) -> list[Frame]:
         """A wrong SYNC."""
         true = Sync.decode(frame.data)
         off = round(self.parameters["ticks"])
-        off_s = off if self.parameters["with_time"] else 0
-        return [Sync(max(0, true.tick + off), max(0, true.unix_time_s + off_s)).encode()]
+        hz, jumped = self._tick_hz, true.tick + off
+        off_s = jumped // hz - true.tick // hz if self.parameters["with_time"] else 0
+        return [Sync(max(0, jumped), max(0, true.unix_time_s + off_s)).encode()]
 
 
 class TimeJumps(Fault):

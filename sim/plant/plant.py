@@ -58,6 +58,8 @@ class Plant:
         self, config: PlantConfig, actuator: Actuator | None = None, own: OwnEffects = NO_EFFECTS
     ) -> None:
         self._config = config
+        self.tick_hz = config.tick_hz
+        """Ticks a second."""
         self._substeps = Substeps(config)
         self._environment = self._substeps.environment
         inertia, wheel = config.body.inertia_kgm2, config.wheel

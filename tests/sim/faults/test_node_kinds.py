@@ -11,6 +11,9 @@ from fsw.wire.messages import CoilFire, NavRate, Sync, intact
 from sim.faults.fault import Condition
 from sim.faults.kinds import make
 from sim.faults.node_kinds import count_doubles, flip
+from sim.plant.plant import Plant
+from sim.scenario.assemble import plant_config
+from sim.scenario.schema import load
 
 SYNC = Sync(5000, 1_700_000_077)
 
@@ -91,6 +94,13 @@ def test_after_a_request_so_many_ticks_follow_without_delay(kind, repeats):
 def test_a_tick_that_jumps_takes_its_time_along_unless_told_otherwise(parameters, tick, off_s):
     expected = Sync(tick, SYNC.unix_time_s + off_s)
     assert synced(fault("tick_jumps", **parameters)) == [expected]
+
+
+@pytest.mark.parametrize(("ticks", "off_s"), [(25.0, 2), (-25.0, -3), (5.0, 0)])
+def test_at_ten_ticks_a_second_its_time_jumps_by_a_tenth_of_the_ticks(ticks, off_s):
+    jumps = fault("tick_jumps", ticks=ticks)
+    jumps.begin(Plant(plant_config(load("microsat", {"time": {"tick_hz": 10}}), 1)))
+    assert synced(jumps) == [Sync(SYNC.tick + int(ticks), SYNC.unix_time_s + off_s)]
 
 
 @pytest.mark.parametrize("seconds", [3600.0, -7.0])
