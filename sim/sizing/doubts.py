@@ -21,6 +21,7 @@ from sim.scenario.assemble import plant_config
 from sim.scenario.residual_errors import coil_errors, magnetometer_errors, reading_of
 from sim.scenario.schema import Scenario, flight_table
 from sim.sizing.expectation import expect, field_across
+from sim.sizing.ignored_keys import ignored_keys
 from sim.sizing.levels import levels_against
 from sim.sizing.torques import surface_torque
 from sim.sizing.unbegun_faults import unbegun_faults
@@ -52,6 +53,7 @@ def doubts(scenario: Scenario, ticks: int | None = None) -> list[str]:
     """
     told = [doubt for judge in _JUDGES for doubt in judge(scenario)]
     flown = ticks_of(scenario, None) if ticks is None else ticks
+    told += ignored_keys(scenario)
     return told + unsent_telecommands(scenario, flown) + unbegun_faults(scenario, flown)
 
 
