@@ -23,6 +23,12 @@ from fsw.core.algebra.vector import Vec3, dot, norm, scale
 from fsw.core.orbit.earth import RADIUS_M
 from fsw.core.orbit.sun import lit
 
+GRAZING = 0.52
+"""Largest cos(zeta) ((1 + n . e) / 2)^2 of a cell that faces the Sun: n . e is at most sin(zeta) there, and
+cos(zeta) (1 + sin(zeta))^2 / 4 is largest where sin(zeta) = 2/3."""
+SIGMAS = 4.0
+"""Beyond this many standard deviations what a cell is wrong by is outside what the table allows."""
+
 
 class Shade(NamedTuple):
     """Where the satellite shades a cell from the Sun: a cone, its axis and the cosine of its half-angle."""
@@ -64,9 +70,22 @@ class CellSet:
         """Standard deviation of all that a cell that sees Sun and Earth shows beyond its nominal model."""
         return hypot(self.excess_sigma, self.gain_sigma, self.light_sigma)
 
+    @property
+    def most_shaded(self) -> float:
+        """The most that a cell turned towards the Sun shows while it is shaded from it.
+
+        That is the Earth's light, ``GRAZING`` times the albedo at most, and what the cell may be wrong by.
+        """
+        errors = hypot(GRAZING * self.light_sigma, self.excess_sigma, self.sigma)
+        return GRAZING * self.albedo + SIGMAS * errors
+
     def shaded(self, cell: int, s_body: Vec3) -> bool:
         """Whether the satellite itself shades a cell from a Sun in this direction."""
         return any([dot(shade.axis_body, s_body) > shade.cosine for shade in self.shades[cell]])
+
+    def may_be_shaded(self, cell: int, current: float) -> bool:
+        """Whether a cell that shows this fraction of full sunlight may be in a shade of its own."""
+        return bool(self.shades[cell]) and current < self.most_shaded
 
 
 class Light(NamedTuple):

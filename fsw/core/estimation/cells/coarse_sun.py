@@ -17,13 +17,17 @@ def coarse_sun(currents: Sequence[float | None], cells: CellSet) -> Vec3 | None:
     """The vector s with n . s = c for the three brightest cells that span space; None without three.
 
     Its length is 1 where the cells are as the table has them and no other light falls on them; None where it
-    is outside ``LENGTHS``.
+    is outside ``LENGTHS``. While a cell may be in a shade, one of the three brightest could see the Earth in
+    its place: each must then show more than a cell in a shade can.
 
     Args:
         currents: by cell, fractions of full sunlight; None: not to be used.
         cells: as the table has them.
     """
-    bright = [(current, cell) for cell, current in enumerate(currents) if current and current > BRIGHT]
+    known = [(current, cell) for cell, current in enumerate(currents) if current is not None]
+    in_doubt = any([cells.may_be_shaded(cell, current) for current, cell in known])
+    least = max(BRIGHT, cells.most_shaded) if in_doubt else BRIGHT
+    bright = [one for one in known if one[0] > least]
     rows: list[Vec3] = []
     values: list[float] = []
     for current, cell in sorted(bright, reverse=True):

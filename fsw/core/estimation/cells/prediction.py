@@ -6,7 +6,7 @@ import numpy as np
 
 from fsw.core.algebra.quaternion import Quaternion, rotate
 from fsw.core.algebra.vector import Vec3, dot, scale
-from fsw.core.estimation.cells.cell_set import CellSet, Light
+from fsw.core.estimation.cells.cell_set import SIGMAS, CellSet, Light
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.measurement import sun_prediction
 from fsw.core.estimation.mekf import Estimate
@@ -14,8 +14,6 @@ from fsw.core.estimation.mekf_config import MekfConfig
 
 LEAST_COSINE = 0.2
 """Of the angle from a cell's normal to the Sun: below it an attitude error may leave the cell dark."""
-SIGMAS = 4.0
-"""Beyond this many standard deviations an excess or a gain is outside what the table allows."""
 BRIGHT = 2.0
 """Times the threshold: a cell that faces away from the Sun is taken if the Earth alone gives it this much."""
 

@@ -110,10 +110,15 @@ def _sample(
     if field is None or not currents or abs(norm(field) - norm(b)) > limits.max_field_error_t:
         return None
     seen = light(reference.r_eci_m, reference.sun_eci, cells.albedo)
-    known = tuple([UNKNOWN if current is None else current for current in currents])
+    known = tuple([_known(cell, current, cells) for cell, current in enumerate(currents)])
     lit, earth = (0.0, 0.0) if seen is None else (1.0, seen.earth)
     coarse = None if seen is None else coarse_sun(currents, cells)
     return BatchSample(0.0, ZERO, field, known, b, reference.sun_eci, reference.r_eci_m, lit, earth, coarse)
+
+
+def _known(cell: int, current: float | None, cells: CellSet) -> float:
+    """The current of a cell as the search is to take it: in sunlight it knows no shades."""
+    return UNKNOWN if current is None or cells.may_be_shaded(cell, current) else current
 
 
 def _searched(

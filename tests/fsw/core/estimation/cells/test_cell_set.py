@@ -1,13 +1,14 @@
 """What lights the cells, and from where the satellite shades them."""
 
+from dataclasses import replace
 from math import radians, sin
 
 import numpy as np
 import pytest
-from cell_samples import CELLS, REFERENCE
+from cell_samples import CELLS, EXCESS_SIGMA, LIGHT_SIGMA, NOISE_SIGMA, REFERENCE
 
 from fsw.core.algebra.vector import cross, norm, scale, unit
-from fsw.core.estimation.cells.cell_set import PENUMBRA_M, light
+from fsw.core.estimation.cells.cell_set import GRAZING, PENUMBRA_M, SIGMAS, light
 from fsw.core.orbit.earth import RADIUS_M
 
 
@@ -46,3 +47,18 @@ class TestShade:
         assert norm(direction) == pytest.approx(1.0)
         assert CELLS.shaded(2, direction) is shaded
         assert not any(CELLS.shaded(cell, direction) for cell in (0, 1, 3, 4, 5))
+
+    def test_one_that_faces_the_sun_shows_about_half_of_the_light_of_the_earth_at_most(self):
+        zenith, off = np.meshgrid(
+            np.radians(np.arange(0.0, 90.5, 0.5)), np.radians(np.arange(0.0, 90.5, 0.5))
+        )
+        view = 0.5 * (1.0 + np.cos(np.pi - zenith - off))  # the cell between Sun and Earth, off the Sun
+        assert (np.cos(zenith) * view**2).max() == pytest.approx(GRAZING, abs=0.003)
+
+    def test_a_cell_may_be_in_it_that_shows_no_more_than_the_earth_and_its_errors(self):
+        most = GRAZING * 0.3 + SIGMAS * np.hypot(np.hypot(GRAZING * LIGHT_SIGMA, EXCESS_SIGMA), NOISE_SIGMA)
+        assert CELLS.most_shaded == pytest.approx(most)
+        assert CELLS.may_be_shaded(2, 0.99 * most)
+        assert not CELLS.may_be_shaded(2, 1.01 * most)
+        assert not CELLS.may_be_shaded(1, 0.0)
+        assert replace(CELLS, albedo=0.0, light_sigma=0.0).most_shaded < most

@@ -140,11 +140,11 @@ def test_every_number_of_a_batch_counts():
 class TestSample:
     """What a tick gives the batch: a field as strong as modelled, cells, and whether the Sun is there."""
 
-    CURRENTS = (0.5, None, 0.2, 0.0, 0.1, 0.3)
+    CURRENTS = (0.5, None, 0.6, 0.0, 0.1, 0.3)
 
-    def taken(self, field, reference=REFERENCE):
+    def taken(self, field, reference=REFERENCE, currents=CURRENTS):
         limits = StartLimits(3e-6, inf, 0.0)
-        return from_batch(EMPTY, field, self.CURRENTS, reference, limits, cell_filter())[0].samples
+        return from_batch(EMPTY, field, currents, reference, limits, cell_filter())[0].samples
 
     @pytest.mark.parametrize(("part", "count"), [(0.9, 0), (0.95, 1), (1.05, 1), (1.1, 0)])
     def test_of_a_field_that_is_neither_too_weak_nor_too_strong(self, part, count):
@@ -157,4 +157,9 @@ class TestSample:
         assert lit.lit == 1.0
         assert lit.earth > 0.1
         assert (dark.lit, dark.earth, dark.coarse) == (0.0, 0.0, None)
-        assert lit.currents == dark.currents == (0.5, UNKNOWN, 0.2, 0.0, 0.1, 0.3)
+        assert lit.currents == dark.currents == (0.5, UNKNOWN, 0.6, 0.0, 0.1, 0.3)
+
+    def test_a_cell_that_may_be_in_a_shade_is_unknown(self):
+        """Cell 2 has one; the others show that the Sun is not on their side."""
+        (taken,) = self.taken(REFERENCE.b_eci_t, currents=(0.5, 0.0, 0.2, 0.0, 0.1, 0.3))
+        assert taken.currents == (0.5, 0.0, UNKNOWN, 0.0, 0.1, 0.3)
