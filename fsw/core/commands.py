@@ -14,6 +14,7 @@ from fsw.core.config import FlightConfig
 from fsw.core.estimation.estimator import untraced
 from fsw.core.estimation.loaded import freeze, load, thaw
 from fsw.core.estimation.parameters import component_places, estimated_inertia
+from fsw.core.estimation.start.batch import EMPTY
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.readings import Readings, Telecommand
@@ -159,7 +160,10 @@ def _element(state: FlightState, message: TcOrbitElement, situation: Situation) 
 
 
 def _load(state: FlightState, message: TcOrbitLoad, situation: Situation) -> Outcome:
-    """Together the elements must describe a low orbit with a position around this tick."""
+    """Together the elements must describe a low orbit with a position around this tick.
+
+    A batch of samples for a start begins anew: what was modelled of each is of the orbit before.
+    """
     if not state.upload.complete:
         return TcAckResult.INCOMPLETE
     elements = state.upload.values
@@ -170,7 +174,8 @@ def _load(state: FlightState, message: TcOrbitLoad, situation: Situation) -> Out
     window = advance(None, state.tick, with_orbit(situation.config.ephemeris, elements))
     if window is None:
         return TcAckResult.OUT_OF_RANGE
-    return state._replace(orbit=elements, upload=Upload(), ephemeris=window)
+    estimator = state.estimator._replace(batch=EMPTY)
+    return state._replace(orbit=elements, upload=Upload(), ephemeris=window, estimator=estimator)
 
 
 def _parameter(state: FlightState, message: TcParameter, situation: Situation) -> Outcome:

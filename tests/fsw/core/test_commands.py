@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import dist
 
 import pytest
+from batch_samples import search_under_way
 
 from fsw.core.commands import HANDLERS, LAW_NAMES, command, decimal
 from fsw.core.fdir.coils.health import CoilHealth
@@ -223,6 +224,13 @@ class TestOrbit:
         assert after.ephemeris == advance(None, TICK, with_orbit(config.ephemeris, wanted))
         assert after.ephemeris != state.ephemeris
         assert after == state._replace(orbit=wanted, ephemeris=after.ephemeris)
+
+    def test_samples_of_the_orbit_before_are_no_part_of_a_start(self, obey, state, elements):
+        searching = state._replace(estimator=state.estimator._replace(batch=search_under_way()))
+        loaded, _ = obey(searching, *elements(), TcOrbitLoad())
+        assert loaded.estimator == state.estimator
+        refused, _ = obey(searching, *elements(raan_deg=None), TcOrbitLoad())
+        assert refused.estimator is searching.estimator
 
     @pytest.mark.parametrize("missing", Element)
     def test_not_before_all_have_come(self, refused, missing, elements):
