@@ -81,26 +81,33 @@ def faded(estimate: Estimate, config: MekfConfig) -> Estimate:
     """The estimate after a tick in which excess and Earth's light have decayed.
 
     First-order Markov processes: x <- k x, sigma^2 <- k^2 sigma^2 + (1 - k^2) sigma_0^2, k = 1 / (1 + turn);
-    turn is the Earth's motion in view, for the excess of a cell plus the rotation of the satellite.
+    turn is the Earth's motion in view, for the excess of a cell plus the rotation of the satellite. What a
+    deviation has left in x decays as x does.
     """
     parts = config.layout
     if config.cells is None or parts.cells is None:
         return estimate
     passed = config.tick_s * ORBIT_RADPS / CORRELATION_RAD
     turned = passed + config.tick_s * norm(estimate.omega_body_radps) / CORRELATION_RAD
-    covariance, known = estimate.covariance.copy(), estimate.parameters
     of_excess, of_light = 1.0 / (1.0 + turned), 1.0 / (1.0 + passed)
-    _lose(covariance, parts.cells, of_excess, config)
+    known = estimate.parameters
     known = known._replace(cell_excess=tuple([of_excess * value for value in known.cell_excess]))
-    if parts.earth_light is not None:
-        _lose(covariance, parts.earth_light, of_light, config)
-        known = known._replace(earth_light=(of_light * known.earth_light[0],))
-    return estimate._replace(parameters=known, covariance=covariance)
+    after = _lost(estimate._replace(parameters=known), parts.cells, of_excess, config)
+    if parts.earth_light is None:
+        return after
+    known = known._replace(earth_light=(of_light * known.earth_light[0],))
+    return _lost(after._replace(parameters=known), parts.earth_light, of_light, config)
 
 
-def _lose(covariance: Matrix, place: slice, keep: float, config: MekfConfig) -> None:
-    """Scale these states by ``keep`` and bring their variances nearer to those of the prior; in place."""
+def _lost(estimate: Estimate, place: slice, keep: float, config: MekfConfig) -> Estimate:
+    """Covariance and trace with these states scaled by ``keep``, their variances nearer to the prior's."""
+    covariance, trace = estimate.covariance.copy(), estimate.trace
     covariance[place] *= keep
     covariance[:, place] *= keep
     own = range(place.start, place.stop)
     covariance[own, own] += (1.0 - keep * keep) * config.initial_covariance.diagonal()[place]
+    if trace is not None:
+        effect = trace.effect.copy()
+        effect[place] *= keep
+        trace = trace._replace(effect=effect)
+    return estimate._replace(covariance=covariance, trace=trace)

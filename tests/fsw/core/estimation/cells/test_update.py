@@ -22,6 +22,7 @@ from cell_samples import (
 from fsw.core.algebra.vector import norm
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.prediction import prediction, sunlit
+from fsw.core.estimation.cells.relinearise import correction
 from fsw.core.estimation.cells.update import (
     CORRELATION_RAD,
     GATE_NIS,
@@ -30,6 +31,8 @@ from fsw.core.estimation.cells.update import (
     faded,
     taken,
 )
+from fsw.core.estimation.kalman import Cause, Trace
+from fsw.core.estimation.parameters import corrected_parameters
 
 CONFIG = cell_filter()
 LIT = sunlit(Q_BODY_FROM_ECI, SEEN, CELLS)
@@ -129,6 +132,21 @@ class TestExcess:
             estimate, _ = cells_taken(faded(estimate, CONFIG), wrong, SEEN, CONFIG)
         sigma_deg = np.degrees(np.sqrt(estimate.covariance.diagonal()[0:3]))
         assert sigma_deg.min() > 1.0
+
+    def test_what_a_deviation_leaves_decays_as_they_do(self):
+        """An estimate that is wrong by an effect is, a tick later, wrong by what is then traced of it."""
+        estimate, parts = begun(), CONFIG.layout
+        effect = np.zeros((parts.size, 2))
+        effect[parts.cells, 0], effect[parts.earth_light, 0] = (0.01, -0.02, 0.03, 0.01, -0.01, 0.02), 0.04
+        effect[0:3, 0] = 1e-3
+        traced = estimate._replace(trace=Trace((Cause(0, 0.0, 0.0),), effect, np.zeros((2, 2)), 0))
+        known = corrected_parameters(estimate.parameters, effect[:, 0].tolist(), parts)
+        before, wrong = faded(traced, CONFIG), faded(estimate._replace(parameters=known), CONFIG)
+        left = correction(before, wrong, CONFIG)
+        np.testing.assert_allclose(before.trace.effect[6:, 0], left[6:], rtol=1e-9, atol=1e-15)
+        np.testing.assert_array_equal(before.trace.effect[0:6], effect[0:6])
+        assert 0.0 < left[parts.earth_light.start] < 0.04
+        assert traced.trace.effect is effect
 
     def test_without_cells_nothing_is_touched(self):
         estimate = begun()
