@@ -165,7 +165,8 @@ def _going(search: MotionSearch, model: BatchModel) -> Motions:
 def _flown(
     search: MotionSearch, going: Motions, before: BatchSample, after: BatchSample, model: BatchModel
 ) -> tuple[Matrix, Matrix]:
-    return flown(search.q, search.omega, leg(before, after), disturbances(going), model.config.rotor)
+    alike, rotor = len(search.motions.q), model.config.rotor
+    return flown(search.q, search.omega, leg(before, after), disturbances(going), rotor, alike)
 
 
 def _chosen(search: MotionSearch, first: BatchSample, model: BatchModel) -> MotionSearch:

@@ -7,7 +7,17 @@ from fsw.core.algebra.quaternion import multiply, normalise, rotate
 from fsw.core.algebra.vector import ZERO, inverse, unit
 from fsw.core.estimation.dynamics.motion import Acting, advanced, middle, turn
 from fsw.core.estimation.parameters import Rotor
-from fsw.core.estimation.start.motions import Disturbed, Leg, all_in_body, flown, in_body, turned_by
+from fsw.core.estimation.start.motions import (
+    MOST_STEPS,
+    STEP_RAD,
+    Disturbed,
+    Leg,
+    all_in_body,
+    flown,
+    in_body,
+    steps_of_leg,
+    turned_by,
+)
 
 INERTIA = ((1.02, 0.07, -0.05), (0.07, 1.85, 0.11), (-0.05, 0.11, 1.45))
 CHANGE = (0.03, -0.04, 0.02, 0.01, -0.015, 0.02)
@@ -63,6 +73,48 @@ def test_a_leg_leads_where_single_ticks_lead(wheel):
         expected, after = stepped(tuple(q), tuple(omega), T, rotor, 20)
         assert abs(np.dot(end, expected)) == pytest.approx(1.0, abs=1e-7)
         np.testing.assert_allclose(rate, after, atol=2e-6)
+
+
+class TestFast:
+    """What turns far in a leg takes several steps, and leaves the bits of the others as they are."""
+
+    ROTOR = Rotor(INERTIA, inverse(INERTIA), WHEEL)
+    DISTURBED = Disturbed(rows(D), rows(T), np.zeros((5, 6)))
+
+    @pytest.mark.parametrize("degps", [3.0, 5.0])
+    def test_twenty_legs_lead_where_single_ticks_lead(self, degps):
+        fast = np.radians(degps) * OMEGA / np.linalg.norm(OMEGA, axis=1)[:, None]
+        ends, rates = Q, fast
+        for _ in range(20):
+            ends, rates = flown(ends, rates, leg(20.0), self.DISTURBED, self.ROTOR)
+        for q, omega, end in zip(Q, fast, ends, strict=True):
+            expected, _ = stepped(tuple(q), tuple(omega), T, self.ROTOR, 400)
+            assert abs(np.dot(end, expected)) > np.cos(np.radians(0.25))
+
+    def test_a_slow_one_beside_a_fast_one_keeps_its_bits(self):
+        mixed = OMEGA.copy()
+        mixed[2] = (0.05, -0.06, 0.04)
+        alone, beside = (flown(Q, rates, leg(20.0), self.DISTURBED, self.ROTOR) for rates in (OMEGA, mixed))
+        slow = [0, 1, 3, 4]
+        for one, other in zip(alone, beside, strict=True):
+            np.testing.assert_array_equal(one[slow], other[slow])
+            assert (one[2] != other[2]).all()
+
+    def test_those_that_are_alike_take_the_steps_of_the_first(self):
+        """One just above the limit beside one just below: the difference is that of the motions alone."""
+        rate = STEP_RAD / 20.0
+        q, turning = Q[[0, 0]], np.array([[0.0, 0.0, 0.99999 * rate], [0.0, 0.0, 1.00001 * rate]])
+        of_two = Disturbed(*[each[:2] for each in self.DISTURBED])
+        ends, _ = flown(q, turning, leg(20.0), of_two, self.ROTOR, alike=1)
+        first, _ = flown(q[:1], turning[:1], leg(20.0), Disturbed(*[each[:1] for each in of_two]), self.ROTOR)
+        np.testing.assert_array_equal(ends[0], first[0])
+        moved = 2.0 * np.linalg.norm(ends[1] - ends[0])
+        assert moved == pytest.approx(20.0 * (turning[1, 2] - turning[0, 2]), rel=0.1)
+
+    def test_the_steps_are_as_many_as_the_turn_needs_and_not_more_than_there_can_be(self):
+        turns = np.array([0.0, 0.99, 1.01, 3.5, 1e3, np.inf, np.nan])
+        omega = np.outer(turns * STEP_RAD / 20.0, (0.6, -0.48, 0.64))
+        assert steps_of_leg(omega, 20.0).tolist() == [1, 1, 2, 4, MOST_STEPS, MOST_STEPS, 1]
 
 
 def test_another_inertia_is_that_to_first_order():
