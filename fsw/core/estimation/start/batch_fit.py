@@ -18,10 +18,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fsw.core.algebra.vector import Vec3
+from fsw.core.algebra.quaternion import from_small_rotation, multiply, normalise
+from fsw.core.algebra.vector import Vec3, add
 from fsw.core.estimation import mekf
+from fsw.core.estimation.dynamics.error_dynamics import free_motion, with_age_along
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf import Estimate
+from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.start.batch_model import (
     MOVING,
     BatchModel,
@@ -145,6 +148,7 @@ def estimate_of(
     attitude = turned_by(q[:1], change[None, 0:3])[0]
     begun = mekf.start(_four(attitude), _three(omega[0] + change[3:6]), model.config)
     estimate = _with_parameters(begun, found.numbers[0] + step[3:], flow.dot(left).dot(flow.T), model)
+    estimate = _aged(estimate, model.config)
     cost = float(equations.costs[0] + 0.5 * gradient.dot(step))
     return (estimate if mekf.healthy(estimate) else None), cost
 
@@ -168,6 +172,24 @@ def _with_parameters(begun: Estimate, numbers: Matrix, left: Matrix, model: Batc
         now = range(excess.start, excess.start + len(model.normals))
         covariance[now, now] += model.excess_varying**2
     return begun._replace(parameters=parameters, covariance=0.5 * (covariance + covariance.T))
+
+
+def _aged(estimate: Estimate, config: MekfConfig) -> Estimate:
+    """The estimate ahead by the age of the samples, which the equations leave out, and wrong by its error.
+
+    Both ages are taken as their mean: what that is wrong by is an error along the motion, of which no sample
+    tells (``with_age_along``).
+    """
+    q, omega, parameters, covariance, delay = *estimate[:4], config.layout.delay
+    if delay is None:
+        return estimate
+    motion = free_motion(omega, parameters, config.rotor)
+    turn, gain = np.split(0.5 * sum(parameters.delay_s) * motion, 2)
+    return estimate._replace(
+        q_body_from_eci=normalise(multiply(q, from_small_rotation(_three(turn)))),
+        omega_body_radps=add(omega, _three(gain)),
+        covariance=with_age_along(motion, covariance, delay),
+    )
 
 
 def _found(model: BatchModel) -> tuple[tuple[str, slice | None, range], ...]:

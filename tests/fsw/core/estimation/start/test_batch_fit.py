@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from batch_samples import CONFIG, STARTS, flight
-from cell_samples import CELLS
+from batch_samples import CONFIG, MOVING_PRIORS, STARTS, flight
+from cell_samples import CELLS, cell_filter
 
 from fsw.core.algebra.quaternion import from_small_rotation, multiply, normalise
+from fsw.core.estimation.parameters import Prior
 from fsw.core.estimation.start.batch_fit import (
     MOST_RATE_RADPS,
     MOST_TURN_RAD,
@@ -105,8 +106,16 @@ class TestStep:
         assert found[8] == pytest.approx(0.001 / 4.0)
 
 
+def of_age(parameters, omega):
+    """The mean age, and how it moves attitude and rate: omega, and J domega/dt = (J omega) x omega, (6)."""
+    xx, yy, zz, xy, xz, yz = parameters.inertia_error_kgm2
+    inertia = np.add(CONFIG.rotor.inertia_kgm2, [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    gained = np.linalg.solve(inertia, np.cross(inertia @ omega, omega))
+    return np.mean(parameters.delay_s), np.concatenate((omega, gained))
+
+
 def test_the_estimate_is_one_step_on_and_as_uncertain_as_twice_what_the_samples_leave():
-    """At the end of the motion, to which what was found of it at its beginning is carried."""
+    """At the end of the motion, to which what was found of it at its beginning is carried, and the age on."""
     step = 0.05 * SCALES * RANDOM.normal(size=(1, SIZE))
     posed, found = equations(step), of_motions(1)
     q, omega = STARTS[1]
@@ -121,9 +130,12 @@ def test_the_estimate_is_one_step_on_and_as_uncertain_as_twice_what_the_samples_
     estimate, cost = estimate_of(found, posed, np.array(ends), np.array(rates), MODEL)
 
     change = flow @ step[0]
-    expected_q = multiply(q, from_small_rotation(tuple(change[0:3].tolist())))
+    rate = np.add(omega, change[3:6])
+    age_s, motion = of_age(estimate.parameters, rate)
+    assert age_s == pytest.approx(0.45)
+    expected_q = multiply(q, from_small_rotation(tuple((change[0:3] + age_s * motion[0:3]).tolist())))
     assert estimate.q_body_from_eci == pytest.approx(expected_q, abs=1e-5)
-    assert estimate.omega_body_radps == pytest.approx(tuple(np.add(omega, change[3:6])), rel=1e-9)
+    assert estimate.omega_body_radps == pytest.approx(tuple(rate + age_s * motion[3:]), rel=1e-7)
     assert cost == pytest.approx(30.0 + 0.5 * posed.gradient[0] @ step[0])
 
     numbers, parts, known = found.numbers[0] + step[0, 3:], CONFIG.layout, estimate.parameters
@@ -148,7 +160,42 @@ def test_the_estimate_is_one_step_on_and_as_uncertain_as_twice_what_the_samples_
     turn, cells = parts.sun_turn, range(parts.cells.start, parts.cells.stop)
     covariance[0:3, 0:3] += CONFIG.initial_covariance[turn, turn]
     covariance[cells, cells] += MODEL.excess_varying**2
+    by_age = np.eye(len(covariance))
+    by_age[0:6, parts.delay] = 0.5 * motion[:, None]
+    covariance = by_age @ covariance @ by_age.T
     sigmas = np.sqrt(covariance.diagonal())
     np.testing.assert_allclose(
         estimate.covariance / np.outer(sigmas, sigmas), covariance / np.outer(sigmas, sigmas), atol=1e-5
     )
+
+
+def reached(config, omega):
+    """The estimate of a motion that is reached without a step, and that keeps its errors."""
+    model = model_of(config, CELLS)
+    size = len(model.prior)
+    small = model.differences[0]
+    turned = [multiply(STARTS[1][0], (1.0, *(0.5 * small * axis).tolist())) for axis in np.eye(3)]
+    q, rates = np.tile(STARTS[1][0], (19, 1)), np.tile(omega, (19, 1))
+    q[1:4] = turned
+    rates[4:7] += model.differences[3:6] * np.eye(3)
+    posed = Equations(np.diag(SCALES**-2.0)[None], np.zeros((1, size)), np.zeros(1), np.zeros(1))
+    return estimate_of(Motions(q[:1], np.zeros((1, size - 3))), posed, q, rates, model)[0]
+
+
+def test_of_samples_of_no_age_it_is_where_the_motion_is():
+    config = cell_filter(**MOVING_PRIORS, delay_s=Prior((0.0, 0.0), (0.0, 0.0), mean=(0.0, 0.0)))
+    estimate = reached(config, (0.05, -0.06, 0.04))
+    assert estimate.q_body_from_eci == pytest.approx(STARTS[1][0], abs=1e-15)
+    assert estimate.omega_body_radps == (0.05, -0.06, 0.04)
+
+
+def test_the_age_that_both_samples_have_in_common_is_an_error_along_the_motion():
+    """Of a fast turn the greatest; the filter begins with it, and with its part in attitude and rate."""
+    omega = (0.05, -0.06, 0.04)
+    estimate, delay = reached(CONFIG, omega), CONFIG.layout.delay
+    _, motion = of_age(estimate.parameters, omega)
+    shared = estimate.covariance[0:6, delay]
+    np.testing.assert_allclose(shared, 0.5 * 0.3**2 * np.tile(motion[:, None], 2), rtol=1e-6, atol=1e-12)
+    along = np.array(omega) / np.linalg.norm(omega)
+    variance = along @ estimate.covariance[0:3, 0:3] @ along
+    assert variance > 0.5 * (0.3 * np.linalg.norm(omega)) ** 2
