@@ -22,6 +22,8 @@ AGAIN_S = 100.0
 """Time until it is searched for again."""
 GAP_S = 60.0
 """After a longer time without a sample the batch begins anew."""
+ROUNDING_S = 1e-6
+"""More than a sum of ticks is off by that are no binary fractions, 0.1 s for one."""
 
 
 class SampleBatch(NamedTuple):
@@ -71,7 +73,7 @@ def waited(batch: SampleBatch, m_body_am2: Vec3, tick_s: float) -> SampleBatch:
     if not batch.samples:
         return batch
     since_s = batch.since_s + tick_s
-    if since_s > GAP_S:
+    if since_s > GAP_S + ROUNDING_S:
         return EMPTY
     driven = add(batch.driven_am2s, scale(tick_s, m_body_am2))
     return batch._replace(since_s=since_s, driven_am2s=driven, searched_s=batch.searched_s + tick_s)
@@ -79,7 +81,7 @@ def waited(batch: SampleBatch, m_body_am2: Vec3, tick_s: float) -> SampleBatch:
 
 def kept(batch: SampleBatch, sample: BatchSample) -> SampleBatch:
     """The batch with a sample, if one is due."""
-    if batch.samples and batch.since_s < SPACING_S:
+    if batch.samples and batch.since_s < SPACING_S - ROUNDING_S:
         return batch
     if batch.samples:
         mean = scale(1.0 / batch.since_s, batch.driven_am2s)
@@ -104,9 +106,9 @@ def due(batch: SampleBatch) -> bool:
         batch.search is not None
         or batch.since_s
         or not batch.samples
-        or batch.searched_s < min(AGAIN_S, batch.span_s)
+        or batch.searched_s < min(AGAIN_S, batch.span_s) - ROUNDING_S
     ):
         return False
     coarse = all(sample.coarse for sample in batch.samples)
-    enough = batch.span_s >= (SHORT_S if coarse else LEAST_S)
+    enough = batch.span_s >= (SHORT_S if coarse else LEAST_S) - ROUNDING_S
     return enough and 2 * batch.lit >= len(batch.samples)

@@ -131,6 +131,28 @@ class TestDue:
         assert due(kept(waited(batch, ZERO, 1.0), sample()))
 
 
+@pytest.mark.parametrize("tick_hz", [1, 3, 5, 7, 10, 20])
+class TestTicks:
+    """Sums of ticks are not exact where a tick is no binary fraction; nothing comes a tick later by that."""
+
+    @pytest.mark.parametrize(("coarse", "at_s"), [(SUN, [100, 200, 300, 400]), (None, [400, 500, 600, 700])])
+    def test_searches_begin_when_they_are_due(self, tick_hz, coarse, at_s):
+        batch, begun = kept(EMPTY, sample(coarse=coarse)), []
+        for tick in range(1, 750 * tick_hz):
+            batch = kept(waited(batch, ZERO, 1.0 / tick_hz), sample(coarse=coarse))
+            if due(batch):
+                begun.append(tick)
+                batch = batch._replace(searched_s=0.0)
+        assert begun[:4] == [one * tick_hz for one in at_s]
+
+    def test_a_batch_ends_after_the_gap_and_not_before(self, tick_hz):
+        batch = kept(EMPTY, sample())
+        for _ in range(round(GAP_S * tick_hz)):
+            batch = waited(batch, ZERO, 1.0 / tick_hz)
+        assert batch.samples
+        assert waited(batch, ZERO, 1.0 / tick_hz) == EMPTY
+
+
 def test_every_number_of_a_batch_counts():
     batch = filled(60.0, SUN)
     assert len(batch.floats()) == 5 + 4 * (1 + 3 + 15 + 2 + 3)
