@@ -34,7 +34,7 @@ MIN_SEPARATION_RAD = radians(15.0)
 MAX_REFUSALS_S = 60
 """The filter restarts after as many samples refused in a row as one sensor gives in this time."""
 DRIVE_SIGMA = 0.002
-"""Relative error of a driven dipole from pulse to pulse."""
+"""Relative error of a driven dipole in a tick, independent of those in other ticks."""
 TORQUE_NOISE_RTS = 0.05
 """White torque noise as a fraction of the torque's bound, times sqrt(s)."""
 LEAST_NOISE_RTS = 1e-10

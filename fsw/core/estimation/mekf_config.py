@@ -181,7 +181,7 @@ def mekf_config(
         attitude_sigma_rad: initial standard deviation, as is the next.
         rate_sigma_radps: rad/s.
         torque_noise_nm_rts: white torque noise, N m sqrt(s).
-        dipole_sigma: relative error of a driven dipole.
+        dipole_sigma: relative error of a driven dipole in a tick, independent of those in other ticks.
         gate_nis: largest normalised innovation squared that is accepted.
         cells: Sun cells, which take the place of a Sun sensor.
     """

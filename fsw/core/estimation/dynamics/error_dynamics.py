@@ -26,7 +26,10 @@ class Driven(NamedTuple):
 
 
 def process_noise(driven: Driven, b_body_t: Vec3, config: MekfConfig) -> Matrix:
-    """The noise of a tick; while a coil is driven also that of its dipole, known only to ``dipole_sigma``."""
+    """The noise of a tick; while a coil is driven also that of its dipole, known only to ``dipole_sigma``.
+
+    Its error is constant over a tick and independent of those of the other ticks.
+    """
     if driven == NOT_DRIVEN:
         return config.process_noise
     noise = config.process_noise.copy()
