@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
 
-from fsw.core.algebra.vector import Vec3, dot, norm, scale
+from fsw.core.algebra.vector import Vec3, dot, norm
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.cells.relinearise import linear_about, relinearised
@@ -20,7 +20,7 @@ from fsw.core.estimation.start.batch import EMPTY, SampleBatch, waited
 from fsw.core.estimation.start.first import StartLimits, first_estimate, from_batch
 from fsw.core.gate.readings import Readings
 from fsw.core.orbit.earth import MU_M3PS2
-from fsw.core.orbit.ephemeris import Reference
+from fsw.core.orbit.ephemeris import Reference, earlier
 
 MAX_ELAPSED_S = 60.0
 """After a longer silence the filter restarts instead of predicting."""
@@ -129,9 +129,9 @@ def _predicted(
     estimate: Estimate, reference: Reference, driven: Sequence[Driven], config: MekfConfig
 ) -> Estimate:
     gravity = 3.0 * MU_M3PS2 / reference.radius_m**3
-    e1_eci = scale(1.0 / reference.radius_m, reference.r_eci_m)
-    for m_body_am2, doubted_am2 in driven:
-        estimate = mekf.predict(estimate, e1_eci, reference.b_eci_t, gravity, m_body_am2, config, doubted_am2)
+    for left, (m_body_am2, doubted_am2) in enumerate(driven, 1 - len(driven)):
+        e1_eci, b_eci_t = earlier(reference, -left * config.tick_s)
+        estimate = mekf.predict(estimate, e1_eci, b_eci_t, gravity, m_body_am2, config, doubted_am2)
         estimate = faded(estimate, config)
     return estimate
 

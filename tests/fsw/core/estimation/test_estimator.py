@@ -23,8 +23,8 @@ from estimator_samples import (
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fsw.core.algebra.quaternion import from_small_rotation, multiply, normalise, rotate
-from fsw.core.algebra.vector import ZERO, add, cross, norm, scale, unit
+from fsw.core.algebra.quaternion import conjugate, from_small_rotation, multiply, normalise, rotate
+from fsw.core.algebra.vector import ZERO, add, cross, norm, scale, sub, unit
 from fsw.core.estimation import mekf
 from fsw.core.estimation.dynamics.error_dynamics import NOT_DRIVEN, Driven
 from fsw.core.estimation.estimator import (
@@ -222,25 +222,48 @@ class TestRunning:
 
 class TestElapsedTicks:
     QUIET = NOTHING
+    STILL = replace(REFERENCE, orbit_rate_radps=0.0)
 
     def test_three_ticks_at_once_are_three_ticks(self, settled):
-        at_once, _ = step(settled, self.QUIET, driven=[NOT_DRIVEN] * 3)
+        at_once, _ = step(settled, self.QUIET, self.STILL, driven=[NOT_DRIVEN] * 3)
         state = settled
         for _ in range(3):
-            state, _ = step(state, self.QUIET)
+            state, _ = step(state, self.QUIET, self.STILL)
         assert at_once.estimate.q_body_from_eci == state.estimate.q_body_from_eci
         np.testing.assert_array_equal(at_once.estimate.covariance, state.estimate.covariance)
 
     def test_each_of_them_has_its_dipole_and_its_doubt(self, settled):
         drives = [Driven((0.0, 8.0, 0.0), (0.0, 5.0, 0.0)), NOT_DRIVEN, Driven((0.0, 0.0, -2.0))]
-        at_once, _ = step(settled, self.QUIET, driven=drives)
+        at_once, _ = step(settled, self.QUIET, self.STILL, driven=drives)
         state = settled
         for one in drives:
-            state, _ = step(state, self.QUIET, driven=[one])
+            state, _ = step(state, self.QUIET, self.STILL, driven=[one])
         assert at_once.estimate.omega_body_radps == state.estimate.omega_body_radps
         np.testing.assert_array_equal(at_once.estimate.covariance, state.estimate.covariance)
-        other, _ = step(settled, self.QUIET, driven=drives[::-1])
+        other, _ = step(settled, self.QUIET, self.STILL, driven=drives[::-1])
         assert at_once.estimate.q_body_from_eci != other.estimate.q_body_from_eci
+
+    def test_the_satellite_goes_on_along_its_orbit_meanwhile(self, settled):
+        """What pulls at the body in a lost tick is where it was then, not where it has come to."""
+        rate, q = 1.04e-3, REFERENCE.q_orbit_from_eci
+        up, ahead = (rotate(conjugate(q), axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)))
+        b_rate = (1e-8, -3e-8, 2e-8)
+
+        def of_tick(left):
+            turned = rate * left
+            r = scale(REFERENCE.radius_m, add(scale(np.cos(turned), up), scale(-np.sin(turned), ahead)))
+            b = sub(REFERENCE.b_eci_t, scale(left, b_rate))
+            return replace(REFERENCE, r_eci_m=r, b_eci_t=b, b_rate_eci_tps=b_rate)
+
+        drives = [Driven((0.0, 0.8, 0.0))] * 50
+        at_once, _ = step(settled, self.QUIET, of_tick(0), driven=drives)
+        state = settled
+        for left, one in enumerate(drives, 1 - len(drives)):
+            state, _ = step(state, self.QUIET, of_tick(-left), driven=[one])
+        rates = [one.estimate.omega_body_radps for one in (at_once, state)]
+        assert rates[0] == pytest.approx(rates[1], rel=1e-6, abs=1e-12)
+        wrong, _ = step(settled, self.QUIET, replace(of_tick(0), orbit_rate_radps=0.0), driven=drives)
+        assert norm(sub(wrong.estimate.omega_body_radps, rates[1])) > 1e-7
 
     def test_a_doubt_moves_nothing_and_is_known_of(self, settled):
         sure, _ = step(settled, self.QUIET, driven=[Driven((0.0, 8.0, 0.0))])

@@ -6,7 +6,7 @@ import pytest
 
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import cross, dot, norm, scale, unit
-from fsw.core.orbit.ephemeris import advance, ephemeris_model, node, reference_at
+from fsw.core.orbit.ephemeris import advance, earlier, ephemeris_model, node, reference_at
 from fsw.core.orbit.field import FieldKind, field_eci_t
 from fsw.core.orbit.propagation import circular_orbit, sgp4_orbit, state_eci
 from fsw.core.orbit.sun import lit, sun_eci
@@ -248,3 +248,20 @@ def test_the_eclipse_comes_and_goes_as_the_orbit_says(make_model, itamsat, itams
         lights.append(reference.lit)
     assert sum(a != b for a, b in pairwise(lights)) == 2
     assert 0.2 < lights.count(False) / ORBIT_S < 0.4
+
+
+# Before a tick
+
+
+@pytest.mark.parametrize("start", [300, 2000, 4400])
+def test_where_the_satellite_was_a_minute_ago(make_model, tick_hz, start):
+    model = make_model(tick_hz)
+    tick = start * tick_hz
+    reference = reference_at(advance(None, tick, model), tick, model)
+    for elapsed_s in (1, 20, 60):
+        past = tick - elapsed_s * tick_hz
+        then = reference_at(advance(None, past, model), past, model)
+        e1_eci, b_eci_t = earlier(reference, float(elapsed_s))
+        assert dist(e1_eci, unit(then.r_eci_m)) < np.radians(0.1)
+        assert dist(b_eci_t, then.b_eci_t) < 5e-7
+    assert earlier(reference, 0.0) == (scale(1.0 / reference.radius_m, reference.r_eci_m), reference.b_eci_t)
