@@ -12,7 +12,15 @@ a unit, whatever its likelihood. So no single sample isolates, nor do many in a 
 
 Readmission is the same test of the opposite question. A faulty sensor looks right ``CHANCE`` of the time,
 because its error happens to lie where it does not show, and a sound one all but ``MISS`` of it: samples that
-fit weigh ln(1 / CHANCE) per tau, one that does not, ln(MISS / (1 - CHANCE)) at once.
+fit weigh ln(1 / CHANCE) per tau, those that do not, ln(MISS / (1 - CHANCE)) per tau / 2, the sampling time of
+the slowest sensor. So one that does not fit weighs all of it at 1 Hz, and its share of it where a tick h is
+shorter. With the part m of its samples refused, a sensor then gains
+
+    (1 - m) ln(1 / CHANCE) / tau + m ln(MISS / (1 - CHANCE)) 2 / tau
+
+nats a second at any rate: a sound one, m = 1e-3, at most 129 s per threshold A, and none beyond m = 0.02. With
+all of it at once the sum would be m ln(MISS / (1 - CHANCE)) / h: above 10 Hz what the gate refuses of noise
+would undo what fits.
 
 Source: Wald 1945; Page 1954, Continuous inspection schemes (Biometrika 41); Lorden 1971 for the e^A.
 """
@@ -71,7 +79,7 @@ def weights(
         threshold=log(false_alarm_days * DAY_S / CORRELATION_S),
         against=part,
         fits=part * fits,
-        misfits=log(MISS / (1.0 - CHANCE)),
+        misfits=2.0 * part * log(MISS / (1.0 - CHANCE)),
         agrees=part * fits / PAIR_NUMBERS,
         blind_ticks=round(BLIND_S / tick_s),
         averaged=averaged,

@@ -8,6 +8,7 @@ import pytest
 from fsw.core.estimation.mekf import LAG_S
 from fsw.core.fdir.evidence import (
     BLIND_S,
+    CHANCE,
     CORRELATION_S,
     DAY_S,
     INFLATION,
@@ -58,6 +59,50 @@ def test_one_sample_that_does_not_fit_undoes_many_that_do():
     known = weights(DAYS, 1.0)
     assert -known.misfits > 40 * known.fits
     assert -known.misfits < known.threshold, "but not all"
+
+
+RATES_HZ = [1, 10, 20, 50]
+
+
+def highest(known, fits):
+    """The most evidence that an isolated sensor gathers, sample by sample."""
+    nats = most = 0.0
+    for fit in fits:
+        nats = weigh(nats, known.fits if fit else known.misfits, known.threshold)
+        most = max(most, nats)
+    return most
+
+
+def test_at_1_hz_one_that_does_not_fit_counts_in_full_and_at_other_rates_its_share():
+    assert weights(DAYS, 1.0).misfits == log(MISS / (1.0 - CHANCE))
+    assert weights(DAYS, 0.05).misfits == pytest.approx(0.05 * log(MISS / (1.0 - CHANCE)))
+
+
+@pytest.mark.parametrize("hz", RATES_HZ)
+def test_what_the_gate_refuses_of_a_sound_sensor_keeps_it_out_at_no_rate(hz):
+    """Three of 1000 samples, as flown."""
+    for seed in range(5):
+        fits = np.random.default_rng(seed).random(600 * hz) >= 3.0 * MISS
+        known = weights(DAYS, 1.0 / hz)
+        assert highest(known, fits) == known.threshold
+
+
+@pytest.mark.parametrize("hz", RATES_HZ)
+@pytest.mark.parametrize("part", [0.2, 1.0])
+def test_a_faulty_sensor_comes_back_at_no_rate(hz, part):
+    """Of which this part of the samples does not fit."""
+    known = weights(DAYS, 1.0 / hz)
+    for seed in range(3):
+        fits = np.random.default_rng(seed).random(1800 * hz) >= part
+        assert highest(known, fits) < 0.6 * known.threshold
+
+
+@pytest.mark.parametrize("hz", RATES_HZ)
+def test_one_that_is_wrong_for_seconds_gains_at_no_rate_more_than_at_1_hz(hz):
+    seconds = np.random.default_rng(4).random(1800) >= 0.05
+    slow, known = weights(DAYS, 1.0), weights(DAYS, 1.0 / hz)
+    assert 0.2 * slow.threshold < highest(slow, seconds) < slow.threshold
+    assert highest(known, np.repeat(seconds, hz)) == pytest.approx(highest(slow, seconds))
 
 
 def test_innovations_of_a_sound_filter_weigh_for_it_and_larger_ones_against():

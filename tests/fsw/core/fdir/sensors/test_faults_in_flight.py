@@ -119,6 +119,19 @@ def test_a_fault_is_named_borne_and_forgotten(make_world, name):
 
 @pytest.mark.long
 @pytest.mark.requirement("REQ-SENSOR-05")
+def test_at_20_hz_an_attitude_is_proven_and_a_faulty_sensor_stays_isolated(make_world):
+    """The gate refuses one sample in a thousand: at this rate several before an estimate is proven."""
+    watcher = Watcher(make_world(time={"tick_hz": 20}))
+    watcher.fly(BEFORE_S * 20)
+    assert watcher.valid[-1]
+    watcher.fly(200 * 20, of_field(lambda x, y, z: (x, y, z - 2500.0)))
+    assert [argument for _, argument in watcher.of(Event.SENSOR_ISOLATED)] == [104]
+    assert watcher.of(Event.SENSOR_READMITTED) == []
+    assert watcher.world.state.health.sensors.field.fault
+
+
+@pytest.mark.long
+@pytest.mark.requirement("REQ-SENSOR-05")
 @pytest.mark.parametrize("name", ["field axes swapped", "sun axes swapped"])
 def test_what_only_the_filter_refuses_is_named_at_a_higher_tick_rate_too(make_world, name):
     """Evidence takes time, not ticks: the filter must not restart before."""
