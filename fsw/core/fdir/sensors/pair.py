@@ -19,7 +19,7 @@ from typing import NamedTuple
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.fdir.evidence import PAIR_NUMBERS, EvidenceWeights, mean_misfit, misfit, weigh
-from fsw.core.fdir.sensors.credibility import CredibilityConfig, sensors_credible
+from fsw.core.fdir.sensors.credibility import CredibilityConfig, credible_but_coils, sensors_credible
 from fsw.core.fdir.sensors.plausibility import Findings
 
 SUSPICIOUS = 0.25
@@ -184,12 +184,13 @@ def _innovations(estimate: Estimate) -> float:
 def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> float:
     """An estimate gains by each pair that it takes, slowly on trial; a trusted one loses without one.
 
-    Of a trusted one only the sensors need be credible: what turns the satellite may be a coil's fault.
+    Its coils need not be credible: a faulty one is found only once the estimate is proven. Of a trusted one
+    the sensors alone need be: what turns the satellite may be a coil's fault.
     """
     if seen.estimate is None or seen.begun:
         return 0.0
     trusted = pair.standing is Standing.TRUSTED
-    sound = seen.sound or (trusted and sensors_credible(seen.estimate, credibility))
+    sound = (sensors_credible if trusted else credible_but_coils)(seen.estimate, credibility)
     if seen.refused:
         by = 0.0 if trusted else weights.misfits
     elif not sound:

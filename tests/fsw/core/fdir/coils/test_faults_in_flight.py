@@ -8,6 +8,7 @@ from fsw.core.actuation.actuator import CoilView
 from fsw.core.fdir.coils.currents import judge_current
 from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.fdir.coils.weak_test import NOTHING_OLDER
+from fsw.core.fdir.sensors.pair import Pair
 from fsw.core.gate.readings import NOTHING
 from fsw.core.telemetry import Event
 from fsw.wire.messages import CoilFire, CoilStatus, FswEvent, Mode, TcClear
@@ -94,6 +95,38 @@ def test_a_wrong_current_names_the_coil_at_its_second_pulse(make_world, factor, 
     assert world.state.health.coils.faults[first] == kind
     assert fires(said)[-1][0] > named
     assert world.state.modes.trips == 0
+
+
+def teach(world, coil, error, sigma):
+    """Let the filter have found this error of a coil's gain."""
+    state, layout = world.state.estimator, world.config.estimator.mekf.layout
+    errors, covariance = [*state.estimate.parameters.coil_error], state.estimate.covariance.copy()
+    errors[4 * coil], place = error, layout.coils.start + 4 * coil
+    covariance[place, :] = covariance[:, place] = 0.0
+    covariance[place, place] = sigma**2
+    parameters = state.estimate.parameters._replace(coil_error=tuple(errors))
+    taught = state.estimate._replace(parameters=parameters, covariance=covariance, trace=None)
+    world.state = world.state._replace(estimator=state._replace(estimate=taught))
+
+
+@pytest.mark.long
+def test_a_weak_coil_beside_an_estimate_that_is_not_proven_leaves_the_attitude(make_world):
+    """The coil is judged once the estimate is proven: what the filter knows of it must not keep that away."""
+    world = make_world(
+        coils={"dipole_scale": [1.0, 0.4, 1.0]}, flight={"uncertainty": {"coil_gain_percent": 5.0}}
+    )
+    world.fly_until_valid()
+    teach(world, 1, -0.6, 0.02)
+    health = world.state.health
+    world.state = world.state._replace(
+        health=health._replace(sensors=health.sensors._replace(pair=Pair()))
+    )
+    world.fly(1)
+    assert not world.state.attitude.valid
+    assert world.fly_until_valid() < 300
+    said = fly(world, 600)
+    assert [argument for _, argument in events(said, Event.COIL_FAULT)] == [202]
+    assert error_deg(world) < 2.0
 
 
 @pytest.mark.requirement("REQ-COIL-05")

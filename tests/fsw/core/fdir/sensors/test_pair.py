@@ -13,10 +13,20 @@ from fsw.core.fdir.sensors.credibility import credibility_config
 from fsw.core.fdir.sensors.pair import Observed, Pair, Standing, judge, proven, unjudged, valid
 from fsw.core.fdir.sensors.plausibility import Findings, Memory
 
-CONFIG = tuned(mag_bias_t=Prior((3e-7,) * 3, (0.0,) * 3))
+NINE = (0.0,) * 9
+CONFIG = tuned(
+    mag_bias_t=Prior((3e-7,) * 3, (0.0,) * 3),
+    dipole_body_am2=Prior((0.01,) * 3, (0.0,) * 3),
+    coil_error=Prior((0.03,) * 9, NINE),
+)
 LIMITS, WEIGHTS = credibility_config(CONFIG), weights(40.0, 1.0)
 ESTIMATE = mekf.start((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), CONFIG)._replace(nis=5.0, numbers=6)
 TURNED = ESTIMATE._replace(parameters=ESTIMATE.parameters._replace(mag_bias_t=(2e-6, 0.0, 0.0)))
+WEAK = ESTIMATE._replace(
+    parameters=ESTIMATE.parameters._replace(coil_error=(0.0, 0.0, 0.0, 0.0, -0.6, 0.0, 0.0, 0.0, 0.0))
+)
+"""An estimate by which a coil does 0.4 of what it should."""
+DIPOLE = ESTIMATE._replace(parameters=ESTIMATE.parameters._replace(dipole_body_am2=(0.0, 0.05, 0.0)))
 B, S = (2e-5, 1e-5, -3e-5), (1.0, 0.0, 0.0)
 BOTH = Findings(0, 0, B, S, True, False, Memory())
 ECLIPSE = BOTH._replace(sun=None, pair=False)
@@ -53,11 +63,34 @@ class TestProof:
 
     @pytest.mark.parametrize(
         "seen",
-        [TAKEN._replace(sound=False), LARGE, WITHOUT, TAKEN._replace(used=Used(True, False, False))],
-        ids=["by a satellite that cannot be", "with large innovations", "never begun", "one alone"],
+        [
+            TAKEN._replace(estimate=TURNED, sound=False),
+            TAKEN._replace(estimate=DIPOLE, sound=False),
+            LARGE,
+            WITHOUT,
+            TAKEN._replace(used=Used(True, False, False)),
+        ],
+        ids=[
+            "by sensors that cannot be",
+            "by a satellite that cannot be",
+            "with large innovations",
+            "never begun",
+            "one alone",
+        ],
     )
     def test_it_proves_nothing(self, seen):
         assert after(Pair(), seen, 25).proof == 0.0
+
+    @pytest.mark.parametrize("standing", [Standing.NEW, Standing.ON_TRIAL])
+    def test_a_coil_that_cannot_be_keeps_it_from_nothing(self, standing):
+        """Which coil is faulty is judged by a proven estimate alone; a sensor is not forgiven beside it."""
+        weak = TAKEN._replace(estimate=WEAK, sound=False)
+        ticks, pair = ticks_until(Pair(standing), weak, Standing.TRUSTED)
+        assert ticks == ticks_until(Pair(standing), TAKEN, Standing.TRUSTED)[0]
+        assert valid(pair)
+        parameters = WEAK.parameters._replace(mag_bias_t=TURNED.parameters.mag_bias_t)
+        turned = weak._replace(estimate=WEAK._replace(parameters=parameters))
+        assert ticks_until(Pair(standing), turned, Standing.TRUSTED)[0] is None
 
     def test_what_it_refuses_sets_back_a_young_one_by_far(self):
         young = after(Pair(), TAKEN, 60)
