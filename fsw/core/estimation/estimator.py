@@ -17,7 +17,7 @@ from fsw.core.estimation.mekf_config import MekfConfig, with_frozen_parameters, 
 from fsw.core.estimation.parameters import Parameters
 from fsw.core.estimation.samples import saturated_field, sensed_sun, usable_cells, usable_field, usable_sun
 from fsw.core.estimation.start.batch import EMPTY, SampleBatch, waited
-from fsw.core.estimation.start.first import StartLimits, first_estimate, from_batch
+from fsw.core.estimation.start.first import StartLimits, first_estimate, from_batch, with_given
 from fsw.core.gate.readings import Readings
 from fsw.core.orbit.earth import MU_M3PS2
 from fsw.core.orbit.ephemeris import Reference, earlier
@@ -59,8 +59,9 @@ class EstimatorConfig:
 class EstimatorState(NamedTuple):
     """The estimate, or None before start-up, and the measurements the gate refused in a row.
 
-    ``first``: what the parameters start from, None: the prior's mean; ``frozen``: they are not estimated.
-    ``batch``: samples for a start from fewer than three lit cells.
+    ``first``: what the parameters start from, None: the prior's mean; of it, those components that were
+    ``loaded``, by number. ``frozen``: they are not estimated. ``batch``: samples for a start from fewer than
+    three lit cells.
     """
 
     estimate: Estimate | None = None
@@ -71,11 +72,12 @@ class EstimatorState(NamedTuple):
     first: Parameters | None = None
     frozen: bool = False
     batch: SampleBatch = EMPTY
+    loaded: tuple[int, ...] = ()
 
     def integers(self) -> tuple[int, ...]:
         """For the checksum of the state, as are the next two."""
         counts = (self.rejected_in_a_row, self.rejected_total, self.restarts, self.turning, self.frozen)
-        return (*counts, *self.batch.integers())
+        return (*counts, *self.batch.integers(), *self.loaded)
 
     def floats(self) -> tuple[float, ...]:
         """The values to start from, and the estimate, if there is one, without its arrays."""
@@ -160,8 +162,8 @@ def update(
             return state._replace(batch=batch), Used(False, False, blanked)
         slow = norm(started.omega_body_radps) > 0.0 and norm(started.omega_body_radps) < SLOW_RADPS
         turning = Turning.NO if slow else Turning.FAST  # one tick shows no rate
-        begun = state._replace(estimate=_from_first(started, state), turning=turning, batch=EMPTY)
-        return begun, Used(True, True, blanked)
+        started = with_given(started, state.first, state.loaded, config.mekf)
+        return state._replace(estimate=started, turning=turning, batch=EMPTY), Used(True, True, blanked)
 
     tuning = with_frozen_parameters(config.mekf) if state.frozen else config.mekf
     limited = saturated_field(readings)
@@ -210,12 +212,7 @@ def _settled(state: EstimatorState, estimate: Estimate, seen: bool, config: Mekf
         covariance = anew.covariance.copy()
         covariance[0:6, 0:6] = CELLS_ANEW**2 * estimate.covariance[0:6, 0:6]
         anew = anew._replace(covariance=covariance)
-    return state._replace(estimate=_from_first(anew, state), turning=after)
-
-
-def _from_first(started: Estimate, state: EstimatorState) -> Estimate:
-    """The estimate with the parameters that the ground has set, if it has."""
-    return started if state.first is None else started._replace(parameters=state.first)
+    return state._replace(estimate=with_given(anew, state.first, state.loaded, config), turning=after)
 
 
 def _updated(

@@ -2,7 +2,8 @@
 
 from fsw.core.estimation.estimator import EstimatorState, untraced
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.parameters import component_places, with_component
+from fsw.core.estimation.parameters import with_component
+from fsw.core.estimation.start.first import with_given
 
 
 def load(state: EstimatorState, component: int, value: float, config: MekfConfig) -> EstimatorState:
@@ -16,22 +17,28 @@ def load(state: EstimatorState, component: int, value: float, config: MekfConfig
         value: SI units.
         config: the filter.
     """
-    estimate = state.estimate
     first = with_component(state.first or config.initial_parameters, component, value)
-    if estimate is None:
-        return state._replace(first=first)
-    place = component_places(config.layout)[component]
-    covariance = estimate.covariance.copy()
-    covariance[place, :] = covariance[:, place] = config.initial_covariance[place]
-    parameters = with_component(estimate.parameters, component, value)
-    loaded = estimate._replace(parameters=parameters, covariance=covariance, trace=None)
-    return state._replace(first=first, estimate=loaded)
+    loaded = tuple(sorted({*state.loaded, component}))
+    return forget(state._replace(first=first, loaded=loaded), component, config)
+
+
+def forget(state: EstimatorState, component: int, config: MekfConfig) -> EstimatorState:
+    """The state without what its estimate, if there is one, has learnt of one component of the parameters.
+
+    It is back at what it starts from, with the prior's error; what the filter starts from stays.
+    """
+    if state.estimate is None:
+        return state
+    first = state.first or config.initial_parameters
+    return untraced(state._replace(estimate=with_given(state.estimate, first, (component,), config)))
 
 
 def freeze(state: EstimatorState) -> EstimatorState:
     """The state with the parameters held as they are, now and whenever the filter starts, until ``thaw``."""
-    first = state.first if state.estimate is None else state.estimate.parameters
-    return untraced(state)._replace(first=first, frozen=True)
+    if state.estimate is None:
+        return state._replace(frozen=True)
+    first = state.estimate.parameters
+    return untraced(state)._replace(first=first, frozen=True, loaded=tuple(range(len(first.floats()))))
 
 
 def thaw(state: EstimatorState) -> EstimatorState:

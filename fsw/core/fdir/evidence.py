@@ -18,7 +18,7 @@ shorter. With the part m of its samples refused, a sensor then gains
 
     (1 - m) ln(1 / CHANCE) / tau + m ln(MISS / (1 - CHANCE)) 2 / tau
 
-nats a second at any rate: a sound one, m = 1e-3, at most 129 s per threshold A, and none beyond m = 0.02. With
+nats a second at any rate: a sound one, m = 1e-3, reaches A in 135 s, one beyond m = 0.02 loses. With
 all of it at once the sum would be m ln(MISS / (1 - CHANCE)) / h: above 10 Hz what the gate refuses of noise
 would undo what fits.
 

@@ -202,4 +202,5 @@ class TestFreeze:
         after, results = obey(state, *sent)
         assert results == [TcAckResult.ACCEPTED] * 2
         first = AS_THE_TABLE._replace(torque_body_nm=(0.0, 0.0, -4e-8))
-        assert after.estimator == state.estimator._replace(first=first, frozen=True)
+        loaded = (Component.TORQUE_Z,)
+        assert after.estimator == state.estimator._replace(first=first, frozen=True, loaded=loaded)

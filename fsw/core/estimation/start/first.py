@@ -1,5 +1,6 @@
 """The first estimate: from field and Sun in one tick, or from a batch of field and cells."""
 
+from collections.abc import Sequence
 from math import sqrt
 from typing import NamedTuple
 
@@ -11,6 +12,7 @@ from fsw.core.estimation.cells.cell_set import CellSet, light
 from fsw.core.estimation.cells.coarse_sun import coarse_sun
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.estimation.parameters import Parameters, component_places, with_component
 from fsw.core.estimation.start.batch import MOST, SampleBatch, due, kept, rest
 from fsw.core.estimation.start.batch_model import BatchModel, model_of
 from fsw.core.estimation.start.batch_sample import UNKNOWN, BatchSample
@@ -45,6 +47,31 @@ def first_estimate(
     if not consistent(field, sun, b, s, *limits):
         return None
     return mekf.start(triad(sun, field, s, b), ZERO, config)
+
+
+def with_given(
+    estimate: Estimate, given: Parameters | None, numbers: Sequence[int], config: MekfConfig
+) -> Estimate:
+    """The estimate with some components of its parameters as given; the others stay as they were found.
+
+    The error of each is then that of the prior, uncorrelated with the others.
+
+    Args:
+        estimate: before.
+        given: holds the values, SI units; None: there are none.
+        numbers: of the components that are given.
+        config: the filter.
+    """
+    if given is None or not numbers:
+        return estimate
+    values, places = given.floats(), component_places(config.layout)
+    parameters, covariance = estimate.parameters, estimate.covariance.copy()
+    for number in numbers:
+        parameters = with_component(parameters, number, values[number])
+        if number in places:
+            place = places[number]
+            covariance[place, :] = covariance[:, place] = config.initial_covariance[place]
+    return estimate._replace(parameters=parameters, covariance=covariance)
 
 
 def from_batch(

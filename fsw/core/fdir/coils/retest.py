@@ -5,7 +5,7 @@ the filter has learnt of its gain is forgotten. Ticks in which a sensor is suspe
 """
 
 from fsw.core.estimation.estimator import EstimatorState, untraced
-from fsw.core.estimation.loaded import load
+from fsw.core.estimation.loaded import forget
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import COMPONENTS, NAMES, component_places
 from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig, with_item
@@ -40,12 +40,12 @@ def retest(
                 nats=with_item(health.nats, coil, half),
                 older=with_item(health.older, coil, Older(kept=half)),
             )
-            estimator = _forget_gain(untraced(estimator), GAINS[coil], config.mekf)
+            estimator = with_unknown_gain(untraced(estimator), coil, config.mekf)
     return health, estimator
 
 
-def _forget_gain(state: EstimatorState, component: int, mekf: MekfConfig) -> EstimatorState:
-    if state.frozen or component not in component_places(mekf.layout):
+def with_unknown_gain(state: EstimatorState, coil: int, mekf: MekfConfig) -> EstimatorState:
+    """The state without what the filter has learnt of the gain of a coil; not while parameters are frozen."""
+    if state.frozen or GAINS[coil] not in component_places(mekf.layout):
         return state
-    known = state.first or mekf.initial_parameters
-    return load(state, component, known.floats()[component], mekf)
+    return forget(state, GAINS[coil], mekf)

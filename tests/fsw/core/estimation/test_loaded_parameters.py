@@ -8,7 +8,7 @@ import pytest
 from fsw.core.estimation import estimator
 from fsw.core.estimation.estimator import Turning
 from fsw.core.estimation.kalman import LeanKalmanFilter
-from fsw.core.estimation.loaded import freeze, load, thaw
+from fsw.core.estimation.loaded import forget, freeze, load, thaw
 from fsw.core.estimation.parameters import (
     NAMES,
     NOTHING,
@@ -17,6 +17,7 @@ from fsw.core.estimation.parameters import (
     layout,
     with_component,
 )
+from fsw.core.gate.readings import NOTHING as READINGS
 from fsw.wire.messages import Component
 
 ON_THE_BUS = {
@@ -137,6 +138,33 @@ class TestLoad:
         assert after.estimate.parameters == parameters
         assert after.first == with_component(config.mekf.initial_parameters, self.NUMBER, self.VALUE)
         assert after[1:5] == before[1:5]
+        assert after.loaded == (self.NUMBER,)
+
+    def test_a_start_takes_what_was_loaded_and_keeps_what_it_has_found(self, both, monkeypatch):
+        """As from a batch of samples of Sun cells, which finds parameters with attitude and rate."""
+        before, after, config = both
+        found = before.estimate._replace(trace=None)
+        monkeypatch.setattr(estimator, "first_estimate", lambda *samples: found)
+        waiting = estimator.restart(after)
+        begun, _ = estimator.update(waiting, READINGS, None, config)
+        parameters = with_component(found.parameters, self.NUMBER, self.VALUE)
+        assert begun.estimate.parameters == parameters
+        assert found.parameters != with_component(after.first, self.NUMBER, self.VALUE)
+        np.testing.assert_array_equal(begun.estimate.covariance, after.estimate.covariance)
+        free, _ = estimator.update(estimator.restart(before), READINGS, None, config)
+        assert free.estimate is found, "nothing was loaded"
+
+    def test_forgotten_it_is_back_where_the_filter_starts_from(self, settled, both):
+        before, after, config = both
+        forgotten = forget(before, self.NUMBER, config.mekf)
+        assert forgotten.estimate.parameters.dipole_body_am2[1] == 0.0
+        assert (forgotten.first, forgotten.loaded) == (None, ())
+        learnt = after._replace(
+            estimate=after.estimate._replace(
+                parameters=with_component(after.estimate.parameters, self.NUMBER, 0.02)
+            )
+        )
+        assert forget(learnt, self.NUMBER, config.mekf).estimate.parameters == after.estimate.parameters
 
     def test_the_effect_of_pulses_is_traced_anew(self, both):
         assert both[1].estimate.trace is None
@@ -182,6 +210,7 @@ class TestFreeze:
         frozen = freeze(state)
         again = estimator.restart(frozen)
         assert (again.first, again.frozen) == (state.estimate.parameters, True)
+        assert again.loaded == tuple(range(len(again.first.floats()))), "every one of them"
         assert (again.estimate, again.restarts) == (None, state.restarts + 1)
         assert thaw(again) == again._replace(frozen=False)
 

@@ -2,6 +2,7 @@
 
 import pytest
 
+from fsw.core.estimation.loaded import load
 from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.fdir.coils.retest import GAINS, TRIED, retest
 from fsw.core.fdir.coils.weak_test import NOTHING_OLDER, Older
@@ -110,6 +111,11 @@ def test_what_the_filter_has_learnt_of_its_gain_is_forgotten(make_world):
     prior = config.mekf.initial_covariance[place + 4, place + 4]
     assert variances[1] == prior
     assert variances[0] < prior
+    assert after.first is None, "the next start is that of any filter"
+    given = load(learnt, GAINS[1], 0.03, config.mekf)
+    _, again = retest(CoilHealth((0, CoilFault.WEAK, 0)), given, True, config)
+    assert again.estimate.parameters.coil_error[4] == 0.03, "what the ground has set stays"
+    assert (again.first, again.loaded) == (given.first, (GAINS[1],))
     frozen = learnt._replace(frozen=True)
     _, kept = retest(CoilHealth((0, CoilFault.WEAK, 0)), frozen, True, config)
     assert kept.estimate.parameters.coil_error == errors
