@@ -15,6 +15,7 @@ from fsw.core.estimation.estimator import untraced
 from fsw.core.estimation.loaded import freeze, load, thaw
 from fsw.core.estimation.parameters import component_places, estimated_inertia
 from fsw.core.estimation.start.batch import EMPTY
+from fsw.core.fdir.coils.retest import with_unknown_gain
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.readings import Readings, Telecommand
@@ -108,12 +109,12 @@ def _mode(state: FlightState, message: TcMode, situation: Situation) -> Outcome:
 
 
 def _clear(state: FlightState, message: TcClear, situation: Situation) -> Outcome:
-    """Forget the trips, trust every sensor again and use every coil."""
-    return state._replace(
-        modes=state.modes._replace(trips=0),
-        health=Health(),
-        estimator=untraced(state.estimator),
-    )
+    """Forget the trips, trust every sensor again and use every coil, also its gain if it was isolated."""
+    estimator = untraced(state.estimator)
+    for coil, fault in enumerate(state.health.coils.faults):
+        if fault:
+            estimator = with_unknown_gain(estimator, coil, situation.config.estimator.mekf)
+    return state._replace(modes=state.modes._replace(trips=0), health=Health(), estimator=estimator)
 
 
 def _law(state: FlightState, message: TcLaw, situation: Situation) -> Outcome:

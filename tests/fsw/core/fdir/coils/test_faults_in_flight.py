@@ -8,6 +8,7 @@ from fsw.core.actuation.actuator import CoilView
 from fsw.core.fdir.coils.currents import judge_current
 from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.fdir.coils.weak_test import NOTHING_OLDER
+from fsw.core.fdir.faults import CoilFault
 from fsw.core.fdir.sensors.pair import Pair
 from fsw.core.gate.readings import NOTHING
 from fsw.core.telemetry import Event
@@ -127,6 +128,27 @@ def test_a_weak_coil_beside_an_estimate_that_is_not_proven_leaves_the_attitude(m
     said = fly(world, 600)
     assert [argument for _, argument in events(said, Event.COIL_FAULT)] == [202]
     assert error_deg(world) < 2.0
+
+
+@pytest.mark.long
+def test_a_coil_that_was_mended_and_cleared_is_taken_for_sound(make_world):
+    """The gain of 0.4 that it had is not what it has now: the filter would blame it once more."""
+    world = make_world(flight={"uncertainty": {"coil_gain_percent": 5.0}})
+    world.fly_until_valid()
+    teach(world, 0, 0.01, 0.005)
+    teach(world, 1, -0.6, 0.02)
+    health = world.state.health
+    coils = health.coils._replace(faults=(0, CoilFault.WEAK, 0), until_retest=(0, 21600, 0))
+    world.state = world.state._replace(health=health._replace(coils=coils))
+    world.fly(5)
+    world.step(lambda inbox: inbox._replace(frames=(*inbox.frames, TcClear(counter=1).encode())))
+    errors = world.state.estimator.estimate.parameters.coil_error
+    assert errors[0] == pytest.approx(0.01, abs=2e-3), "of the others nothing is forgotten"
+    assert errors[4] == 0.0
+    said = fly(world, 900)
+    assert 1 in [coil for _, coil in fires(said)]
+    assert events(said, Event.COIL_FAULT) == []
+    assert world.state.attitude.valid
 
 
 @pytest.mark.requirement("REQ-COIL-05")
