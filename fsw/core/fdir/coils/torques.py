@@ -17,6 +17,7 @@ from fsw.core.fdir.coils.health import (
     with_fault,
     with_item,
 )
+from fsw.core.fdir.coils.weak_test import Older
 from fsw.core.fdir.faults import CoilFault, coil_fault
 from fsw.core.orbit.earth import MU_M3PS2
 from fsw.core.orbit.ephemeris import Reference
@@ -94,6 +95,9 @@ def _isolate(
     A pulse of the coil ``ended`` takes the place of its oldest one, whose evidence is kept.
     """
     gain_nats, earlier = explanations.by_gain(estimate, config.mekf, config.weak), health.older
+    if estimate.trace is None:  # as after a retest, whose evidence waits for the first pulse
+        one, two, three = (Older(kept=older.kept) for older in earlier)
+        return health._replace(older=(one, two, three)), estimate
     estimate, solution = effects.solve(estimate, config.mekf)
     if solution is None:
         return (health if estimate.trace else health._replace(older=NONE_OLDER)), estimate

@@ -53,6 +53,26 @@ def test_pulses_that_no_fault_of_a_coil_explains_take_what_was_known_before_with
     assert health == HEALTH._replace(older=NONE_OLDER)
 
 
+def test_what_a_retest_keeps_waits_for_the_first_pulse():
+    """A retest ends the trace, and nothing is traced until a pulse ends: none has spoken for the coil yet."""
+    health, state = judged(START)
+    assert state.estimate.trace is None
+    assert [older.kept for older in health.older] == [0.0, 1.0, 0.0]
+    assert [older.parts.pulses for older in health.older] == [0, 0, 0], "of what is no longer traced"
+
+
+@pytest.mark.parametrize(("kept", "fault"), [(0.0, 0), (0.5, CoilFault.OPEN)], ids=["before", "again"])
+def test_one_bad_pulse_isolates_a_coil_that_is_tried_again(kept, fault):
+    """Beside sound pulses of the others, which tell it from another inertia."""
+    bad, _ = fly([0, 2, 0, 2, 1], [1.0, 1.0, 1.0, 1.0, 0.1])
+    older = (Older(), Older(kept=kept * WEAK.threshold), Older())
+    health, _ = judged(bad, health=CoilHealth(older=older))
+    assert health.faults == (0, fault, 0)
+    good, _ = fly([0, 2, 0, 2, 1], [1.0, 1.0, 1.0, 1.0, 0.95])
+    health, _ = judged(good, health=CoilHealth(older=older))
+    assert health.faults == (0, 0, 0)
+
+
 def test_where_noise_may_leave_as_much_of_so_many_pulses_what_was_known_before_stays():
     """Sixteen is much for one pulse, and twenty-five hardly too much for eight."""
     odd, _ = fly([0, 1, 2, 0, 1, 2, 0, 1], [1.18, 0.85, 1.2, 0.86, 1.18, 0.84, 1.15, 0.9])
