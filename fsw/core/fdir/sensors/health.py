@@ -18,7 +18,7 @@ from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.cells.update import NO_CELLS
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.kalman import Matrix, inverse
-from fsw.core.estimation.measurement import Prediction, field_prediction, sun_prediction
+from fsw.core.estimation.measurement import Prediction, field_prediction, field_sampled, sun_prediction
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.evidence import INFLATION, EvidenceWeights
@@ -169,7 +169,8 @@ def _field_fits(
     sample = findings.field
     if sample is None or estimate is None:
         return None
-    prediction = field_prediction(*estimate[:3], reference.b_eci_t, mekf)
+    b_eci_t = field_sampled(estimate.parameters, reference.b_eci_t, reference.b_rate_eci_tps)
+    prediction = field_prediction(*estimate[:3], b_eci_t, mekf)
     return not findings.field_cause and _fits(estimate, sample, prediction, mekf.field_noise, mekf)
 
 

@@ -7,7 +7,7 @@ import pytest
 from cell_samples import Q_BODY_FROM_ECI, REFERENCE, cell_filter
 
 from fsw.core.algebra.quaternion import normalise, rotate
-from fsw.core.algebra.vector import add
+from fsw.core.algebra.vector import add, sub
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.update import CellsUsed
 from fsw.core.estimation.estimator import Used
@@ -43,6 +43,7 @@ class Models:
     """Field and Sun of every tick."""
 
     b_eci_t, sun_eci = (1.7e-5, -2.3e-5, 3.1e-5), (0.6, 0.0, 0.8)
+    b_rate_eci_tps = (2e-6, 0.0, -1e-6)
 
 
 B, S = (rotate(ESTIMATE.q_body_from_eci, v) for v in (Models.b_eci_t, Models.sun_eci))
@@ -156,6 +157,15 @@ class TestReadmitted:
             assert faults(after(self.FIELD_OUT, SUN, ticks, moved)) == (
                 (0, 0) if step < 1e-6 else (SensorFault.STRENGTH, 0)
             )
+
+    def test_by_the_field_where_the_satellite_was_when_the_sample_was_taken(self):
+        """As the filter compares it, whose samples are a second old here; the field of now is another."""
+        old = ESTIMATE._replace(parameters=ESTIMATE.parameters._replace(delay_s=(1.0, 0.0)))
+        b_then = rotate(old.q_body_from_eci, sub(Models.b_eci_t, Models.b_rate_eci_tps))
+        then = SEEN._replace(field=b_then)
+        assert faults(after(self.FIELD_OUT, SUN, 129, then, old)) == (0, 0)
+        assert faults(after(self.FIELD_OUT, SUN, 1000, SEEN, old)) == (SensorFault.STRENGTH, 0)
+        assert faults(after(self.FIELD_OUT, SUN, 1000, then)) == (SensorFault.STRENGTH, 0)
 
     def test_not_by_an_estimate_that_is_less_certain_than_the_sensor(self):
         vague = ESTIMATE._replace(covariance=1000.0 * np.asarray(ESTIMATE.covariance))
