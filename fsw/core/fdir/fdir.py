@@ -17,7 +17,7 @@ from fsw.core.fdir.coils.torques import BelievedParts
 from fsw.core.fdir.faults import OPEN_PART, Sensor
 from fsw.core.fdir.sensors import health as sensor_health
 from fsw.core.fdir.sensors import pair, plausibility
-from fsw.core.fdir.sensors.cells import cell_changes, doubtful, faulty, unusable
+from fsw.core.fdir.sensors.cells import cell_changes, doubtful, faulty, unusable, without_isolated
 from fsw.core.fdir.sensors.credibility import credible_but_coils
 from fsw.core.fdir.sensors.health import SensorConfig, SensorHealth
 from fsw.core.fdir.sensors.pair import Pair, Standing
@@ -134,6 +134,8 @@ def judge(
     )
     isolated = bool(judged.field.fault or judged.sun.fault)
     changed = sensor_health.faults(judged) != sensor_health.faults(before)
+    if changed:
+        estimator = without_isolated(estimator, before.cells, judged.cells, config.sensors.mekf)
     if changed or judged.pair.standing is not Standing.TRUSTED:
         estimator = untraced(estimator)  # what a faulty sensor has shown proves nothing about a coil
     elif not sensor_health.suspected(judged):

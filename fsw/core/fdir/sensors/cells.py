@@ -13,6 +13,10 @@ taken with it. What speaks against a cell:
 
 A cell that is still is not used from the next tick on, whatever the evidence.
 
+What the filter has learnt of a cell is forgotten when it is isolated: nothing more is learnt of it meanwhile,
+so that it is compared with the table and may come back. One comes back too while no single sample shows that
+its gain is wrong, until the filter has learnt it again.
+
 Two cells are not taken to fail under one estimate, but a wrong estimate is contradicted by one cell after
 another as the satellite turns. What speaks against a second cell that is lit speaks against the estimate.
 """
@@ -25,9 +29,11 @@ from fsw.core.algebra.vector import dot
 from fsw.core.estimation.cells.cell_set import CellSet, Light
 from fsw.core.estimation.cells.prediction import LEAST_COSINE, most_behind, prediction
 from fsw.core.estimation.cells.update import CellsUsed, taken
+from fsw.core.estimation.estimator import EstimatorState
+from fsw.core.estimation.loaded import forget
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.parameters import Parameters
+from fsw.core.estimation.parameters import COMPONENTS, NAMES, Parameters, component_places
 from fsw.core.fdir.evidence import SIGMAS, EvidenceWeights
 from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.watch import Watch, accused, readmitted
@@ -35,6 +41,8 @@ from fsw.core.fdir.sensors.watch import Watch, accused, readmitted
 STILL = 0.06
 """Fraction of full sunlight by which a still current should have moved: eight steps of it on the bus."""
 NO_CURRENT = -1.0
+GAIN_1, EXCESS_1 = (COMPONENTS.index((NAMES.index(name), 0)) for name in ("cell_gain", "cell_excess"))
+"""Numbers of these components of the first cell; those of the others follow."""
 
 
 class CellWatch(NamedTuple):
@@ -119,6 +127,18 @@ def cell_changes(before: CellsHealth, after: CellsHealth) -> list[tuple[int, int
         for cell, (one, other) in enumerate(zip(was, now, strict=True))
         if one.watch.fault != other.watch.fault
     ]
+
+
+def without_isolated(
+    state: EstimatorState, before: CellsHealth, after: CellsHealth, config: MekfConfig
+) -> EstimatorState:
+    """The state without gain and excess of the cells that have just been isolated; as it is while frozen."""
+    places = component_places(config.layout)
+    for cell, _, fault in cell_changes(before, after):
+        for number in (GAIN_1 + cell, EXCESS_1 + cell):
+            if fault and number in places and not state.frozen:
+                state = forget(state, number, config)
+    return state
 
 
 def _watched(

@@ -10,6 +10,7 @@ from fsw.core.fdir.coils.health import NONE_OLDER, CoilHealth
 from fsw.core.fdir.coils.weak_test import NOTHING_OLDER, Older, PartSum
 from fsw.core.fdir.faults import OPEN_PART, CoilFault, SensorFault
 from fsw.core.fdir.fdir import Evidence, Health
+from fsw.core.fdir.sensors.cells import CellWatch
 from fsw.core.fdir.sensors.health import SensorHealth, Watch
 from fsw.core.fdir.sensors.pair import Pair, Standing
 from fsw.core.fdir.sensors.plausibility import Findings, Memory
@@ -181,6 +182,20 @@ class TestJudgement:
         before = Health(sensors(pair=PROVEN).sensors, stuck)
         _, _, attitude = fdir.judge(before, state.estimator, state.attitude, evidence, config.fdir)
         assert attitude.valid is valid
+
+    def test_what_the_filter_knows_of_a_cell_that_is_isolated_is_forgotten_once(self, judged, monkeypatch):
+        """Whoever judges the sensors; of which cells, and how, is the cells' own."""
+        named = (CellWatch(Watch(SensorFault.STRENGTH)), CellWatch())
+        seen = []
+        monkeypatch.setattr(
+            fdir.sensor_health, "judge", lambda *of_this_tick: SensorHealth(pair=PROVEN, cells=named)
+        )
+        monkeypatch.setattr(
+            fdir, "without_isolated", lambda state, *change: (seen.append(change[:2]), state)[1]
+        )
+        (health, _, _), _ = judged(sensors(pair=PROVEN, cells=(CellWatch(), CellWatch())))
+        judged(health)
+        assert seen == [((CellWatch(), CellWatch()), named)]
 
     @pytest.mark.parametrize(
         "judgement",

@@ -119,9 +119,7 @@ def test_a_weak_coil_beside_an_estimate_that_is_not_proven_leaves_the_attitude(m
     world.fly_until_valid()
     teach(world, 1, -0.6, 0.02)
     health = world.state.health
-    world.state = world.state._replace(
-        health=health._replace(sensors=health.sensors._replace(pair=Pair()))
-    )
+    world.state = world.state._replace(health=health._replace(sensors=health.sensors._replace(pair=Pair())))
     world.fly(1)
     assert not world.state.attitude.valid
     assert world.fly_until_valid() < 300

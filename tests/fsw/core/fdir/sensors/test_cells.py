@@ -11,6 +11,7 @@ from fsw.core.algebra.quaternion import multiply, normalise, rotate
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.cells.prediction import sunlit
+from fsw.core.estimation.estimator import EstimatorState
 from fsw.core.fdir.evidence import weights
 from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.cells import (
@@ -21,6 +22,7 @@ from fsw.core.fdir.sensors.cells import (
     doubtful,
     judge,
     unusable,
+    without_isolated,
 )
 from fsw.core.fdir.sensors.watch import Watch
 
@@ -303,6 +305,61 @@ def test_one_that_is_right_again_is_readmitted_after_a_while():
 def test_one_that_stays_dead_is_not():
     dead = watched(set_to(LIT[0], 0.0))
     assert watched(set_to(LIT[0], 0.0), 400, dead)[LIT[0]].watch.fault == SensorFault.STRENGTH
+
+
+def flown(state, health, gain, ticks):
+    """Ticks of an estimate that is sure of its attitude, with this gain of the lit cell that stays so."""
+    random = np.random.default_rng(5)
+    for tick in range(ticks):
+        q = attitude(tick)
+        estimate = state.estimate._replace(q_body_from_eci=q)
+        currents = [max(0.0, one + 0.01 * random.normal()) for one in ideal(q)]
+        currents[LIT[1]] *= gain
+        usable = [None if cell in unusable(health) else one for cell, one in enumerate(currents)]
+        _, used = cells_taken(estimate, usable, SEEN, CONFIG)
+        evidence = CellEvidence(currents, used, estimate, SEEN, False, True, False)
+        before, health = health, judge(health, evidence, WEIGHTS, CONFIG)
+        state = without_isolated(state, before, health, CONFIG)
+    return state, health
+
+
+class TestGain:
+    """A cell whose gain, as the filter has learnt it, no bound allows."""
+
+    LEARNT = 0.5
+
+    def learnt(self):
+        estimate, place = proven(Q_BODY_FROM_ECI), CONFIG.layout.cell_gain.start + LIT[1]
+        covariance, gains = estimate.covariance.copy(), [0.02] * 6
+        covariance[place, place], gains[LIT[1]] = 0.01**2, self.LEARNT
+        parameters = estimate.parameters._replace(cell_gain=tuple(gains))
+        return EstimatorState(estimate._replace(parameters=parameters, covariance=covariance))
+
+    def test_is_isolated_and_its_gain_forgotten(self):
+        state, health = flown(self.learnt(), (), 1.0 + self.LEARNT, ENOUGH)
+        assert health[LIT[1]].watch.fault == SensorFault.STRENGTH
+        assert faults(health).count(0) == 5
+        gains, place = state.estimate.parameters.cell_gain, CONFIG.layout.cell_gain.start + LIT[1]
+        assert [gain for cell, gain in enumerate(gains) if cell != LIT[1]] == [0.02] * 5
+        assert gains[LIT[1]] == 0.0
+        assert state.estimate.covariance[place, place] == CONFIG.initial_covariance[place, place]
+
+    def test_right_again_it_comes_back_under_the_same_estimate(self):
+        isolated = flown(self.learnt(), (), 1.0 + self.LEARNT, ENOUGH)
+        assert flown(*isolated, 1.0, 60)[1][LIT[1]].watch.fault
+        state, health = flown(*isolated, 1.0, 300)
+        assert faults(health) == [0] * 6
+        assert faults(flown(state, health, 1.0, 60)[1]) == [0] * 6, "and stays"
+
+    def test_as_wrong_as_before_it_does_not(self):
+        isolated = flown(self.learnt(), (), 1.0 + self.LEARNT, ENOUGH)
+        assert flown(*isolated, 1.0 + self.LEARNT, 600)[1][LIT[1]].watch.fault == SensorFault.STRENGTH
+
+    def test_while_parameters_are_frozen_nothing_is_forgotten(self):
+        frozen = self.learnt()._replace(frozen=True)
+        state, health = flown(frozen, (), 1.0 + self.LEARNT, ENOUGH)
+        assert health[LIT[1]].watch.fault
+        assert state is frozen
 
 
 def test_changes_are_told_by_cell():
