@@ -7,7 +7,7 @@ from typing import NamedTuple
 from fsw.core.actuation.actuator import CoilView, unexpected
 from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.estimation.estimator import EstimatorState, Used, restart, untraced
+from fsw.core.estimation.estimator import EstimatorState, Used, anew, untraced
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.events import Event, Happening
 from fsw.core.fdir.coils import currents, retest, torques
@@ -148,7 +148,7 @@ def judge(
     if changed or judged.pair.ended:
         found = found._replace(older=coil_health.NONE_OLDER)  # a faulty sensor may have shown it
     if judged.pair.ended:
-        estimator, attitude = restart(estimator), UNKNOWN
+        estimator, attitude = anew(estimator), UNKNOWN
     if _untold(judged, found, evidence.used, config):
         attitude = attitude._replace(valid=False)
     return Health(judged, found), estimator, attitude

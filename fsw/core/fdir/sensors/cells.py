@@ -84,11 +84,11 @@ def judge(
 ) -> CellsHealth:
     """The cells after a tick; none where the satellite has none."""
     cells = config.cells
+    if evidence.begun:  # with the board silent, too
+        health = tuple([watch._replace(by_this=False) for watch in health])
     if cells is None or not evidence.currents:
         return health
     watches = health or (CellWatch(),) * len(cells.normals_body)
-    if evidence.begun:
-        watches = tuple([watch._replace(by_this=False) for watch in watches])
     return tuple(
         [
             _watched(watch, cell, current, evidence, weights, config, cells)

@@ -119,8 +119,8 @@ class TestJudgement:
         used = fdir.Used(False, False, False)
         evidence = Evidence(state.tick, findings, state.coil, reference, used)
 
-        def judge(health):
-            return fdir.judge(health, state.estimator, state.attitude, evidence, config.fdir), state
+        def judge(health, estimator=state.estimator):
+            return fdir.judge(health, estimator, state.attitude, evidence, config.fdir), state
 
         return judge
 
@@ -288,3 +288,5 @@ class TestJudgement:
         assert health.sensors is disputed
         assert (estimator.estimate, estimator.restarts) == (None, state.estimator.restarts + 1)
         assert not attitude.valid
+        (_, again, _), _ = judged(Health(), estimator)
+        assert again == estimator, "without an estimate nothing starts anew"

@@ -11,6 +11,7 @@ from fsw.core.algebra.quaternion import multiply, normalise, rotate
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.cells.prediction import sunlit
+from fsw.core.estimation.cells.update import NO_CELLS
 from fsw.core.estimation.estimator import EstimatorState
 from fsw.core.fdir.evidence import weights
 from fsw.core.fdir.faults import SensorFault
@@ -281,6 +282,16 @@ class TestASecondCell:
         health = watched(dead(LIT[0], LIT[1]), ENOUGH, begun)
         assert faults(health).count(0) == 4
         assert not contradicted(health)
+
+    def test_the_estimate_ends_once_though_the_board_is_silent_then(self):
+        """No message shows anything of the cells: the contradiction was of the estimate that has ended."""
+        health = watched(dead(LIT[0], LIT[1]), ENOUGH, watched(dead(LIT[0])))
+        ended = CellEvidence((), NO_CELLS, None, SEEN, False, False, True)
+        after = judge(health, ended, WEIGHTS, CONFIG)
+        assert faults(after) == faults(health)
+        assert not contradicted(after)
+        silent = ended._replace(estimate=proven(Q_BODY_FROM_ECI), begun=False)
+        assert judge(health, silent, WEIGHTS, CONFIG) == health, "while it lives nothing changes"
 
     def test_what_is_seen_in_the_shadow_is_no_estimate_s(self):
         first = watched(set_to(2, 0.3), seen=None, shadow=True)
