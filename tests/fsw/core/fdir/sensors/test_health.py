@@ -132,6 +132,23 @@ def test_a_check_isolates_though_no_filter_is_proven():
     assert suspected(after(SensorHealth(), SUN, 1, strong))
 
 
+@pytest.mark.parametrize(
+    ("findings", "named"),
+    [
+        (SEEN._replace(field_cause=SensorFault.STRENGTH, pair=False), (SensorFault.STRENGTH, 0)),
+        (SEEN._replace(sun_cause=SensorFault.STRENGTH, pair=False), (0, SensorFault.STRENGTH)),
+    ],
+)
+def test_a_check_isolates_though_a_filter_that_is_not_proven_refuses_the_other(findings, named):
+    """Which may be the estimate's fault: against the other, in use, nothing counts, nor for it."""
+    begun = SensorHealth(field=Watch(nats=1.0), sun=Watch(nats=1.0))
+    refused = after(begun, NEITHER, 25, findings)
+    assert faults(refused) == (0, 0)
+    assert {refused.field.nats, refused.sun.nats} == {13.5, 1.0}
+    assert faults(after(begun, NEITHER, 29, findings)) == named
+    assert faults(after(begun, NEITHER, 29)) == (0, 0), "without a check it is not known who is wrong"
+
+
 @pytest.mark.requirement("REQ-SENSOR-05")
 def test_silence_weighs_half_since_the_bus_may_be_the_cause():
     silent = SEEN._replace(sun_cause=SensorFault.SILENT, sun=None, pair=False)
