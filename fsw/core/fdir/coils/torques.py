@@ -60,7 +60,8 @@ def judge_effect(
         The health, and the estimator, corrected where a coil certainly did other than assumed.
     """
     estimate, age, b_eci_t = state.estimate, tick - view.fired_tick, reference.b_eci_t
-    ended = age == config.pulses.pulse_ticks and view.driven_level != 0
+    as_asked = view.driven_level != 0 and (view.driven_coil, view.driven_level) == view.fired
+    ended = as_asked and age == config.pulses.pulse_ticks
     flows = flows_somewhere(health)
     hurry = age % EARLY_TICKS == 0 and (unexplained or state.rejected_in_a_row > 0 or flows)
     due = ended or hurry or age == config.pulses.backoff_ticks
@@ -73,7 +74,7 @@ def judge_effect(
         estimate = stray.trace(estimate, health.conducts, kicks_radps, config.mekf.tick_s, begins)
     if due:
         health, estimate = _isolate(health, estimate, view.fired.coil if ended else None, believed, config)
-    if ended and (view.driven_coil, view.driven_level) == view.fired:
+    if ended:
         gravity_ps2 = 3.0 * MU_M3PS2 / reference.radius_m**3
         estimate = effects.trace_pulse(estimate, view.fired, b_eci_t, gravity_ps2, config.pulses, config.mekf)
     return health, state._replace(estimate=estimate)

@@ -124,6 +124,15 @@ def test_a_pulse_that_was_not_driven_as_requested_is_not_traced(changes):
     assert state.estimate.trace is None
 
 
+def test_nor_does_it_take_the_place_of_one_that_is():
+    """The oldest of its coil is still traced: added up with the older ones it would count twice."""
+    full, _ = fly([2, 0, 2, 1, 2], [0.5, 1.0, 0.5, 1.0, 0.5])
+    before = HEALTH._replace(older=NONE_OLDER)
+    health, state = ended(ENDED._replace(driven_level=3), full, before)
+    assert state.estimate.trace.numbers.count(2) == 3
+    assert health == before
+
+
 def test_what_the_oldest_pulse_of_a_coil_has_shown_is_kept_with_that_coil():
     """Coil 2 has three pulses, too weak ones; a fourth takes the place of the first."""
     full, _ = fly([2, 0, 2, 1, 2], [0.5, 1.0, 0.5, 1.0, 0.5])
