@@ -101,7 +101,7 @@ def _gate(
 ) -> tuple[FlightState, Readings]:
     """Accept what the boards sent, and compare the coil driver's currents with the requests."""
     tick = inbox.tick
-    readings, gate = admit(inbox.frames, state.gate)
+    readings, gate = admit(inbox.frames, state.gate, skipped=0 <= state.tick < tick - 1)
     readings = calibration.calibrated(readings, config.calibration)
     readings = read_back.without_offset(readings, state.coil, tick, config.read_back)
     view = update_view(state.coil, readings, tick, config.coils)

@@ -35,7 +35,8 @@ from fsw.wire.messages import (
 )
 
 INBOX_LIMIT = 64
-"""Frames read in one tick; a babbling node cannot cost more than that."""
+"""Frames read in one tick; a babbling node cannot cost more than that. After skipped ticks these are the latest,
+and of those before as many that are no reading of a moment."""
 
 NOISE_LIMIT = 8
 """Broken frames in one tick beyond which no telecommand is believed.
@@ -157,8 +158,13 @@ class GateState(NamedTuple):
         return (*counters, *self[1:])
 
 
-def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateState]:
+def admit(frames: tuple[Frame, ...], state: GateState, skipped: bool = False) -> tuple[Readings, GateState]:
     """Judge the frames of one tick.
+
+    Args:
+        frames: in the order of reception.
+        state: of the tick before.
+        skipped: the frames are those of several ticks.
 
     Returns:
         The readings, and the gate's state with ``rejected`` (broken, unknown, repeated, out of range, or a
@@ -172,7 +178,8 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
     rejected, missed = state.rejected, state.missed
     digests = [state.input_crc, state.command_crc]
     under_own_id = 0
-    heard = [(frame, intact(frame)) for frame in frames[:INBOX_LIMIT]]
+    read = _latest(frames) if skipped else frames[:INBOX_LIMIT]
+    heard = [(frame, intact(frame)) for frame in read]
     noisy = sum(not whole for _, whole in heard) > NOISE_LIMIT
     for frame, whole in heard:
         message_class = _ACCEPTED.get(frame.can_id)
@@ -206,10 +213,16 @@ def admit(frames: tuple[Frame, ...], state: GateState) -> tuple[Readings, GateSt
             slots[slot] = message
         digest = frame.can_id in _IN_ANY_PLACE
         digests[digest] = crc32(frame.data, digests[digest])
-    overrun = state.overrun + max(0, len(frames) - INBOX_LIMIT)
+    overrun = state.overrun + len(frames) - len(read)
     rest = (tuple(telecommands), tuple(repeated), under_own_id)
     readings = Readings(*slots, *rest)  # type: ignore[arg-type, call-arg]  # each slot is of its field's kind
     return readings, GateState(tuple(counters), rejected, missed, overrun, *digests)
+
+
+def _latest(frames: tuple[Frame, ...]) -> tuple[Frame, ...]:
+    """What is read of the frames of several ticks: what the boards say now, and what they are told once."""
+    before = [frame for frame in frames[:-INBOX_LIMIT] if frame.can_id in _IN_ANY_PLACE]
+    return (*before[:INBOX_LIMIT], *frames[-INBOX_LIMIT:])
 
 
 def _in_range(message: InputMessage | Telecommand) -> bool:

@@ -3,6 +3,7 @@
 import pytest
 from replies import events_of, of
 
+from fsw.core.gate.readings import INBOX_LIMIT
 from fsw.core.telemetry import Event
 from fsw.wire.messages import (
     CoilFire,
@@ -13,6 +14,31 @@ from fsw.wire.messages import (
     SunVector,
     TickDone,
 )
+
+
+def lose_syncs(world, ticks):
+    """The inbox after so many lost SYNCs, with all frames since the last one."""
+    frames = ()
+    for _ in range(ticks):
+        frames += world.inbox().frames
+        world.plant.end_tick()
+    inbox = world.inbox()
+    return inbox._replace(frames=frames + inbox.frames)
+
+
+class TestLostSyncs:
+    def test_the_field_is_that_of_now_though_many_frames_have_come_since(self, make_world):
+        world = make_world()
+        world.fly_until_valid()
+        inbox = lose_syncs(world, 40)
+        assert len(inbox.frames) > INBOX_LIMIT
+        world.step(lambda _: inbox)
+        latest = [MagField.decode(frame.data) for frame in inbox.frames if frame.can_id == MagField.ID][-1]
+        sample = world.state.sample
+        assert sample.tick == world.state.tick
+        sent_t = [1e-9 * number for number in (latest.b_x, latest.b_y, latest.b_z)]
+        assert sample.b_body_t == pytest.approx(sent_t, abs=1e-12)
+        assert world.state.estimator.rejected_in_a_row == 0
 
 
 class TestSilence:

@@ -268,6 +268,42 @@ class TestOverrun:
         assert (state.rejected, state.overrun) == (INBOX_LIMIT, 1)
 
 
+class TestSkipped:
+    """The frames of many ticks whose SYNCs were lost: those of now are the last."""
+
+    def test_the_latest_are_read(self):
+        many = [FIELD._replace(b_x=2.0 * n, counter=n % 16) for n in range(INBOX_LIMIT + 9)]
+        readings, state = admit(frames(*many), GateState(), skipped=True)
+        assert readings.field == many[-1]
+        assert (state.overrun, state.rejected) == (9, 0)
+        assert admit(frames(*many), GateState())[0].field == many[INBOX_LIMIT - 1]
+
+    @pytest.mark.parametrize("number", [1, INBOX_LIMIT - 1, INBOX_LIMIT])
+    def test_where_they_fit_it_is_all_the_same(self, number):
+        few = frames(*[FIELD._replace(counter=n % 16) for n in range(number)])
+        assert admit(few, GateState(), skipped=True) == admit(few, GateState())
+
+    def test_telecommands_are_read_wherever_they_stand_and_in_their_order(self):
+        told = [TcFreeze(1, 3), TcFreeze(0, 4), TcFreeze(1, 5)]
+        many = [FIELD._replace(counter=n % 16) for n in range(INBOX_LIMIT)]
+        inbox = frames(told[0], *many[:20], told[1], *many, told[2])
+        readings, state = admit(inbox, GateState(), skipped=True)
+        assert readings.telecommands == tuple(told)
+        assert state.overrun == len(inbox) - INBOX_LIMIT - 2
+
+    def test_a_babbling_node_costs_no_more_than_two_limits(self):
+        flood = frames(*[TcFreeze(1, n % 16) for n in range(5 * INBOX_LIMIT)])
+        readings, state = admit(flood, GateState(), skipped=True)
+        assert len(readings.telecommands) == 2 * INBOX_LIMIT
+        assert state.overrun == 3 * INBOX_LIMIT, "counted"
+
+    def test_in_noise_none_is_believed(self):
+        many = [FIELD._replace(counter=n % 16).encode() for n in range(INBOX_LIMIT)]
+        many[-NOISE_LIMIT - 1 :] = [broken(FIELD.encode())] * (NOISE_LIMIT + 1)
+        readings, _ = admit((TcFreeze(1, 3).encode(), *many), GateState(), skipped=True)
+        assert readings.telecommands == ()
+
+
 class TestNoise:
     """Frames of chance, some of which pass the CRC: a sample of them does little harm, a telecommand much."""
 
