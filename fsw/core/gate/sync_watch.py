@@ -92,7 +92,12 @@ def near(current: int, tick: int, leap_ticks: int) -> bool:
 
 
 def _gone_on(watch: SyncWatch, current: int, tick: int, leap_ticks: int) -> SyncWatch:
-    """The watch after a tick not far ahead: a skip may come from a forged SYNC."""
+    """The watch after a tick not far ahead: a skip may come from a forged SYNC.
+
+    A duplicate of the tick before, which an answer that was lost would have repeated, is then nothing more.
+    """
+    if current in watch.doubted:
+        watch = watch._replace(doubted=_without(watch.doubted, current))
     if tick > current + 1:
         settled_tick = tick + leap_ticks
         timed_tick = watch.timed_tick if tick <= current + 1 + FEW_TICKS else settled_tick

@@ -85,6 +85,22 @@ class TestOneStrange:
         assert believed == list(range(1, 300))
 
 
+    @pytest.mark.parametrize("skip", [1, 2, LEAP_TICKS])
+    @pytest.mark.parametrize("late", [0, 1])
+    def test_nor_with_a_duplicate_before_though_the_count_is_not_settled(self, count, skip, late):
+        """A duplicate is of the tick that was answered; once the count has gone on it names no plant."""
+        tick = AT + skip
+        assert count.hear(tick) is Belief.NEXT
+        assert count.hear(tick) is Belief.IGNORED
+        assert count.answers(tick + 1, tick + 2) == [tick + 1, tick + 2]
+        assert count.hear(tick + late) is Belief.IGNORED
+        assert count.hear(tick + 3) is Belief.NEXT
+
+    def test_what_was_strange_in_a_count_that_is_not_settled_stays_so(self, count):
+        """The plant that was left for a forged skip may be believed again."""
+        assert count.answers(AT + 50, AT + 50, AT + 1, AT + 51, AT + 2) == [AT + 50, AT + 51, AT + 2]
+
+
 @pytest.mark.requirement("REQ-BUS-04")
 class TestTwoStrange:
     @pytest.mark.parametrize("first", [FAR, 0, 1, AT - 2, AT + LEAP_TICKS + 1, LAST - 2])
