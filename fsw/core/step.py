@@ -84,7 +84,10 @@ def _done(state: FlightState, tick: int) -> Frame:
 def _begin(
     state: FlightState, inbox: Inbox, belief: Belief, config: FlightConfig
 ) -> tuple[FlightState, Inbox]:
-    """At the first tick of a count every timer starts in full; skipped ticks stop the timers."""
+    """At the first tick of a count every timer starts in full; skipped ticks stop the timers.
+
+    What the coils drove in skipped ticks is not known.
+    """
     tick, timing = inbox.tick, config.coils.pulses
     if belief is Belief.RESTARTED:
         state, inbox = restarted(state, tick, config), inbox._replace(frames=())
@@ -92,7 +95,7 @@ def _begin(
         state = state._replace(pulses=pulses.boot(tick, timing), field_tick=tick, status_tick=tick)
     elif state.tick < tick - 1:
         timers = pulses.delay(state.pulses, tick, tick - state.tick - 1)
-        state = state._replace(pulses=timers, coil=state.coil._replace(past_am2=()))
+        state = state._replace(pulses=timers, coil=state.coil._replace(past_am2=(), idle_ticks=0))
     return state, inbox
 
 

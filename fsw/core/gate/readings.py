@@ -35,8 +35,10 @@ from fsw.wire.messages import (
 )
 
 INBOX_LIMIT = 64
-"""Frames read in one tick; a babbling node cannot cost more than that. After skipped ticks these are the latest,
-and of those before as many that are no reading of a moment."""
+"""Frames read in one tick; a babbling node cannot cost more than that.
+
+After skipped ticks these are the latest, and before them as many telecommands.
+"""
 
 NOISE_LIMIT = 8
 """Broken frames in one tick beyond which no telecommand is believed.

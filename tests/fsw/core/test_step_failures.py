@@ -40,6 +40,20 @@ class TestLostSyncs:
         assert sample.b_body_t == pytest.approx(sent_t, abs=1e-12)
         assert world.state.estimator.rejected_in_a_row == 0
 
+    def test_a_sample_that_may_date_from_a_pulse_in_skipped_ticks_is_not_taken(self, make_world):
+        """Of most of those ticks no report is read: how long the coils have been idle is not known."""
+        world = make_world(flight={"uncertainty": {"latency_s": 2.0}})
+        world.fly_until_valid()
+        blank_ticks, taken = world.config.estimator.blank_ticks, []
+        assert blank_ticks >= 2
+        assert world.state.coil.idle_ticks > blank_ticks
+        inbox = lose_syncs(world, 1)
+        world.step(lambda _: inbox)
+        for _ in range(blank_ticks + 1):
+            taken.append(world.state.sample.tick == world.state.tick)
+            world.step()
+        assert taken == [False] * blank_ticks + [True]
+
 
 class TestSilence:
     STALE_S = 60
