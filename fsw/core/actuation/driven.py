@@ -9,7 +9,7 @@ from math import sqrt
 
 from fsw.core.actuation.actuator import ActuatorConfig, CoilView, requested_level
 from fsw.core.actuation.pulses import PulseConfig, dipole_am2
-from fsw.core.algebra.vector import Vec3, scale, sub
+from fsw.core.algebra.vector import Vec3, add, scale, sub
 from fsw.core.estimation.dynamics.error_dynamics import Driven
 
 
@@ -18,15 +18,16 @@ def driven(
 ) -> list[Driven]:
     """What the coils drove over each of these ticks, and how uncertain that is.
 
-    In a skipped tick, a request that is under way counts as driven. The uncertainty of a dipole is what was
-    requested less what was reported, since either may have been lost or belong to another tick. The errors
-    in the n ticks of a pulse are correlated: each is scaled by sqrt(n), so that taking them as independent
-    never understates their sum, (sum of a_i)^2 <= n sum of a_i^2. A request to a continuous driver is for one
-    tick, and no other follows before the next report.
+    In a skipped tick, a request that is under way counts as driven, and so does a stray current that is
+    known, since it flowed before. The uncertainty of a dipole is what was requested less what was reported,
+    since either may have been lost or belong to another tick. The errors in the n ticks of a pulse are
+    correlated: each is scaled by sqrt(n), so that taking them as independent never understates their sum,
+    (sum of a_i)^2 <= n sum of a_i^2. A request to a continuous driver is for one tick, and no other follows
+    before the next report.
 
     Args:
         view: after ``update_view``.
-        m_body_am2: the dipole over the last tick, body axes.
+        m_body_am2: the dipole over the last tick, with what is known of a stray current, body axes.
         reported: whether a driver of pulses reported in the last tick.
         ticks: those since the tick before, the last of which ends now.
         config: the coils.
@@ -38,8 +39,9 @@ def driven(
         *skipped, asked_am2 = [view.asked.over(tick) for tick in ticks]
         reported, together = view.asked.reported, 1.0
     doubted_am2 = sub(asked_am2, view.driven_am2) if reported else asked_am2
+    stray_am2 = sub(m_body_am2, view.driven_am2)
     return [
-        *[Driven(one_am2, scale(together, one_am2)) for one_am2 in skipped],
+        *[Driven(add(one_am2, stray_am2), scale(together, one_am2)) for one_am2 in skipped],
         Driven(m_body_am2, scale(together, doubted_am2)),
     ]
 

@@ -100,6 +100,16 @@ def test_a_stray_current_that_the_filter_knows_of_is_no_doubt(coils):
     assert now == [Driven((0.3, 0.0, 0.0), ZERO)]
 
 
+def test_it_flows_in_skipped_ticks_too(coils):
+    """For minutes as a rule: without it the filter would find the rate changed by nothing."""
+    stray_am2 = (0.3, 0.0, -0.1)
+    skipped = driven(FIRED, stray_am2, True, range(TICK + 50, TICK + 53), coils)
+    assert skipped == [Driven(stray_am2, ZERO)] * 3
+    under_way, off, _ = driven(FIRED, stray_am2, True, range(TICK + 3, TICK + 6), coils)
+    assert under_way == ((0.3, -8.0, -0.1), DOUBTED_AM2)
+    assert off == Driven(stray_am2, ZERO)
+
+
 class TestContinuousDriver:
     """It reports dipoles and has no pulses; a request is for one tick."""
 

@@ -84,7 +84,6 @@ class TestOneStrange:
             believed += count.answers(i, AT + first + i)
         assert believed == list(range(1, 300))
 
-
     @pytest.mark.parametrize("skip", [1, 2, LEAP_TICKS])
     @pytest.mark.parametrize("late", [0, 1])
     def test_nor_with_a_duplicate_before_though_the_count_is_not_settled(self, count, skip, late):
