@@ -50,10 +50,23 @@ class TestLength:
             ticks_of(load("microsat", parse_settings(("time.orbits=90000", "time.tick_hz=10"))), None)
 
 
+DECAYED_ABOARD = {
+    "time": {"epoch_utc": "2015-06-01T00:00:00Z"},
+    "flight": {
+        "orbit": {
+            "tle": [
+                "1 22826U 93061D   15086.11593543  .00000251  00000-0  99999+0 0  9992",
+                "2 22826  98.6946  36.4208 0008932 173.8349 186.2944 14.30166407121352",
+            ]
+        }
+    },
+}
+
+
 def test_what_the_flight_software_cannot_fly_is_refused_before_the_run_begins():
-    """A pulse below a tick: the plant alone could fly it."""
-    scenario = load("microsat", parse_settings(("coils.pulse_s=0.1",)))
-    with pytest.raises(TableError):
+    """Elements that have decayed aboard alone: the plant could fly it."""
+    scenario = load("microsat", DECAYED_ABOARD)
+    with pytest.raises(TableError, match="decayed"):
         check_can_fly(scenario, 1)
     check_plant(scenario, 1)
 

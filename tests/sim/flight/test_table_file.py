@@ -34,7 +34,7 @@ def test_of_every_shipped_scenario_with_settings_laid_over_it(name, settings, tm
 @pytest.mark.parametrize(
     "settings",
     [
-        ("coils.backoff=per_coil", "coils.pulse_s=0.5"),
+        ("coils.backoff=per_coil", "coils.pulse_s=2.5"),
         (*CONTINUOUS, "flight.control.law=lqr"),
         ("flight.control.law=bdot_switched", "flight.control.gains.bdot_switched.factor=3.3"),
     ],
