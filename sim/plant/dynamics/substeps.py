@@ -20,7 +20,7 @@ MOST_SUBSTEPS = 2048
 """Steps of a tick for the sake of a fast motion; one that needs more is lost."""
 
 
-class Steps(NamedTuple):
+class TickSteps(NamedTuple):
     """The steps of a tick."""
 
     number: int
@@ -51,7 +51,7 @@ class Substeps:
         """On the grid of a slow motion."""
         self._environments = {self._least: self.environment}  # by steps a tick
 
-    def of(self, tick: int, omega_body_radps: Vec3, driven_nms: float = 0.0) -> Steps:
+    def of(self, tick: int, omega_body_radps: Vec3, driven_nms: float = 0.0) -> TickSteps:
         """The steps of a tick.
 
         Args:
@@ -72,7 +72,7 @@ class Substeps:
                 raise lost(tick)
         if count not in self._environments:
             self._environments[count] = Environment(self._config, count)
-        return Steps(count, 1.0 / (self._config.tick_hz * count), self._environments[count].stages(tick))
+        return TickSteps(count, 1.0 / (self._config.tick_hz * count), self._environments[count].stages(tick))
 
 
 def lost(tick: int) -> PlantError:
