@@ -18,13 +18,12 @@ MOST_LEVELS = 32
 LEAST, MOST = 1e-18, 1e15
 """Bounds of the magnitude of every number but 0, in the units of the file."""
 
-# Each alternative takes something, and a text without an end all to the end of its line or of the document.
-# So that is read once, whatever is in it, and what stands in a text or a comment is no key.
-_TEXTS = r'''"""(?:[^"\\]|\\.|"(?!""))*+(?:"{3,5}+|\\?\Z)|'{3}(?:[^']|'(?!\'\'))*+(?:'{3,5}+|\Z)'''
-_PART = r"""(?:[A-Za-z0-9_-]++|"(?:[^"\\\n]|\\[^\n])*+"?|'[^'\n]*+'?)"""
-_MORE = rf"[ \t]*+\.[ \t]*+{_PART}"
+# Each piece takes something, and a text without an end all to the end of its line or of the document. So that
+# is read once, whatever is in it, and what stands in a text or a comment is no key.
 _PIECE = re.compile(
-    rf"{_TEXTS}|#[^\n]*+|{_PART}(?P<long>(?:{_MORE}){{{MOST_LEVELS}}})?(?:{_MORE})*+|.", re.DOTALL
+    r"""\"{3}(?:[^"\\]|\\.|"(?!""))*(?:"{3,5}|\\?\Z)|'{3}(?:[^']|'(?!''))*(?:'{3,5}|\Z)|\#[^\n]*"""
+    r"""|(?P<part>[A-Za-z0-9_-]+|"(?:[^"\\\n]|\\[^\n])*"?|'[^'\n]*'?)|(?P<dot>\.)|(?P<blank>[ \t]+)|.""",
+    re.DOTALL,
 )
 
 
@@ -49,7 +48,7 @@ def parse_toml(text: str) -> dict[str, Any]:
         TOMLDecodeError: the text is not TOML.
         BoundsError: it is nested deeper than ``MOST_LEVELS``, or a number is outside ``LEAST`` to ``MOST``.
     """
-    if any(piece["long"] for piece in _PIECE.finditer(text)):
+    if _longest_key(text) > MOST_LEVELS:
         raise BoundsError(f"a key has more than {MOST_LEVELS} parts")
     try:
         values = tomllib.loads(text)
@@ -61,6 +60,22 @@ def parse_toml(text: str) -> dict[str, Any]:
         raise BoundsError(f"an integer is {_BEYOND}") from None
     _check(values, "", 0)
     return values
+
+
+def _longest_key(text: str) -> int:
+    """The most parts with dots between them."""
+    longest = parts = 0
+    dotted = False
+    for piece in _PIECE.finditer(text):
+        match piece.lastgroup:
+            case "part":
+                parts, dotted = (parts + 1 if dotted else 1), False
+                longest = max(longest, parts)
+            case "dot":
+                dotted = True
+            case None:
+                parts, dotted = 0, False
+    return longest
 
 
 _TOO_DEEP = f"it is nested deeper than {MOST_LEVELS} levels"
