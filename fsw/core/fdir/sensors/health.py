@@ -121,17 +121,17 @@ def judge(
     b_refused = seen.refused_field and (alone or (sure and used.sun))
     s_refused = seen.refused_sun and sure and used.field
     common = findings.field_cause and findings.sun_cause and not seen.isolated
-    untold = seen.refused and not (b_refused or s_refused)  # says nothing of one that a check accuses
+    ambiguous = seen.refused and not (b_refused or s_refused)  # says nothing of one that a check accuses
     if field.fault:
         field = readmitted(field, b_fits, weights)
     else:
         cause = findings.field_cause or (SensorFault.REFUSED if b_refused else 0)
-        field = accused(field, cause, common or (untold and not findings.field_cause), weights)
+        field = accused(field, cause, common or (ambiguous and not findings.field_cause), weights)
     if sun.fault:
         sun = readmitted(sun, s_fits, weights)
     else:
         cause = findings.sun_cause or (SensorFault.REFUSED if s_refused else 0)
-        sun = accused(sun, cause, common or (untold and not findings.sun_cause), weights)
+        sun = accused(sun, cause, common or (ambiguous and not findings.sun_cause), weights)
     return SensorHealth(field, sun, both, findings.memory, by_cell)
 
 
