@@ -16,6 +16,7 @@ from sim.campaign.claim import Claim, Study
 from sim.design.spin import roll_precession
 from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2, Array
 from sim.validate.review.figures import FlownClaim, one_figure
+from sim.validate.review.flown import three_term
 from sim.validate.review.law_flight import LawFlight, fly
 from sim.validate.review.law_history import LawHistory, angle_deg
 
@@ -240,6 +241,7 @@ def studies() -> list[Study]:
     """All of this section."""
     return [
         *(row.study("spin", f"{REVIEW},", flown_figure) for row in ROWS),
+        three_term.study(),
         one_figure(
             Claim(
                 "review.spin.roll_floquet",

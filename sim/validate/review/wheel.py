@@ -68,6 +68,9 @@ PUSHED = replace(
     orbits=6.0,
     step_s=12.0,
 )
+K_I = 3.0
+"""The mean torque of the coil along the wheel, -2 k_i (b2^2 I1, b1^2 I2), takes yaw and roll down by
+2 k_i (b2^2, b1^2) / (h w0): by a part in 6.6 and 1.65 orbits."""
 WEAK_K_W = 2e4
 """So weak that the expressions to first order hold."""
 STUDIED = Body("wheeled", diagonal((1.4, 1.6, 1.9)), 2100.0, 75.0, WHEEL_NMS)
@@ -99,9 +102,9 @@ def orbit_share(case: LawFlight) -> float:
     return float(lean[-1] / lean[np.searchsorted(orbits, orbits[-1] - 1.0)])
 
 
-def mean_roll_share(case: LawFlight, k_i: float) -> float:
-    """Mean roll of the last orbit with an integral part, of that without."""
-    with_it, without = (_mean_roll(fly(replace(case, k_i=value))) for value in (k_i, 0.0))
+def mean_share(case: LawFlight, k_i: float, axis: int) -> float:
+    """Mean turn about a body axis, from 0, in the last orbit with an integral part, of that without."""
+    with_it, without = (_mean_turn(fly(replace(case, k_i=value)), axis) for value in (k_i, 0.0))
     return abs(with_it / without)
 
 
@@ -187,7 +190,26 @@ ROWS: tuple[FigureClaim, ...] = (
         "1",
         -inf,
         0.1,
-        partial(mean_roll_share, PUSHED, 3.0),
+        partial(mean_share, PUSHED, K_I, 1),
+    ),
+    FigureClaim(
+        "wheel_integral_yaw",
+        "The same of the yaw; its mean torque alone would leave exp(-5.5 / 6.6) = 0.43",
+        "[47]",
+        "1",
+        -inf,
+        0.5,
+        partial(mean_share, PUSHED, K_I, 0),
+    ),
+    FigureClaim(
+        "wheel_integral_pitch",
+        "The same of the pitch, which falls by k_i / k_a, 4.5 times an orbit",
+        "[47]",
+        "1",
+        -inf,
+        0.01,
+        partial(mean_share, PUSHED, K_I, 2),
+        "it goes on to nothing",
     ),
     FigureClaim(
         "convergence",
@@ -232,10 +254,11 @@ def _lean_deg(flown: LawHistory) -> Array:
     return flown.orbit_axis_deg(2, 2)
 
 
-def _mean_roll(flown: LawHistory) -> float:
-    """Half of S_2 on the mean of the last orbit, rad."""
+def _mean_turn(flown: LawHistory, axis: int) -> float:
+    """Half of S about an axis on the mean of the last orbit, rad."""
     c = flown.c_body_from_orbit[flown.orbits > flown.orbits[-1] - 1.0]
-    return float(0.5 * (c[:, 2, 0] - c[:, 0, 2]).mean())
+    u, v = (axis + 1) % 3, (axis + 2) % 3
+    return float(0.5 * (c[:, u, v] - c[:, v, u]).mean())
 
 
 def _decay_error(body: Body) -> float:

@@ -1,5 +1,6 @@
 """Claims: laws of simple feedback (section 3.1), flown with nothing unknown."""
 
+from collections.abc import Sequence
 from functools import partial
 from math import radians
 from typing import Any
@@ -8,7 +9,7 @@ import numpy as np
 
 from fsw.core.laws.feedback.field_direction import FieldDirectionGains
 from fsw.core.laws.feedback.held import ApartGains, HoldGains
-from sim.campaign.claim import Claim, Study
+from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.design.feedback.inertial import best_on_line
 from sim.plant.config import OrbitConfig
 from sim.plant.environment.field import DirectDipole
@@ -88,15 +89,31 @@ def held() -> Study:
 
 def delayed() -> Study:
     """The delayed attitude in place of the rate."""
-    claim = Claim(
-        "review.feedback.delayed",
-        "Pointing error of pd_delayed in the fifth orbit without a rate, delays of 60 to 120 s, from 20 deg",
-        f"{SECTION}, after Xu, Luo, Yang 2017 [80]",
-        "deg",
-        high=0.3,
+    source = f"{SECTION}, after Xu, Luo, Yang 2017 [80]"
+    claims = (
+        Claim(
+            "review.feedback.delayed",
+            "Pointing error of pd_delayed in the fifth orbit without a rate, delays of 60 to 120 s, from "
+            "20 deg",
+            source,
+            "deg",
+            high=0.3,
+        ),
+        Claim(
+            "review.feedback.delayed.pd",
+            "Its largest angle from the flight of pd, which is told the rate; in 60 s an orbit turns 3.6 deg",
+            source,
+            "deg",
+            high=2.0,
+        ),
     )
-    tasks = (partial(last_orbit_deg, flight("pd_delayed", 20.0, **PD)),)
-    return Study(claim.id, tasks, partial(judged, (claim,)))
+    return Study("review.feedback.delayed", (delayed_deg,), lambda found: judged(claims, found[0]))
+
+
+def delayed_deg() -> tuple[float, float]:
+    """The error in the last orbit, and the largest angle from the law with the rate."""
+    told, untold = (fly(flight(law, 20.0, near=False, **PD)) for law in ("pd", "pd_delayed"))
+    return untold.last_orbit_deg, apart_deg(untold, told)
 
 
 def direction() -> Study:
@@ -139,12 +156,27 @@ def sphere() -> Study:
             "deg",
             high=1.0,
         ),
+        Claim(
+            "review.feedback.sphere.pd",
+            "Its largest angle from the flight of pd, which is told the rate: the observer knows the torque",
+            f"{SECTION}, after Reyhanoglu, Drakunov 2008 [85, 86]",
+            "deg",
+            high=1.0,
+        ),
     )
-    tasks = (
-        vertical_deg,
-        partial(last_orbit_deg, flight("sphere_output", 20.0, inertia_kgm2=SPHERE, **PD)),
+
+    def conclude(found: Sequence[Any]) -> list[ClaimOutcome]:
+        return judged(claims, (found[0], *found[1]))
+
+    return Study("review.feedback.sphere", (vertical_deg, output_deg), conclude)
+
+
+def output_deg() -> tuple[float, float]:
+    """The error in the last orbit, and the largest angle from the law with the rate."""
+    told, untold = (
+        fly(flight(law, 20.0, inertia_kgm2=SPHERE, near=False, **PD)) for law in ("pd", "sphere_output")
     )
-    return Study("review.feedback.sphere", tasks, partial(judged, claims))
+    return untold.last_orbit_deg, apart_deg(untold, told)
 
 
 def two_step() -> Study:
@@ -226,6 +258,12 @@ def fields_in_body(flown: LawHistory) -> Array:
     b_eci_t = DirectDipole().at(flown.t_s, r_m)
     b_body_t: Array = (flown.c_body_from_eci @ b_eci_t[:, :, None])[:, :, 0]
     return b_body_t
+
+
+def apart_deg(first: LawHistory, second: LawHistory) -> float:
+    """The largest angle between the attitudes of two flights at the same time."""
+    cosines = np.abs(np.sum(first.q_body_from_orbit * second.q_body_from_orbit, axis=1))
+    return float(np.degrees(2.0 * np.arccos(np.clip(cosines, 0.0, 1.0))).max())
 
 
 def vertical_deg() -> float:

@@ -5,6 +5,7 @@ from fsw.core.laws.spin import spin as thomson
 from fsw.core.laws.spin import spin_axis, target_precession
 from sim.campaign.claim import ClaimVerdict
 from sim.validate.review import spin
+from sim.validate.review.flown import three_term
 
 
 def missed(*names):
@@ -35,6 +36,20 @@ def test_without_its_first_term_the_law_of_three_leaves_the_nutation(monkeypatch
         ),
     )
     assert missed(*names) == {"three_term_nutation"}
+
+
+def test_without_the_term_of_the_spin_the_law_of_three_spins_up_by_the_momentum_alone(monkeypatch):
+    """It comes to the same end, at half the speed."""
+    names = ("three_term", "three_term_spin", "three_term_nutation")
+    assert three_term.study().conclude([three_term.decay_ratio()])[0].verdict is ClaimVerdict.PASS
+    whole = spin_axis.three_term_dipole
+    monkeypatch.setattr(
+        spin_axis,
+        "three_term_dipole",
+        lambda b, omega, spin_error, *rest: whole(b, omega, 0.0, *rest),
+    )
+    assert missed(*names) == set()
+    assert three_term.study().conclude([three_term.decay_ratio()])[0].verdict is ClaimVerdict.FAIL
 
 
 def test_without_the_coil_that_holds_it_the_spin_stays_as_it_was(monkeypatch):

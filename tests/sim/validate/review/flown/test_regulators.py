@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fsw.core.laws.optimal import disturbed
 from sim.plant.rotation import ZERO
 from sim.validate.review.flown import regulators
 
@@ -14,8 +15,23 @@ def claims_of(study, found):
 
 
 def test_a_regulator_that_learns_nothing_misses_its_claim():
-    learned = regulators.learned_deg(learning=0.0)
-    assert claims_of(regulators.disturbed(), (learned, learned)) == ["FAIL", "FAIL"]
+    learned = regulators.learned_deg(regulators.light, learning=0.0)
+    assert claims_of(regulators.disturbed(), (learned,) * 4) == ["FAIL", "FAIL", "FAIL"]
+
+
+def test_without_its_functions_of_twice_the_latitude_a_torque_of_that_kind_is_not_learned(monkeypatch):
+    """The torque of light has no such part: its claims do not notice."""
+    whole = disturbed.functions
+    monkeypatch.setattr(disturbed, "functions", lambda u_rad: (*whole(u_rad)[:3], 0.0, 0.0))
+    found = [task() for task in regulators.disturbed().tasks]
+    assert claims_of(regulators.disturbed(), found) == ["PASS", "PASS", "FAIL"]
+
+
+def test_the_torque_that_comes_twice_an_orbit_has_no_other_part():
+    u = 2.0 * np.pi * np.arange(24) / 24
+    velocities = 7e3 * np.stack([-np.sin(u), 0.15 * np.cos(u), np.sqrt(1.0 - 0.15**2) * np.cos(u)], axis=1)
+    found = np.array([regulators.twice_an_orbit(regulators.ZERO, v) for v in velocities])
+    assert found == pytest.approx(np.outer(np.cos(2.0 * u), regulators.LEVER_NM), abs=1e-20)
 
 
 def test_the_worst_of_the_wrong_moments_counts():
