@@ -131,6 +131,19 @@ def test_the_observer_is_told_the_torque_of_its_own_dipole(bench, turned):
     assert pushed == pytest.approx(np.cross((0.1, -0.2, 0.3), inputs.b_body_t) / 1.6, rel=1e-9)
 
 
+def test_the_observer_is_told_how_the_orbital_frame_turns(bench, turned):
+    """Of a turned body without a dipole w changes by h w0 w x e3 beside what the attitude says."""
+    orbit, rate = bench.Orbit(), np.array([2e-3, -3e-3, 1e-3])
+    c = turned((1, -2, 3), 70.0)
+    inputs = bench.inputs_at(orbit, 700, 2.0, c @ orbit.c_orbit_from_eci(1400.0), np.zeros(3), None)
+    settings = bench.config(bench.Body(SPHERE), 2.0, {"sphere_output": ObserverGains()})
+    q = inputs.attitude.q_body_from_orbit
+    memory = sphere_output(inputs, (*q, *rate, 0.0, 0.0, 0.0), bench.setpoint(), settings).memory
+    _, without = observed(q, tuple(rate), q, (0.0, 0.0, 0.0), ObserverGains().bandwidth_radps, 2.0)
+    turned_by = 2.0 * orbit.rate_radps * np.cross(rate, c[:, 2])
+    assert np.subtract(memory[4:7], without) == pytest.approx(turned_by, rel=1e-6)
+
+
 def test_what_the_coils_cannot_give_is_not_remembered(bench, turned):
     """The observer follows what turns the body: with any gain its state stays finite."""
     orbit = bench.Orbit()

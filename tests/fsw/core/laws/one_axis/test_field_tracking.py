@@ -148,6 +148,18 @@ class TestMemory:
         first = fly(field_tracking, inputs(50), ())
         assert fly(field_tracking, inputs(61), first.memory).m_body_am2 == (0.0, 0.0, 0.0)
 
+    def test_before_the_hand_over_each_gain_has_its_own_share(self, inputs, bench):
+        first, second = inputs(50), inputs(51)
+        settings = bench.config(bench.Body(), 1.0, GAINS)
+        before, tracked = (
+            law(second, law(first, (), point, settings).memory, point, settings).m_body_am2
+            for law, point in (
+                (tracking_before_pd, bench.setpoint(k_w=1e7, k_a=2000.0)),
+                (field_tracking, bench.setpoint(k_w=0.3 * 1e7, k_a=0.5 * 2000.0)),
+            )
+        )
+        assert before == pytest.approx(tracked, rel=1e-12)
+
     def test_neither_law_of_the_hand_over_takes_the_other_s_memory_for_its_own(self, inputs, fly):
         tracked, integral = fly(tracking_before_pd, inputs(50), ()).memory, (10.0, -20.0, 30.0)
         assert fly(pd_after_tracking, inputs(51), tracked) == fly(pd_after_tracking, inputs(51), ())

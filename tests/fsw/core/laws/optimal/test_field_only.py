@@ -61,6 +61,22 @@ def test_the_periodic_covariance_repeats(bench):
     assert again[-1] == pytest.approx(sigmas[-1], rel=1e-3, abs=1e-4 * np.abs(sigmas[-1]).max())
 
 
+def test_the_observer_is_the_covariance_of_its_own_noise_and_torque(bench):
+    """Sigma / (v^2 step): Sigma is the one that repeats, whatever the length of an orbit's steps."""
+    orbit, rows, own = bench.Orbit(), tuple(map(tuple, INERTIA.tolist())), FieldOnlyGains()
+    b0 = 7.812e15 / orbit.radius_m**3
+    problem, field = orbit_problem(rows, (0.0, 0.0, 0.0), orbit.rate_radps, np.radians(98.6), b0, own)
+    observer = bench.scheduled(bench.Body(INERTIA), 1.0, "lqg_field").schedules["lqg_field"].observer
+    noise_t = own.noise * b0
+    torque_nm = own.torque * orbit.rate_radps**2 * np.trace(INERTIA) / 3.0
+    sigmas = observer * noise_t**2 * problem.step_s
+    f, g = problem.free[:, :6], problem.free[:, 6:]
+    before = f @ sigmas[-1] @ f.T + torque_nm**2 * g @ g.T
+    again = covariances_once(problem, field, torque_nm, noise_t, before)
+    for ours, expected in zip(sigmas, again, strict=True):
+        assert ours == pytest.approx(expected, rel=1e-3, abs=1e-4 * np.abs(expected).max())
+
+
 @pytest.fixture(scope="module")
 def flight(bench, turned):
     def fly(angle_deg=15.0, orbits=2.5, known=False, dipole=(0.0, 0.0, 0.0)):

@@ -71,6 +71,20 @@ def inputs(bench, turned):
     return bench.inputs_at(orbit, 200, 10.0, c_body_from_eci, np.array([1e-4, 2e-4, 1.3e-3]), before)
 
 
+def test_of_a_turned_body_the_gain_is_that_of_orbital_axes(bench, inputs, turned):
+    """(Omega, theta, d) turned back to orbital axes, and the dipole turned to the body's."""
+    oblique = np.array([[1.02, 0.13, -0.09], [0.13, 1.85, 0.21], [-0.09, 0.21, 1.95]])
+    ready = bench.scheduled(bench.Body(oblique, most_am2=1e3), 10.0, "lqr")
+    table, c, orbit = ready.schedules["lqr"], turned((1, -2, 3), 15.0), bench.Orbit()
+    torque, rate = np.array([3e-6, -2e-6, 5e-6]), np.array([1e-4, 2e-4, 1.3e-3])
+    relative = rate - orbit.rate_radps * c[:, 2]
+    theta = 2.0 * np.sin(np.radians(7.5)) * np.array([1.0, -2.0, 3.0]) / np.sqrt(14.0)
+    state = np.concatenate([c.T @ relative, theta, c.T @ (torque + table.problem.resting_nm)])
+    step = int(orbit.rate_radps * 2000.0 * STEPS / (2.0 * np.pi))
+    m = lqr(inputs._replace(torque_body_nm=tuple(torque)), (), bench.setpoint(), ready).m_body_am2
+    assert m == pytest.approx(c @ table.gains[step] @ state, rel=1e-9)
+
+
 def rms_deg(flown, orbits, last):
     """Root mean square of the angle over the last orbits of a flight."""
     rows = int(len(flown.t_s) * last / orbits)

@@ -34,6 +34,20 @@ def test_each_coil_gives_all_it_has_beyond_the_layer():
     assert relay_dipole((0.0, 0.0, 1e-4), (3e-5, 0.0, 0.0), 0.2, 5e-4) == pytest.approx((0.0, 0.04, 0.0))
 
 
+def test_surface_layer_and_dipole_are_parts_of_w0_and_of_the_mean_dipole(bench, turned):
+    """Within a wide layer it is linear: m = -m_0 b x (Omega + K q) / (|b| layer)."""
+    orbit, c = bench.Orbit(), turned((1, -2, 3), 25.0)
+    omega = np.array([1e-3, 2e-3, -1e-3])
+    inputs = bench.inputs_at(orbit, 700, 1.0, c @ orbit.c_orbit_from_eci(700.0), omega, None)
+    own = {"sliding_sphere": SphereSlidingGains(slope=0.7, layer=50.0, part=0.03)}
+    m = sliding_sphere(inputs, (), bench.setpoint(), bench.config(bench.Body(BOX, most_am2=5.0), 1.0, own))
+    w0, b = orbit.rate_radps, np.array(inputs.b_body_t)
+    qv = np.sin(np.radians(12.5)) * np.array([1.0, -2.0, 3.0]) / np.sqrt(14.0)
+    s = omega - w0 * c[:, 2] + 0.7 * w0 * qv
+    expected = -0.03 * 5.0 * np.cross(b, s) / (np.linalg.norm(b) * 50.0 * w0)
+    assert m.m_body_am2 == pytest.approx(expected, rel=1e-9)
+
+
 def test_without_a_field_nothing_is_asked_for():
     assert relay_dipole((1e-3, 0.0, 0.0), (0.0, 0.0, 0.0), 0.2, 5e-4) == (0.0, 0.0, 0.0)
 

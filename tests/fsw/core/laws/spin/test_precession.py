@@ -157,6 +157,16 @@ class TestStages:
         for coil in {0, 1, 2} - {axis}:
             assert np.cross(m[coil] * np.eye(3)[coil], inputs.b_body_t)[axis] > 0.0
 
+    def test_with_the_spin_that_is_wanted_in_space_the_direction_is_left(self, bench, turned):
+        """The absolute rate counts: that against the orbital frame would lack a part of w0."""
+        c = turned((4, 3, 1), 40.0) @ bench.Orbit().c_orbit_from_eci(300.0)
+        inputs = bench.inputs_at(bench.Orbit(), 300, 1.0, c, np.array([0.0, 0.0, 0.1]), FieldSample())
+        own = {"relay_stages": StageGains(3.0, *TARGET, spin_band_radps=1e-6)}
+        settings = bench.config(bench.Body(INERTIA, most_am2=2.0), 1.0, own)
+        m = relay_stages(inputs, (), bench.setpoint(spin_radps=0.1), settings).m_body_am2
+        b, t = inputs.b_body_t, c @ TARGET
+        assert m == (0.0, 0.0, 2.0 * np.sign(b[0] * t[1] - b[1] * t[0]))
+
     def test_a_tumble_ends_in_the_spin_along_the_target(self, spinning):
         gains = StageGains(3.0, *TARGET)
         run = spinning(relay_stages, gains, 3.5, 0.1, 3.0, omega=(0.02, -0.03))

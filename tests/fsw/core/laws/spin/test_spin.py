@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fsw.core.laws.interface import FieldSample
 from fsw.core.laws.spin.spin import (
     SpinGains,
     nutation,
@@ -84,6 +85,22 @@ class TestTorques:
         across = abs(b[(axis + 1) % 3])
         expected = -K_W * np.linalg.norm(b) * (spin - wanted) * across
         assert torque[axis] == pytest.approx(expected, rel=1e-9, abs=1e-16)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_both_laws_of_the_spin_count_the_absolute_rate(bench, turned, axis):
+    """Without a sample before there is no nutation damping beside them."""
+    c, omega = turned((1, -2, 3), 40.0) @ bench.Orbit().c_orbit_from_eci(300.0), np.array([0.02, -0.03, 0.01])
+    inputs = bench.inputs_at(bench.Orbit(), 300, 1.0, c, omega, FieldSample())
+    own = {name: SpinGains(axis + 1.0) for name in ("spin_up", "y_thomson")}
+    settings, point = bench.config(bench.Body(), 1.0, own), bench.setpoint(k_w=K_W, spin_radps=0.015)
+    b, e = np.array(inputs.b_body_t), np.eye(3)[axis]
+    lacking = 0.015 - omega[axis]
+    assert spin_up(inputs, (), point, settings).m_body_am2 == pytest.approx(
+        K_W * lacking * np.cross(b, e), abs=1e-12
+    )
+    held = -K_W * lacking * np.linalg.norm(b) * np.sign(b[(axis + 1) % 3]) * np.eye(3)[(axis + 2) % 3]
+    assert y_thomson(inputs, (), point, settings).m_body_am2 == pytest.approx(held, abs=1e-12)
 
 
 class TestFlights:

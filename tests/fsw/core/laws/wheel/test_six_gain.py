@@ -62,6 +62,22 @@ def test_a_gain_out_of_range_is_named(name, value):
         SixGainGains(**{name: value})
 
 
+def test_of_a_turned_body_the_wheel_is_held_and_the_pitch(bench, turned):
+    """Roll and yaw are half of S; k1 = 2 k_a; the other coils give -2 k_a sin pitch - k_w Omega3."""
+    orbit, c, relative = bench.Orbit(), turned((1, -2, 3), 12.0), np.array([2e-4, -3e-4, 5e-4])
+    motion = c @ orbit.c_orbit_from_eci(700.0), relative + orbit.rate_radps * c[:, 2], None
+    inputs = bench.inputs_at(orbit, 700, 1.0, *motion)
+    own = {"six_gain": SixGainGains(k2=0.5, k4=2.0, k5=0.25, k6=3.0)}
+    settings = bench.config(bench.Body(wheel=(0.0, 0.0, 0.05)), 1.0, own)
+    m = six_gain(inputs, (), bench.setpoint(k_w=1e7, k_a=4000.0), settings).m_body_am2
+    yaw, roll = 0.5 * (c[1, 2] - c[2, 1]), 0.5 * (c[2, 0] - c[0, 2])
+    b1, b2, _ = inputs.b_body_t
+    m3 = 8000.0 * (b2 * roll + 0.5 * b1 * yaw - 0.25 * (b1 * roll - 3.0 * b2 * yaw))
+    m3 -= 1e7 * (b1 * relative[1] - 2.0 * b2 * relative[0])
+    turning = -8000.0 * np.sin(np.arctan2(c[0, 1] - c[1, 0], c[0, 0] + c[1, 1])) - 1e7 * relative[2]
+    assert m == pytest.approx((turning * b2, -turning * b1, m3), rel=1e-6)
+
+
 class TestFlights:
     def test_with_yaw_the_wheel_comes_to_the_normal_faster_than_without(self, lean):
         both, roll_alone = (lean(six_gain, gains=SixGainGains(k2=k2)) for k2 in (1.0, 0.0))
