@@ -134,6 +134,48 @@ PLANTS = (
         "+ mz * by - my * bz + dx",
         "reference.attitude_c_dipole",
     ),
+    Plant(
+        "observer of sphere_output without its torque",
+        "fsw/core/laws/feedback/sphere.py",
+        "change = add(pushed, turning)",
+        "change = turning",
+        "review.feedback.sphere",
+    ),
+    Plant(
+        "half of the attitude in pd_delayed",
+        "fsw/core/laws/feedback/delayed.py",
+        "far_error(q), setpoint.k_w, setpoint.k_a)",
+        "far_error(q), setpoint.k_w, 0.5 * setpoint.k_a)",
+        "review.feedback.delayed",
+    ),
+    Plant(
+        "three_term without the term of the spin",
+        "fsw/core/laws/spin/spin_axis.py",
+        "add(scale(k_spin * spin_error_nms, e), scale(k_h, error_body_nms))",
+        "scale(k_h, error_body_nms)",
+        "review.spin.three_term_gain",
+    ),
+    Plant(
+        "wheel_integral without the integral of yaw",
+        "fsw/core/laws/wheel/wheel_integral.py",
+        "2.0 * k_i * (b2 * i1 - b1 * i2)",
+        "2.0 * k_i * (-b1 * i2)",
+        "review.wheel.wheel_integral_yaw",
+    ),
+    Plant(
+        "half of the damping in sun_critical",
+        "fsw/core/laws/one_axis/sun_critical.py",
+        "scale(-2.0 * xi_radps, omega_body_radps)",
+        "scale(-xi_radps, omega_body_radps)",
+        "review.one_axis.sun_critical_free",
+    ),
+    Plant(
+        "lqr_disturbed without twice the orbital rate",
+        "fsw/core/laws/optimal/disturbed.py",
+        "gain[:, 9:] @ np.array(torques)",
+        "gain[:, 9:18] @ np.array(torques[:9])",
+        "review.optimal.disturbed",
+    ),
 )
 
 
