@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from fsw.core.algebra.quaternion import multiply
+from fsw.core.laws.feedback.pd import far_error, pd_dipole
 from sim.design.feedback import minimax as module
 from sim.design.feedback.inertial import best_on_line
 from sim.design.feedback.minimax import minimax, settling_orbits, spread_starts
@@ -30,6 +32,21 @@ def test_the_field_in_the_body_is_turned_as_the_attitude_is():
     b = Rotation.from_quat(q[:, [1, 2, 3, 0]]).inv().apply(b_t)
     expected = np.cross(np.cross(omega, b) * 1e6, b)
     assert loop.rates(x, b_t)[:, 4:] == pytest.approx(expected, rel=1e-9)
+
+
+def test_the_motion_is_that_of_the_flown_law_on_a_rigid_body():
+    """J domega/dt = m x b - omega x J omega, m of the PD law and its far error, of either sign of q."""
+    inertia, gains = np.array([[1.02, 0.13, -0.09], [0.13, 1.85, 0.21], [-0.09, 0.21, 1.95]]), (6e6, 1600.0)
+    loop = module._Loop(inertia, np.linalg.inv(inertia), Gains(*gains), 1e9)
+    q = STARTS.q * np.array([1.0, -1.0] * 3)[:, None]
+    omega, b_t = 5.0 * STARTS.omega_radps, np.array([2e-5, -1e-5, 3e-5])
+    found = loop.rates(np.concatenate([q, omega], axis=1), b_t)
+    for row, rate, of_q in zip(found, omega, q, strict=True):
+        b = Rotation.from_quat(np.roll(of_q, -1)).inv().apply(b_t)
+        m = pd_dipole(tuple(b), tuple(rate), far_error(tuple(of_q)), *gains)
+        torque = np.cross(m, b) - np.cross(rate, inertia @ rate)
+        assert inertia @ row[4:] == pytest.approx(torque, rel=1e-9)
+        assert row[:4] == pytest.approx(0.5 * np.array(multiply(tuple(of_q), (0.0, *rate))), rel=1e-9)
 
 
 def test_no_coil_gives_more_than_its_dipole():

@@ -45,6 +45,19 @@ def test_its_flights_are_those_of_the_law():
     assert ours == pytest.approx(theirs, rel=0.01)
 
 
+def test_a_residual_dipole_acts_as_one_of_the_coils_does():
+    """In the axes of the body."""
+    body = replace(BODY, inertia_kgm2=((1.02, 0.13, -0.09), (0.13, 1.85, 0.21), (-0.09, 0.21, 1.95)))
+    dipole, none, b_t = np.array([[3e-3, -2e-3, 4e-3]]), np.zeros((1, 3)), np.array([2e-5, -1e-5, 3e-5])
+    x = np.array([[0.8, 0.36, -0.288, 0.384, 1e-3, -2e-3, 3e-3]])
+    own, free = (
+        neural._Flights(body, PD_GAINS, np.array([WEIGHTS]), none, residual) for residual in (dipole, none)
+    )
+    by_coils, moved = free.rates(x, b_t, dipole), own.rates(x, b_t, none)
+    assert moved == pytest.approx(by_coils, rel=1e-12)
+    assert np.abs(moved - free.rates(x, b_t, none))[0, 4:].min() > 1e-9
+
+
 @pytest.mark.long
 def test_a_residual_dipole_turns_the_satellite():
     flown = replace(trials(2, 5), dipole_am2=np.array([[3e-3, -2e-3, 4e-3], [-2e-3, 3e-3, 1e-3]]))

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from fsw.core.algebra.quaternion import dcm
 from fsw.input.schema import merge
 from sim.design.from_scenario import body_of
 from sim.design.theory.floquet import monodromy
-from sim.design.theory.linear import Gains, closed_loop
+from sim.design.theory.linear import Gains, closed_loop, dipole_field
 from sim.design.tuning.rigid_flight import fly
 from sim.scenario.schema import load
 
@@ -50,6 +51,23 @@ def test_without_a_dipole_nothing_but_gravity_acts():
     assert free.pointing_deg.max() > 1.0
     wheel = flown(0.5, control={"k_w": 0.0, "k_a": 0.0}, body={"wheel_nms": [0.0, 0.0, 0.05]})
     assert not np.allclose(wheel.pointing_deg, free.pointing_deg, rtol=0.1)
+
+
+def test_constant_torque_and_residual_dipole_turn_the_body():
+    """What they add to the momentum in a step, beside the same flight without them."""
+    inertia = np.array([[1.02, 0.13, -0.09], [0.13, 1.85, 0.21], [-0.09, 0.21, 1.95]])
+    torque, dipole = np.array([3e-7, -2e-7, 5e-7]), np.array([0.02, -0.03, 0.05])
+    more = {"control": {"k_w": 0.0, "k_a": 0.0}, "body": {"inertia_kgm2": inertia.tolist()}}
+    acting = {"torque_nm": torque.tolist(), "residual_dipole_am2": dipole.tolist()}
+    pushed, free = flown(0.01, **more, disturbance=acting), flown(0.01, **more)
+    step_s = pushed.t_s[1]
+    body = body_of(load("microsat", merge(CALM, more)))
+    middle = np.array([0.5 * step_s * body.rate_radps])
+    c = np.array(dcm(tuple(free.q_body_from_orbit[0].tolist())))
+    b = c @ (body.field_t * dipole_field(middle, body)[0])
+    gained = inertia @ (pushed.omega_body_radps[1] - free.omega_body_radps[1]) / step_s
+    own = torque + np.cross(dipole + pushed.m_body_am2[0], b)
+    assert gained == pytest.approx(own, rel=0.02, abs=0.01 * np.linalg.norm(own))
 
 
 @pytest.fixture(scope="module")

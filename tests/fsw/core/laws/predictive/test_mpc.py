@@ -70,6 +70,20 @@ def test_on_that_field_both_laws_ask_for_nearly_the_same(bench, settings, inputs
     assert by_mpc == pytest.approx(by_lqr, abs=0.1 * np.linalg.norm(by_lqr))
 
 
+def test_the_plan_is_made_along_the_field_in_the_middle_of_its_steps(bench, settings, inputs, turned):
+    """From this tick on, to the cost of the step in which it ends, and turned to the axes of the body."""
+    table, orbit, c = settings.schedules["mpc"], bench.Orbit(), turned((1, -2, 3), 15.0)
+    steps, short = STEPS // 6, replace(settings, gains={"mpc": MpcGains(horizon_orbits=1.0 / 6.0)})
+    times = 3 * STEP_S + (np.arange(steps) + 0.5) * table.problem.step_s
+    field = np.array([orbit.c_orbit_from_eci(t) @ orbit.b_eci_t(t) for t in times])
+    gain = backward(table.problem, field, table.costs[steps])[0][0]
+    relative = np.array([1e-4, 2e-4, 1.3e-3]) - orbit.rate_radps * c[:, 2]
+    theta = 2.0 * np.sin(np.radians(7.5)) * np.array([1.0, -2.0, 3.0]) / np.sqrt(14.0)
+    expected = c @ gain @ np.concatenate([c.T @ relative, theta, np.zeros(3)])
+    found = np.array(mpc(inputs, (), bench.setpoint(), short).m_body_am2)
+    assert found == pytest.approx(expected, abs=5e-3 * np.abs(expected).max())
+
+
 @pytest.mark.long
 def test_on_a_tilted_field_with_a_constant_torque_the_plan_points_better(bench, settings, turned):
     """What the regulator's own field does not have: the tilt, which turns with the Earth."""
