@@ -1,5 +1,7 @@
 """Gains of inertial pointing: the line of averaging, and how near it comes to the best of all."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -31,6 +33,17 @@ def test_the_slowest_axis_of_a_polar_orbit_over_a_sphere():
     """<G> of B = (-3/2 sin 2u, 3/2 cos 2u - 1/2, 0): diag(11/8, 9/8, 5/2)."""
     polar = Body("polar", diagonal((2.0, 2.0, 2.0)), 800.0, 90.0)
     assert slowest(polar) == pytest.approx(9.0 / 8.0 / 2.0, rel=1e-6)
+
+
+def test_on_the_line_the_slowest_axis_is_critically_damped():
+    """z^2 + g (K_w z + K_a) = 0 has a double root for the least g of J^-1 <G>, of any body."""
+    inertia = ((1.02, 0.13, -0.09), (0.13, 1.85, 0.21), (-0.09, 0.21, 1.95))
+    body = replace(FIFTY, inertia_kgm2=inertia)
+    u = 2.0 * np.pi * np.arange(360) / 360.0
+    mean = inertial_projection(u, body).mean(axis=0)
+    g = np.linalg.eigvals(np.linalg.solve(np.array(inertia), mean)).real.min()
+    k_w, k_a = feedback_scales(body, critical_gains(body, 3e6)).tolist()
+    assert (g * k_w) ** 2 == pytest.approx(4.0 * g * k_a, rel=1e-6)
 
 
 @pytest.mark.parametrize("stiffness", [4.0, 0.4])
