@@ -137,6 +137,21 @@ def test_numbers_out_of_range_are_refused(gains):
         NmpcGains(**gains)
 
 
+def test_a_search_may_end_at_the_old_cost_less_the_fall_asked_for(asked, monkeypatch):
+    """J(t - dt) - gamma |omega|^2, gamma relative to the mean moment; six seconds into the old plan."""
+    enough = []
+
+    def seen(case, start, cost, iterations):
+        enough.append(cost)
+        return tumbling.descend(case, start, cost, iterations)
+
+    monkeypatch.setattr(nmpc, "descend", seen)
+    asked(nmpc_damping, "nmpc_damping", partial(NmpcGains, gamma=0.02), memory=(3.0, 0.007, *(0.0,) * 36))
+    fall = 0.02 * (1.02 + 1.85 + 1.95) / 3.0 * np.dot(RATE, RATE)
+    assert enough == pytest.approx([0.007 - fall], rel=1e-9)
+    assert fall > 1e-5
+
+
 def test_what_is_planned_for_is_what_is_known(bench, turned):
     """Wheel and change of the field too, which a flight of a minute hardly shows."""
     orbit, c = bench.Orbit(), turned((1, -2, 3), 15.0)
