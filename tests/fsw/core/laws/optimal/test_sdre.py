@@ -5,7 +5,7 @@ import pytest
 
 from fsw.core.algebra.quaternion import dcm, normalise
 from fsw.core.estimation.attitude import UNKNOWN
-from fsw.core.laws.optimal.lqr import lqr
+from fsw.core.laws.optimal.lqr import lqr, node
 from fsw.core.laws.optimal.sdre import factors, sdre, solution
 from fsw.core.laws.plan.riccati import free_step, resting_torque, stepped
 from fsw.core.laws.predictive.predictive import free_rate_change
@@ -151,19 +151,21 @@ def test_the_cost_at_the_end_is_that_of_orbital_axes(bench, turned, steps):
 
 
 def test_the_fields_looked_at_are_those_in_the_middle_of_the_steps_ahead(bench, monkeypatch):
+    """To the node of the table where they end, half an orbit on."""
     seen = []
 
-    def spy(table, start, torque_nm, b_orbit_t, *rest):
-        seen.append(b_orbit_t)
-        return solution(table, start, torque_nm, b_orbit_t, *rest)
+    def spy(table, start, torque_nm, b_orbit_t, end_node, *rest):
+        seen.append((b_orbit_t, end_node))
+        return solution(table, start, torque_nm, b_orbit_t, end_node, *rest)
 
     monkeypatch.setattr("fsw.core.laws.optimal.sdre.solution", spy)
     orbit = bench.Orbit()
     settings = bench.scheduled(bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=2.0), 1.0, "sdre")
     inputs = bench.inputs_at(orbit, 700, 1.0, np.eye(3), np.array([1e-3, 2e-3, 1e-3]), None)
     sdre(inputs._replace(ephemeris=bench.model_of(orbit)), (), bench.setpoint(), settings)
-    (b_orbit_t,) = seen
+    ((b_orbit_t, end_node),) = seen
     step_s = settings.schedules["sdre"].problem.step_s
     t_s = 700.0 + step_s * (np.arange(len(b_orbit_t)) + 0.5)
     expected = np.einsum("kij,kj->ki", orbit.c_orbit_from_eci(t_s), orbit.b_eci_t(t_s))
     assert b_orbit_t == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())
+    assert end_node == node(orbit.rate_radps * (700.0 + step_s * len(b_orbit_t)))
