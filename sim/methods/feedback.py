@@ -157,7 +157,7 @@ METHODS: tuple[Method, ...] = (
         kind=Kind.FLOWN,
         where="fsw/core/laws/feedback/delayed.py",
         claim="The attitude and the delayed attitude hold three axes.",
-        claims=("review.feedback.delayed",),
+        claims=("review.feedback.delayed", "review.feedback.delayed.pd"),
         remark=(
             "Equation not found (searched: pages, documentation); the mean rate over the delay is derived."
         ),
@@ -199,7 +199,7 @@ METHODS: tuple[Method, ...] = (
         kind=Kind.FLOWN,
         where="fsw/core/laws/feedback/sphere.py",
         claim="A sphere is held by feedback without a measured rate.",
-        claims=("review.feedback.sphere.output",),
+        claims=("review.feedback.sphere.output", "review.feedback.sphere.pd"),
         remark=(
             "Equation not found (searched: pages, documentation); an observer of a sphere's motion is "
             "derived."

@@ -95,6 +95,7 @@ METHODS: tuple[Method, ...] = (
         claim="An axis is turned to the Sun; one parameter.",
         claims=(
             "review.one_axis.sun_critical",
+            "review.one_axis.sun_critical_free",
             "review.one_axis.sun_critical_fast",
         ),
         remark=(

@@ -67,6 +67,7 @@ METHODS: tuple[Method, ...] = (
         claims=(
             "review.optimal.disturbed.rms",
             "review.optimal.disturbed.gain",
+            "review.optimal.disturbed.twice",
         ),
     ),
     Method(

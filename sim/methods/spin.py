@@ -76,6 +76,7 @@ METHODS: tuple[Method, ...] = (
         claim="Nutation, spin and direction by the terms of one law.",
         claims=(
             "review.spin.three_term",
+            "review.spin.three_term_gain",
             "review.spin.three_term_spin",
             "review.spin.three_term_nutation",
         ),

@@ -131,7 +131,11 @@ METHODS: tuple[Method, ...] = (
         kind=Kind.FLOWN,
         where="fsw/core/laws/wheel/wheel_integral.py",
         claim="An integral part is added to the feedback.",
-        claims=("review.wheel.wheel_integral",),
+        claims=(
+            "review.wheel.wheel_integral",
+            "review.wheel.wheel_integral_yaw",
+            "review.wheel.wheel_integral_pitch",
+        ),
         remark=(
             "The equation is not printed and was not found; derived. It takes the mean error away, not "
             "what swings with the field."
