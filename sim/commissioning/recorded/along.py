@@ -18,6 +18,8 @@ Integers = NDArray[np.int64]
 
 NT_PER_T = 1e9
 FASTEST_HZ = 100
+MOST_TICKS, BESIDE_TICK = 10, 0.01
+"""How much finer than the samples ticks may be, and how far beside a tick the usual sample may be, ticks."""
 OLD_DAYS = 7.0
 """Elements further away put the satellite tens of kilometres off: 10 nT and more each."""
 NEARLY_ALL, MOST_TICKS_APART = 0.9, 600
@@ -32,7 +34,7 @@ class Along:
         recorded: the pass.
         elements: those that were used.
         tick_s: length of a tick.
-        tick: of each row, (n), counted from the whole second in which the first row is.
+        tick: of each row, (n), counted from the first row.
         first_of_tick: whether no earlier row has the tick: later ones are of an unknown moment, (n).
         references: by tick, for every tick that a row has.
         b_eci_nt: field, (n, 3); ``sun_eci``: unit vector, (n, 3); ``lit``: (n).
@@ -88,13 +90,14 @@ def along(recorded: RecordedPass, elements: ElementSet) -> Along:
     Raises:
         HarnessError: SGP4 finds no orbit, or the field does not hold at that time.
     """
-    start_unix_s = int(recorded.utc_unix_s[0])
-    hertz = _tick_hz(recorded.utc_unix_s)
+    since_s = recorded.utc_unix_s - recorded.utc_unix_s[0]
+    start_unix_s = round(recorded.utc_unix_s[0])  # of the orbit, which half a second moves by 4 km
+    hertz = _tick_hz(since_s)
     try:
         model = ephemeris_model(elements.orbit, start_unix_s, hertz)
     except ValueError as error:
         raise HarnessError(f"{recorded.name}: {error}") from None
-    tick = np.rint((recorded.utc_unix_s - start_unix_s) * hertz).astype(np.int64)
+    tick = np.rint(since_s * hertz).astype(np.int64)
     references = _references(recorded.name, tick, model)
     rows = [references[number] for number in tick.tolist()]
     return Along(
@@ -110,12 +113,16 @@ def along(recorded: RecordedPass, elements: ElementSet) -> Along:
     )
 
 
-def _tick_hz(unix_s: Array) -> int:
-    """The rate of the samples, 1 Hz if they are slower."""
-    steps = np.diff(unix_s)
+def _tick_hz(since_s: Array) -> int:
+    """The rate of the samples, 1 Hz if they are slower; more where it takes finer ticks to fall on them."""
+    steps = np.diff(since_s)
     steps = steps[steps > 0.0]
     usual_s = float(np.median(steps)) if len(steps) else inf
-    return min(max(round(1.0 / usual_s), 1), FASTEST_HZ)
+    slowest = min(max(round(1.0 / usual_s), 1), FASTEST_HZ)
+    if usual_s == inf:
+        return slowest
+    rates = range(slowest, min(MOST_TICKS * slowest, FASTEST_HZ) + 1)
+    return next((hz for hz in rates if abs(usual_s * hz - round(usual_s * hz)) < BESIDE_TICK), slowest)
 
 
 def _references(name: str, ticks: Integers, model: EphemerisModel) -> dict[int, Reference]:

@@ -59,7 +59,7 @@ def test_faster_samples_have_shorter_ticks(tmp_path):
 def test_time_is_counted_from_the_first_row_wherever_in_its_second_that_is(tmp_path):
     head, *rows = made_up(12).text.splitlines()
     start = float(rows[0].split(",")[0])
-    for name, step_s, later_s in (("slow", 1.0, 0.75), ("fast", 0.25, 0.5)):
+    for name, step_s, later_s in (("slow", 1.0, 0.75), ("half", 1.0, 0.5), ("fast", 0.25, 0.5)):
         moved = [
             ",".join([f"{start + later_s + step_s * n:.2f}", *row.split(",")[1:]])
             for n, row in enumerate(rows)
@@ -69,6 +69,20 @@ def test_time_is_counted_from_the_first_row_wherever_in_its_second_that_is(tmp_p
         recorded = read_pass(path)
         around = along(recorded, nearest_elements(TLE, recorded.middle_unix_s))
         np.testing.assert_allclose(around.t_s, recorded.utc_unix_s - recorded.utc_unix_s[0], atol=1e-6)
+        assert around.first_of_tick.all()
+
+
+@pytest.mark.parametrize(("step_s", "tick_s"), [(1.5, 0.5), (0.7, 0.1), (2.5, 0.5), (7.0, 1.0), (0.08, 0.04)])
+def test_ticks_are_as_fine_as_it_takes_to_fall_on_the_samples(tmp_path, step_s, tick_s):
+    recorded = made_up(60).along(tmp_path).recorded
+    t_s = step_s * np.arange(60)
+    around = along(
+        replace(recorded, utc_unix_s=recorded.utc_unix_s[0] + t_s),
+        nearest_elements(TLE, recorded.middle_unix_s),
+    )
+    assert around.tick_s == pytest.approx(tick_s)
+    np.testing.assert_allclose(around.t_s, t_s, atol=1e-6)
+    assert sample_hz(around) == pytest.approx(1.0 / step_s)
 
 
 @pytest.mark.parametrize(
