@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.commissioning.recorded.along import Along
+from sim.commissioning.recorded.along import Along, sample_hz
 from sim.commissioning.recorded.calibration import KnownCell, PassCalibration
 from sim.commissioning.telemetry.follow import Followed, directions_body, without_sample
 from sim.progress import progress
@@ -107,6 +107,8 @@ def _parts_of_full_scale(around: Along, cell: KnownCell) -> Array:
 def coasts_deg(around: Along, known: PassCalibration, followed: Followed, settled: int) -> dict[int, Array]:
     """By time without a sample, s, the angles between predicted and measured field of several starts.
 
+    Where no sample is due at that time, the next one counts.
+
     Args:
         around: the pass.
         known: its calibration.
@@ -114,6 +116,7 @@ def coasts_deg(around: Along, known: PassCalibration, followed: Followed, settle
         settled: place of the first sample from which a prediction starts.
     """
     found: dict[int, list[float]] = {horizon: [] for horizon in HORIZONS_S}
+    half_s, apart_s = 0.5 * around.tick_s, 1.0 / sample_hz(around)
     span_s = float(around.t_s[followed.rows[-1]] - around.t_s[followed.rows[settled]])
     starts = np.linspace(
         settled, len(followed.ticks) - 1, min(COASTS, max(2, int(span_s / 20.0))), endpoint=False
@@ -121,11 +124,11 @@ def coasts_deg(around: Along, known: PassCalibration, followed: Followed, settle
     with progress(f"{around.recorded.name}, coasting", len(starts)) as watch:
         for done, start in enumerate(starts.astype(int).tolist()):
             for ticks, angle_deg in without_sample(around, known, followed.ticks[start], followed.config):
-                elapsed_s = ticks * around.tick_s
-                if elapsed_s > HORIZONS_S[-1]:
+                beyond_s = [ticks * around.tick_s - horizon for horizon in HORIZONS_S]
+                if beyond_s[-1] > apart_s:
                     break
-                for horizon in HORIZONS_S:
-                    if abs(elapsed_s - horizon) < 0.5 * around.tick_s:
+                for horizon, late_s in zip(HORIZONS_S, beyond_s, strict=True):
+                    if 0.0 <= late_s + half_s < apart_s:
                         found[horizon].append(angle_deg)
             watch(done)
     return {horizon: np.array(angles) for horizon, angles in found.items()}

@@ -1,5 +1,7 @@
 """What cells and samples to come say of a motion that is known to be right, and of one that is not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from recorded_samples import AXES, FACES, MATRIX, OFFSET_NT, RATIOS, made_up
@@ -18,8 +20,12 @@ AXIS = AXES[:, 1]
 def flight(tmp_path_factory):
     truth = made_up(160)
     around = truth.along(tmp_path_factory.mktemp("pass"))
+    return around, followed_from_truth(truth, around)
+
+
+def followed_from_truth(truth, around):
     start = Spin(31.0, 0.0, truth.dcm[0], np.radians(31.0) * AXIS, np.zeros(3))
-    return around, follow(around, KNOWN, start, filter_config(KNOWN.inertia, 1.0, Noise(field_nt=200.0)))
+    return follow(around, KNOWN, start, filter_config(KNOWN.inertia, 1.0, Noise(field_nt=200.0)))
 
 
 def turned(followed, angle_deg):
@@ -79,6 +85,18 @@ def test_coasting_of_a_right_motion_stays_near_and_has_no_horizon_beyond_the_pas
     found = coasts_deg(around, KNOWN, followed, 60)
     assert len(found[10]) > len(found[60]) > 0
     assert len(found[120]) == 0
+    assert np.sqrt(np.mean(found[60] ** 2)) < 5.0
+
+
+@pytest.mark.parametrize("apart", [3, 7])
+def test_where_no_sample_is_due_at_a_time_the_next_one_shows_the_coasting(tmp_path, apart):
+    truth = made_up(160)
+    head, *rows = truth.text.splitlines()
+    thinned = replace(truth, text="\n".join([head, *rows[::apart]]) + "\n")
+    around = thinned.along(tmp_path)
+    found = coasts_deg(around, KNOWN, followed_from_truth(truth, around), 60 // apart)
+    assert all(len(found[horizon]) for horizon in (10, 30, 60))
+    assert not len(found[120])
     assert np.sqrt(np.mean(found[60] ** 2)) < 5.0
 
 
