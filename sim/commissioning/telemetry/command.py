@@ -6,9 +6,10 @@ from typing import Any
 
 from sim.commissioning.recorded.along import placed
 from sim.commissioning.recorded.calibration import UNCALIBRATED, PassCalibration, read_calibration
+from sim.commissioning.recorded.columns import AXES
 from sim.commissioning.recorded.recorded_pass import read_pass
 from sim.commissioning.telemetry.follow import Noise
-from sim.commissioning.telemetry.judge import Judged, figures, judge
+from sim.commissioning.telemetry.judge import Judged, figures, judge, spin_place
 from sim.commissioning.telemetry.page import telemetry_page
 from sim.console import answer, say
 from sim.errors import HarnessError
@@ -60,7 +61,7 @@ def in_words(judged: Judged, found: dict[str, Any]) -> Sequence[str]:
         f"{found['elements_age_days']:.2f} days old",
         f"field: direction {found['field_direction_deg_rms']:.2f} deg RMS ahead of each sample, "
         f"strength {found['field_norm_nt_rms']:.0f} nT RMS",
-        f"rate about y: {found['rate_y_degps_mean']:.3f} deg/s" + _gyro(found),
+        _rate(found, spin_place(judged.axis_body)),
         "without samples: " + _coasts(found["coast_deg_rms"]),
         "Sun by cells held back: " + _azimuth(found["sun_azimuth_deg"]),
     ]
@@ -77,9 +78,11 @@ def in_words(judged: Judged, found: dict[str, Any]) -> Sequence[str]:
     return lines
 
 
-def _gyro(found: dict[str, Any]) -> str:
-    gyro = found["gyro_y_degps_mean"]
-    return "" if gyro is None else f", by the gyro, not used, {gyro:.3f}"
+def _rate(found: dict[str, Any], place: int) -> str:
+    """About the body axis that is nearest to the axis of spin."""
+    said = f"rate about {AXES[place]}: {found['rate_degps_mean'][place]:.3f} deg/s"
+    gyro = found["gyro_degps_mean"]
+    return said if gyro is None else f"{said}, by the gyro, not used, {gyro[place]:.3f}"
 
 
 def _coasts(coasts: dict[str, float | None]) -> str:

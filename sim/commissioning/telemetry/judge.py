@@ -62,6 +62,12 @@ class AllowedMotion:
         """By time without a sample; None where the pass is too short."""
         return {horizon: rms(angles) if len(angles) else None for horizon, angles in self.coasts_deg.items()}
 
+    @property
+    def rate_degps(self) -> float:
+        """Mean rate about the body axis that is nearest to the axis of spin."""
+        place = spin_place(self.followed.start.omega_body_radps)
+        return float(self.followed.rate_degps[self.settled :, place].mean())
+
     def held_back(self, told_by: str) -> Azimuths:
         """The azimuths that count: after the start, and none that told the motion from others."""
         middle = len(self.followed.ticks) // 2 if told_by == "cells" else 0
@@ -97,6 +103,11 @@ class Judged:
     def best(self) -> AllowedMotion:
         """The motion that is believed most."""
         return self.motions[0]
+
+
+def spin_place(axis: Array) -> int:
+    """Which of the body axes, 0 to 2, is nearest to an axis."""
+    return int(np.argmax(np.abs(axis)))
 
 
 def judge(around: Along, known: PassCalibration, noise: Noise, start_s: float = START_S) -> Judged:
@@ -168,7 +179,7 @@ def told_apart(motions: list[AllowedMotion]) -> tuple[list[AllowedMotion], Motio
         if scores[best] <= CLEARLY * scores[second]:
             told = contenders[best]
             return [told, *(one for one in ordered if one is not told)], _alone(told, by)
-    rates = " and ".join(f"{_mean_rate(motion):.2f}" for motion in contenders)
+    rates = " and ".join(f"{motion.rate_degps:.2f}" for motion in contenders)
     said = f"motions of {rates} deg/s fit the field alike, and neither cells nor coasting tell them apart"
     return ordered, MotionVerdict(False, "", said)
 
@@ -218,10 +229,6 @@ def _mean_nis(motion: AllowedMotion) -> float:
     return float(np.mean(taken)) if taken else float("nan")
 
 
-def _mean_rate(motion: AllowedMotion) -> float:
-    return float(motion.followed.rate_degps[motion.settled :, 1].mean())
-
-
 def rms(values: Array) -> float:
     """Root of the mean of the squares."""
     return float(np.sqrt(np.mean(np.square(values)))) if len(values) else float("nan")
@@ -263,6 +270,6 @@ def figures(judged: Judged) -> dict[str, Any]:
         },
         "nis_mean": _mean_nis(motion),
         "bias_nt": motion.followed.bias_nt[-1].tolist(),
-        "motions_degps": [_mean_rate(one) for one in judged.motions],
+        "motions_degps": [one.rate_degps for one in judged.motions],
         "elements_age_days": around.elements.age_days(around.recorded.middle_unix_s),
     }

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.commissioning.recorded.calibration import PassCalibration
-from sim.commissioning.telemetry.judge import AllowedMotion, Judged
+from sim.commissioning.recorded.columns import AXES
+from sim.commissioning.telemetry.judge import AllowedMotion, Judged, spin_place
 from sim.commissioning.telemetry.time_axis import pass_time
 from sim.drawing.canvas import AXES_COLOURS, MORE_COLOURS, TimeAxis, style
 from sim.drawing.inline_svg import chart
@@ -29,7 +30,7 @@ _NOT = (
 
 def telemetry_page(judged: Judged, known: PassCalibration, found: dict[str, Any]) -> str:
     """The page of a pass with its figures."""
-    around, motion = judged.around, judged.best
+    around, motion, spun = judged.around, judged.best, spin_place(judged.axis_body)
     time, rows = pass_time(around), motion.followed.rows
     t_s = around.t_s[rows]
     verdict = judged.verdict
@@ -38,7 +39,7 @@ def telemetry_page(judged: Judged, known: PassCalibration, found: dict[str, Any]
     tiles = [
         Tile("Field direction", f"{motion.direction_deg_rms:.2f}°", "RMS, predicted"),
         Tile("|B|", f"{motion.strength_nt_rms:.0f} nT", "RMS, bias estimated"),
-        Tile("Rate about y", f"{found['rate_y_degps_mean']:.2f}°/s", _beside(found)),
+        Tile(f"Rate about {AXES[spun]}", f"{found['rate_degps_mean'][spun]:.2f}°/s", _beside(found, spun)),
     ]
     if coast is not None:
         tiles.append(Tile("Coasting", f"{coast[1]:.1f}°", f"after {coast[0]} s"))
@@ -82,15 +83,15 @@ def _motion_chart(judged: Judged, time: TimeAxis, t_s: Array) -> Chart:
 
 
 def _held_chart(judged: Judged, time: TimeAxis, t_s: Array) -> Chart:
-    motion, recorded = judged.best, judged.around.recorded
+    motion, recorded, spun = judged.best, judged.around.recorded, spin_place(judged.axis_body)
     rates = motion.followed.rate_degps
     panels = []
-    series = [Series("filter", rates[:, 1], AXES_COLOURS[0], 1.6)]
+    series = [Series("filter", rates[:, spun], AXES_COLOURS[0], 1.6)]
     if recorded.gyro_degps is not None:
         series.insert(
-            0, Series("gyro, held back", recorded.gyro_degps[motion.followed.rows, 1], MORE_COLOURS[1])
+            0, Series("gyro, held back", recorded.gyro_degps[motion.followed.rows, spun], MORE_COLOURS[1])
         )
-    panels.append(Panel("Rate about y", "rate [deg/s]", 1.6, series))
+    panels.append(Panel(f"Rate about {AXES[spun]}", "rate [deg/s]", 1.6, series))
     if len(motion.azimuths.rows):
         off = np.full(len(t_s), np.nan)
         off[motion.azimuths.rows] = motion.azimuths.off_deg
@@ -133,6 +134,6 @@ def _coasts(motion: AllowedMotion) -> Table:
     return Table(("without samples for, s", "field direction, deg RMS", "starts"), rows, "Coasting")
 
 
-def _beside(found: dict[str, Any]) -> str:
-    gyro = found["gyro_y_degps_mean"]
-    return "no gyro" if gyro is None else f"gyro {gyro:.2f}"
+def _beside(found: dict[str, Any], spun: int) -> str:
+    gyro = found["gyro_degps_mean"]
+    return "no gyro" if gyro is None else f"gyro {gyro[spun]:.2f}"

@@ -1,6 +1,8 @@
 """``torquer telemetry``: words, document, page and exit codes; bad input is one sentence."""
 
 import json
+import re
+import tomllib
 from math import nan
 
 import pytest
@@ -39,6 +41,27 @@ def test_the_document_has_the_keys_that_are_documented(short):
     assert set(found["coast_deg_rms"]) == {"10", "30", "60", "120"}
     assert found["coast_deg_rms"]["120"] is None
     assert found["sun_azimuth_deg"] == {"median": None, "rms": None, "rows": 0}
+
+
+def test_the_rate_is_told_about_the_axis_of_the_spin_whichever_that_is(short, tmp_path):
+    columns = {f"{name}_{axis}_": f"{name}_{after}_"
+               for name in ("mag", "gyro") for axis, after in zip("xyz", "yzx", strict=True)}  # fmt: skip
+    head, *rows = short.read_text().splitlines()
+    named = [next((name.replace(old, new) for old, new in columns.items() if old in name), name)
+             for name in head.split(",")]  # fmt: skip
+    turned, page = tmp_path / "turned.csv", tmp_path / "page.html"
+    turned.write_text("\n".join([",".join(named), *rows]) + "\n")
+    values = tomllib.loads(CALIBRATION.read_text())["calibration"]["magnetometer"]
+    place = [2, 0, 1]
+    offset_nt = [values["offset_nt"][one] for one in place]
+    matrix = [[values["matrix"][one][other] for other in place] for one in place]
+    known = tmp_path / "turned.toml"
+    known.write_text(f"[calibration.magnetometer]\noffset_nt = {offset_nt}\nmatrix = {matrix}\n")
+    said = run(turned, "--tle", TLE, "--calibration", known, "--page", page)
+    assert re.search(r"rate about z: 6\d\.\d+ deg/s, by the gyro, not used, 64\.", said.stdout)
+    assert "Rate about z" in page.read_text()
+    found = json.loads(run(turned, "--tle", TLE, "--calibration", known, "--json").stdout)
+    assert found["motions_degps"] == pytest.approx([65.5] * len(found["motions_degps"]), abs=2.0)
 
 
 def test_the_words_say_what_was_not_used_and_the_page_is_written(short, tmp_path):
