@@ -32,6 +32,7 @@ from fsw.wire.messages import (
     SunBoot,
     SunVector,
     Sync,
+    WheelBoot,
     intact,
 )
 from sim.watch.directions import Around, AroundAt, arrows, nothing_around, off_deg
@@ -109,6 +110,7 @@ class FlightView:
         self.around_at = around_at
         self._unknown = 0  # identifiers in ``frames``
         self._driven = False  # a coil, in this tick or in the one before
+        self._pulse: tuple[int, int] | None = None  # coil and number of the one that is under way
         self._takes: dict[int, Callable[[bytes], None]] = {
             Sync.ID: self._take_sync,
             CoilStatus.ID: self._take_coil,
@@ -167,10 +169,12 @@ class FlightView:
         status, coils = CoilStatus.decode(data), self.coils
         if status.coil > 2:
             return
-        if status.level and not coils.levels[status.coil]:
+        pulse = (status.coil, status.seq) if status.level else None
+        if pulse is not None and pulse != self._pulse:
             coils.pulses += 1
             words = f"coil {status.coil} driven at level {status.level:+d}, {status.current_ma} mA"
             self._happens(Weight.PULSE, words)
+        self._pulse = pulse
         self._driven = bool(status.level or any(coils.levels))
         coils.levels = [status.level if coil == status.coil else 0 for coil in range(3)]
         coils.current_ma, coils.remaining_ms = status.current_ma, status.remaining_ms
@@ -256,4 +260,4 @@ class FlightView:
 
 
 _REASONS = {reason.value: reason.name.lower().replace("_", " ") for reason in CoilRefusedReason}
-_BOOTS = frozenset(boot.ID for boot in (PlantBoot, FswBoot, CoilBoot, MagBoot, SunBoot))
+_BOOTS = frozenset(boot.ID for boot in (PlantBoot, FswBoot, CoilBoot, MagBoot, SunBoot, WheelBoot))

@@ -8,21 +8,26 @@ from fsw.core.events import Event
 from fsw.core.fdir.faults import CoilFault
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
+    CoilBoot,
     CoilDipoleStatus,
     CoilRefused,
     CoilRefusedReason,
     CoilStatus,
     FswBoot,
     FswEvent,
+    MagBoot,
     MagField,
     Mode,
     NavAttitude,
     NavQuality,
     NavRate,
+    PlantBoot,
     PlantEnd,
     Severity,
+    SunBoot,
     SunVector,
     Sync,
+    WheelBoot,
 )
 from sim.watch.directions import Around
 from sim.watch.happening import Weight
@@ -148,6 +153,20 @@ class TestCoils:
         assert seen.coils.levels == [0, 0, 0]
         assert seen.coils.lockout_ms == [None, 100_000, 99_000]
 
+    def test_pulses_of_a_coil_without_a_pause_between_them_are_counted_each(self, seen):
+        for seq, level in ((4, -3), (4, -3), (5, -3), (5, -3), (6, 2)):
+            take(seen, CoilStatus(level, 1, 0, 100 * level, 0, seq))
+        assert seen.coils.pulses == 3
+        assert words(seen) == [
+            *2 * ["coil 1 driven at level -3, -300 mA"],
+            "coil 1 driven at level +2, 200 mA",
+        ]
+
+    def test_a_board_that_counts_anew_after_a_boot_is_seen_to_drive_again(self, seen):
+        for level in (1, 0, 1):
+            take(seen, CoilStatus(level, 0, 0, 100 * level, 0, 1))
+        assert seen.coils.pulses == 2
+
     def test_a_refusal_says_why(self, seen):
         take(seen, CoilRefused(2, 7, CoilRefusedReason.LOCKOUT, 33), CoilRefused(2, 7, 77, 33))
         assert words(seen)[0].endswith("coil 2: lockout")
@@ -172,6 +191,12 @@ class TestHappenings:
         assert "coil 1" in event.words
         assert "reversed" in event.words
         assert (boot.weight, boot.words) == (Weight.INFO, "fsw: started")
+
+    def test_every_node_is_seen_to_start(self, seen):
+        boots = (CoilBoot, FswBoot, MagBoot, PlantBoot, SunBoot, WheelBoot)
+        take(seen, *(boot(0, 1, 5) for boot in boots))
+        names = ("coil", "fsw", "mag", "plant", "sun", "wheel")
+        assert words(seen) == [f"{name}: started" for name in names]
 
     def test_unknown_numbers_are_told_as_numbers(self, seen):
         take(seen, FswEvent(9, 250, 0, -1))
