@@ -151,7 +151,7 @@ class HistoryTable:
 
             result = replay(self._source.log, config, on_tick, forge_answers(self._scenario.fault))
             blocks.finish()
-        return self._notes(result)
+        return self._notes(result, last_tick + 1)
 
     def _block(self, truth: Histories, estimates: Estimates, last_tick: int) -> Block:
         flight = FlightHistories(truth, estimates)
@@ -162,14 +162,14 @@ class HistoryTable:
             block[quantity.name] = np.where(replayed, pick(estimates), np.nan)
         return block
 
-    def _notes(self, result: ReplayResult) -> list[str]:
+    def _notes(self, result: ReplayResult, replayed: int) -> list[str]:
         notes = []
         planned = 0 if self._source.record is None else self._source.record["ticks"]
         if not result.ended:
             how = "inside a line" if result.cut else "without its end mark"
             notes.append(
-                f"the flight was cut short: {self.ticks} of {planned} ticks; the log ends {how} after line "
-                f"{result.end_line}"
+                f"the flight was cut short: of {planned} ticks the histories have {self.ticks}, the log "
+                f"{replayed}; it ends {how} after line {result.end_line}"
             )
         if result.first_bit_difference is not None:
             notes.append(f"the estimates are those of a replay that differs: {result.first_bit_difference}")

@@ -61,7 +61,9 @@ def test_ticks_that_were_not_replayed_have_no_estimate(cut, tmp_path):
     assert len(rows) == 400
     assert rows[-1]["estimate_q_body_from_orbit_w"] == rows[-1]["mode"] == rows[-1]["estimate_valid"] == ""
     assert rows[100]["mode"] != ""
-    assert any("cut short" in note for note in notes)
+    replayed = sum(row["mode"] != "" for row in rows)
+    assert 100 < replayed < 400
+    assert any(f"of 400 ticks the histories have 400, the log {replayed}; it ends" in note for note in notes)
     write_parquet(open_source(cut), tmp_path / "out.parquet", lambda done: None)
     modes = pq.read_table(tmp_path / "out.parquet")["mode"].to_pylist()
     assert [value is None for value in modes] == [row["mode"] == "" for row in rows]
