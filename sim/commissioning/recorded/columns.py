@@ -61,10 +61,21 @@ def places(head: Sequence[str]) -> Places:
     if field is None:
         raise ValueError(_missing(FIELD, at))
     gyro, gyro_factor = _vector(GYRO, at)
-    cells = {found["cell"]: at[name] for name in at if (found := CELL.fullmatch(name))}
+    cells = _cells(at)
     used = {at[TIME], *field, *(gyro or ()), *cells.values(), at.get(TEMPERATURE, -1)}
     unused = tuple(name for name in head if at[name] not in used)
     return Places(at[TIME], field, field_factor, gyro, gyro_factor, cells, at.get(TEMPERATURE), unused)
+
+
+def _cells(at: dict[str, int]) -> dict[str, int]:
+    """Where the current of each cell stands."""
+    cells: dict[str, int] = {}
+    for name, place in at.items():
+        if found := CELL.fullmatch(name):
+            if found["cell"] in cells:
+                raise ValueError(f"there are two columns of cell {found['cell']!r}, {name!r} is one of them")
+            cells[found["cell"]] = place
+    return cells
 
 
 def _vector(quantity: VectorColumns, at: dict[str, int]) -> tuple[tuple[int, int, int] | None, float]:

@@ -70,15 +70,17 @@ def read_pass(path: Path) -> RecordedPass:
     except csv.Error as error:
         raise HarnessError(f"{path}: not CSV: {error}") from None
     lines = [line for line, row in enumerate(rows, 2) if row]
-    numbers = np.array([_numbers(path, line, rows[line - 2], head) for line in lines])
+    kept = [name.strip() not in where.unused for name in head]
+    numbers = np.array([_numbers(path, line, rows[line - 2], head, kept) for line in lines])
     return _checked(path, lines, numbers, where)
 
 
-def _numbers(path: Path, line: int, row: list[str], head: list[str]) -> list[float]:
-    """The fields of a row as numbers; NaN of what is empty or in a column without a number."""
+def _numbers(path: Path, line: int, row: list[str], head: list[str], kept: list[bool]) -> list[float]:
+    """The fields of a row as numbers; NaN of what is empty or in a column that is passed over."""
     if len(row) != len(head):
         raise HarnessError(f"{path}: line {line} has {len(row)} fields, the first line {len(head)}")
-    return [_number(path, line, name, field) for name, field in zip(head, row, strict=True)]
+    fields = zip(head, row, kept, strict=True)
+    return [_number(path, line, name, field) if known else nan for name, field, known in fields]
 
 
 def _number(path: Path, line: int, name: str, field: str) -> float:

@@ -33,6 +33,18 @@ def test_units_are_converted_and_empty_fields_are_no_numbers(tmp_path):
     assert found.middle_unix_s == 1.7e9 + 2.5
 
 
+def test_columns_that_mean_nothing_here_may_hold_anything(tmp_path):
+    rows = [row[:-1] + text for row, text in zip(ROWS, ("NOMINAL", "", "inf", "12:00", "0"), strict=True)]
+    found, plain = (read_pass(written(tmp_path, *one)) for one in (rows, ROWS))
+    assert found.unused == ("note",)
+    np.testing.assert_array_equal(found.mag_nt, plain.mag_nt)
+
+
+def test_a_cell_in_two_units_is_refused(tmp_path):
+    with pytest.raises(HarnessError, match="there are two columns of cell '2', 'sun_cell_2_ma' is one of"):
+        read_pass(written(tmp_path, *ROWS, head=HEAD.replace("note", "sun_cell_2_ma")))
+
+
 @pytest.mark.parametrize(
     ("rows", "said"),
     [
