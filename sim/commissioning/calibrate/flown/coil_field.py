@@ -113,7 +113,7 @@ class _Fit:
 
 
 def _runs(driven: Array) -> list[tuple[int, int]]:
-    """First tick of each pulse, and the one after its last."""
+    """First tick of each pulse, or of pulses without a pause between them, and the one after its last."""
     on = np.any(driven != 0.0, axis=1)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], on.astype(int), [0]])))
     return list(zip(edges[0::2].tolist(), edges[1::2].tolist(), strict=True))
@@ -129,7 +129,10 @@ def _windows(samples: Samples, driven: Array, runs: list[tuple[int, int]], longe
     around = AROUND_S * samples.tick_hz
     windows = []
     for begin, end in runs:
-        output = int(np.argmax(np.abs(driven[begin])))
+        outputs = np.flatnonzero(np.any(driven[begin:end] != 0.0, axis=0))
+        if len(outputs) > 1:  # one right after another: what shows is of both
+            continue
+        output = int(outputs[0])
         rows = np.arange(max(0, begin - around), min(len(samples), end + around + longest))
         for first, last in runs:
             if first != begin:

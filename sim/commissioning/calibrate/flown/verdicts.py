@@ -73,7 +73,9 @@ def untold(found: RunCalibration) -> list[str]:
         text.append(f"scale and turn are known within {percent:.0f} % only: more attitudes are needed")
     response = found.response
     text += [
-        f"output {n} gave no pulse: its field is not known" for n, c in enumerate(response.pulses, 1) if not c
+        f"output {n} gave no pulse that can be used: its field is not known"
+        for n, c in enumerate(response.pulses, 1)
+        if not c
     ]
     if response.delay_ticks is None:
         text.append("no pulse shows in the field: its delay is not known, and taken for zero")

@@ -1,5 +1,7 @@
 """Response of the channels to the coils, and how late it shows."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -56,6 +58,19 @@ def test_where_nothing_shows_there_is_no_delay(pulsed):
     found = coil_response(pulsed(0.0 * RESPONSE, 1.0, noise_nt=200.0), LEVELS)
     assert found.delay_ticks is None
     assert np.abs(found.nt_per_am2).max() < 5.0 * found.sigma.max()
+
+
+def test_pulses_of_two_coils_without_a_pause_between_them_tell_nothing_of_either(pulsed):
+    """Each coil with a back-off of its own: the next is driven as soon as the one before has ended."""
+    samples = pulsed(RESPONSE, 0.0)
+    coil, level, field_nt = samples.coil.copy(), samples.level.copy(), samples.field_nt.copy()
+    for begin in (20, 60, 100):  # of the first three pulses, of 3 ticks each
+        after = slice(begin + 3, begin + 6)
+        coil[after], level[after] = (coil[begin] + 1) % 3, 3
+        field_nt[after] += LEVELS[2] * RESPONSE[:, coil[after][0]]
+    found = coil_response(replace(samples, coil=coil, level=level, field_nt=field_nt), LEVELS)
+    assert found.nt_per_am2 == pytest.approx(RESPONSE, abs=3.0)
+    assert found.pulses == (1, 1, 1)
 
 
 def test_an_output_that_was_not_fired_is_not_known(pulsed):
