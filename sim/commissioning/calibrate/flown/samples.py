@@ -89,7 +89,8 @@ def read_samples(log: Path, tick_hz: int) -> Samples:
 
     Raises:
         LogError: the file is no candump log.
-        HarnessError: it holds no ticks, or one that lies too far from the others.
+        HarnessError: it holds no ticks, one that lies too far from the others, or a coil or level that no
+            board has.
     """
     rows: dict[int, list[float]] = {}
     stamps_s: dict[int, float] = {}
@@ -106,6 +107,11 @@ def read_samples(log: Path, tick_hz: int) -> Samples:
                 pending = _nothing()
             else:
                 _take(frame, pending)
+                if not _is_coils(pending):
+                    raise HarnessError(
+                        f"{log}: line {entry.line}: a COIL_STATUS of coil {pending[6]:.0f} at level "
+                        f"{pending[7]:.0f}: there are coils 0 to 2 and levels -3 to 3"
+                    )
     except LogTruncatedError:
         pass  # what was read is whole
     if not rows:
@@ -127,6 +133,11 @@ def _check_gaps(log: Path, stamps_s: dict[int, float], tick_hz: int) -> None:
 
 def _nothing() -> list[float]:
     return [np.nan] * 6 + [0.0, 0.0, 0.0]
+
+
+def _is_coils(row: list[float]) -> bool:
+    """Whether the coil driver has reported a coil and a level that there are."""
+    return row[6] <= 2 and abs(row[7]) <= 3
 
 
 def _take(frame: Frame, row: list[float]) -> None:

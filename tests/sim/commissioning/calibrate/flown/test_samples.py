@@ -88,3 +88,13 @@ def test_ticks_near_a_pulse_are_not_free_in_a_log_of_any_length(log, ticks):
 
     samples = read_samples(log(*(line for tick in range(ticks) for line in lines(tick))), 1)
     assert samples.free(3).tolist() == [tick > 3 for tick in range(ticks)]
+
+
+@pytest.mark.parametrize(("level", "coil"), [(4, 1), (-8, 0), (2, 3)])
+def test_a_level_or_a_coil_that_no_board_has_is_refused_with_its_line(log, level, coil):
+    status = CoilStatus(level, coil, 0, 100, 0, 7).encode()
+    path = log(sync(0, 1), format_line(format_time(EPOCH_UNIX_S * 10**6), "can0", status), sync(1, 1))
+    with pytest.raises(HarnessError) as error:
+        read_samples(path, 1)
+    said = f"{path}: line 2: a COIL_STATUS of coil {coil} at level {level}: there are coils 0 to 2"
+    assert str(error.value).startswith(said)
