@@ -221,10 +221,10 @@ def _beyond_bounds(scenario: Scenario) -> Iterator[str]:
     ):
         worst = max(map(abs, off))
         if worst > max(bound * (1.0 + ROUNDING), slight):
-            admitted = 100.0 * bound if of_table.endswith("_percent") else bound
+            in_table, unit = (100.0, " %") if of_table.endswith("_percent") else (1.0, "")
             yield (
-                f"{key} is off by {worst:.3g}, and flight.uncertainty.{of_table} = {admitted:g}: the filter "
-                "is not made for it"
+                f"{key} is off by {in_table * worst:.3g}{unit}, and flight.uncertainty.{of_table} = "
+                f"{in_table * bound:g}: the filter is not made for it"
             )
 
 
