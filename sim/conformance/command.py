@@ -7,6 +7,7 @@ from sim.conformance.board_link import BOARD_KINDS, BoardLink
 from sim.conformance.board_under_test import BoardLimits
 from sim.conformance.check_runner import CheckResult, run_checks
 from sim.console import answer, say
+from sim.errors import HarnessError
 from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario
 
@@ -18,8 +19,13 @@ def conformance(scenario: Scenario, kind: str, bus: str, armed: bool, deadman_s:
 
     Raises:
         BusError: the bus cannot be used.
-        HarnessError: no board answers, or another node sends SYNC.
+        HarnessError: no board answers, another node sends SYNC, or the scenario's coil board is another one.
     """
+    if kind == "coil" and scenario.coils.driver == "continuous":
+        raise HarnessError(
+            f"{scenario.name}: coils.driver: the board is a continuous driver; the checks of a coil board are "
+            "those of the pulsed one"
+        )
     tick_hz = scenario.time.tick_hz
     board = coil_limits(scenario.coils, tick_hz)
     limits = BoardLimits(board.pulse_ms, board.backoff_ms, board.shared, deadman_s)

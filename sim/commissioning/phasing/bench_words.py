@@ -32,7 +32,7 @@ def _idle(one: BenchResponse) -> str:
     """Noise and drift without a command."""
     if np.isnan(one.noise_nt).any():
         return "no readings without a command: neither noise nor drift is told"
-    noise = " ".join(f"{part / 1000.0:.1f}" for part in one.noise_nt)
+    noise = " ".join(f"{part / 1000.0:.3f}" for part in one.noise_nt)
     drift = " ".join(f"{part / 1000.0:+.1f}" for part in one.drift_nt)
     return f"noise {noise} uT, drift over the log {drift} uT (x y z)"
 
@@ -40,7 +40,7 @@ def _idle(one: BenchResponse) -> str:
 def _step_line(step: Step) -> str:
     command = " ".join(f"{1000.0 * part:6.2f}" for part in step.command_am2)
     by_axis = zip(step.response_nt, step.sigma_nt, strict=True)
-    response = " ".join(f"{value / 1000.0:+7.2f} ±{sigma / 1000.0:.2f}" for value, sigma in by_axis)
+    response = " ".join(f"{value / 1000.0:+8.3f} ±{sigma / 1000.0:.3f}" for value, sigma in by_axis)
     if isnan(step.changed_s):
         phase = "too weak for its phase"
     else:

@@ -1,6 +1,7 @@
 """The response in a recorded bench log, level by level, and what it cannot tell."""
 
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -62,6 +63,18 @@ def test_a_response_that_is_late_is_told_and_its_size_is_as_without_the_delay(be
     assert "in phase with the command, within 0.19 s; the log tells it no closer" in findings(
         responses["mag1"]
     )
+
+
+def test_noise_of_a_few_nanotesla_is_told_as_such(responses):
+    one = responses["mag1"]
+    quiet = replace(
+        one,
+        noise_nt=np.array([20.0, 31.0, 4.0]),
+        steps=[replace(step, sigma_nt=np.array([2.0, 3.0, 1.0])) for step in one.steps],
+    )
+    head, *rows = lines([quiet])
+    assert head.startswith("mag1: noise 0.020 0.031 0.004 uT")
+    assert all("±0.002 " in row and "±0.003 " in row for row in rows if "edges" in row)
 
 
 def without_a_command(text):
