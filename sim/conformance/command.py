@@ -23,8 +23,7 @@ def conformance(scenario: Scenario, kind: str, bus: str, armed: bool, deadman_s:
     """
     if kind == "coil" and scenario.coils.driver == "continuous":
         raise HarnessError(
-            f"{scenario.name}: coils.driver: the board is a continuous driver; the checks of a coil board are "
-            "those of the pulsed one"
+            f"{scenario.name}: coils.driver: the board is a continuous driver; the checks are of a pulsed one"
         )
     tick_hz = scenario.time.tick_hz
     board = coil_limits(scenario.coils, tick_hz)
