@@ -1,5 +1,6 @@
 """The live view in Foxglove: attitude and directions in its 3-D panel, series, events, by its own server."""
 
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
     from foxglove import Context
 
 HOST = "127.0.0.1"
+STOPPED_WITHIN_S = 1.0
+"""Time that the server has to take leave of its clients [s]."""
 COLOURS: dict[str, dict[str, float]] = {
     "body 1": {"r": 0.0, "g": 0.45, "b": 0.70},
     "body 2": {"r": 0.84, "g": 0.37, "b": 0.0},
@@ -45,7 +48,10 @@ def foxglove_server(port: int) -> Iterator["Publisher"]:
     try:
         yield Publisher(context, server.port)
     finally:
-        server.stop()
+        # it waits for each connection, also for one that has never said a word; the process ends without it
+        stopping = threading.Thread(target=server.stop, daemon=True)
+        stopping.start()
+        stopping.join(STOPPED_WITHIN_S)
 
 
 class Publisher:

@@ -1,6 +1,8 @@
 """What Foxglove receives: read back from a recording of the same channels."""
 
 import json
+import socket
+import threading
 
 import foxglove
 import pytest
@@ -84,3 +86,24 @@ def test_what_is_forgotten_before_the_first_sync_is_numbered(tmp_path):
 def test_a_port_that_is_taken_is_named():
     with foxglove_server(0) as first, pytest.raises(HarnessError, match=f"--port {first.port}"):
         foxglove_server(first.port).__enter__()
+
+
+def test_a_client_that_never_says_a_word_does_not_hold_the_end_up():
+    ended, connected = threading.Event(), threading.Event()
+    port = []
+
+    def serve():
+        with foxglove_server(0) as publisher:
+            port.append(publisher.port)
+            connected.wait()
+        ended.set()
+
+    server = threading.Thread(target=serve, daemon=True)
+    server.start()
+    while not port:
+        server.join(0.01)
+        assert server.is_alive()
+    with socket.create_connection(("127.0.0.1", port[0])):
+        server.join(0.3)  # the server takes the connection
+        connected.set()
+        assert ended.wait(10.0)
