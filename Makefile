@@ -51,6 +51,9 @@ $(installed): pyproject.toml
 sil: venv
 	$(bin)/torquer sil
 
+# a worker, a core
+test test-long: export OPENBLAS_NUM_THREADS = 1
+
 test: venv
 	$(bin)/pytest $(PYTEST_FLAGS)
 

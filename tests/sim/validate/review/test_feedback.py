@@ -1,9 +1,13 @@
 """Claims on simple feedback: a law that lacks one of its terms misses one of them."""
 
+import pytest
+
 from fsw.core.algebra.vector import ZERO, scale
 from fsw.core.laws.feedback import delayed, sphere
 from sim.campaign.claim import ClaimVerdict
 from sim.validate.review.feedback import laws
+
+pytestmark = pytest.mark.long
 
 
 def missed(study):

@@ -1,9 +1,13 @@
 """Claims on one axis: a law that lacks one of its terms misses them."""
 
+import pytest
+
 from fsw.core.algebra.vector import add, scale
 from fsw.core.laws.one_axis import sun_critical, sun_panels
 from sim.campaign.claim import ClaimVerdict
 from sim.validate.review import one_axis
+
+pytestmark = pytest.mark.long
 
 
 def verdict(name):

@@ -1,11 +1,15 @@
 """Claims on stabilisation by spin: a law that lacks one of its terms misses one of them."""
 
+import pytest
+
 from fsw.core.algebra.vector import ZERO
 from fsw.core.laws.spin import spin as thomson
 from fsw.core.laws.spin import spin_axis, target_precession
 from sim.campaign.claim import ClaimVerdict
 from sim.validate.review import spin
 from sim.validate.review.flown import three_term
+
+pytestmark = pytest.mark.long
 
 
 def missed(*names):
