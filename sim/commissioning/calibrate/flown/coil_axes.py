@@ -44,6 +44,8 @@ SHEAR_NT = 400.0
 GATE_NIS = 40.0
 MOST_REFUSALS = 30
 NT = 1e-9
+RATE = slice(3, 6)
+"""Of the error state."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +84,7 @@ def coil_axes(
     if not len(starts):
         return None
     levels = (0.0, *table.coils.levels_am2)
+    strongest_radps_per_t = levels[-1] / table.time.tick_hz / float(np.linalg.eigvalsh(table.body.inertia)[0])
     field = (b_body_nt * NT).tolist()
     sun, b_eci = samples.sun.tolist(), (along.b_eci_nt * NT).tolist()
     s_eci, r_eci = along.sun_eci.tolist(), along.r_eci_m.tolist()
@@ -99,6 +102,8 @@ def coil_axes(
         m[int(samples.coil[k])] = levels[abs(level)] * (1.0 if level > 0 else -1.0)
         gravity = 3.0 * MU_M3PS2 / radius**3
         estimate = mekf.predict(estimate, scale(1.0 / radius, r), b, gravity, (m[0], m[1], m[2]), config)
+        if not samples.reported[k]:
+            estimate = _perhaps_turned(estimate, strongest_radps_per_t * norm(b))
         for seen, update, sample, reference in (
             (usable[k], mekf.update_field, field[k], b),
             (lit[k], mekf.update_sun, sun[k], s),
@@ -116,6 +121,13 @@ def coil_axes(
     coils = config.layout.coils
     matrix = np.eye(3) + np.array(estimate.parameters.coil_error).reshape(3, 3)
     return CoilAxes(matrix, estimate.covariance[coils, coils], refused / max(1, taken + refused))
+
+
+def _perhaps_turned(estimate: Estimate, by_radps: float) -> Estimate:
+    """After a tick in which any coil may have been driven: by so much the rate may have changed, rad/s."""
+    covariance = estimate.covariance.copy()
+    covariance[RATE, RATE] += by_radps**2 * np.eye(3)
+    return estimate._replace(covariance=covariance)
 
 
 def _config(table: FlightTable) -> MekfConfig:

@@ -82,8 +82,9 @@ def coil_response(samples: Samples, levels_am2: tuple[float, float, float]) -> C
     driven = np.zeros((len(samples), 3))
     dipoles = np.array([0.0, *levels_am2])[np.abs(samples.level)] * np.sign(samples.level)
     driven[np.arange(len(samples)), np.clip(samples.coil, 0, 2)] = dipoles
-    runs = _runs(driven)
-    longest = _longest_delay(runs, samples)
+    runs = _runs(np.any(driven != 0.0, axis=1) | ~samples.reported)
+    pulses = [(begin, end) for begin, end in runs if driven[begin:end].any()]
+    longest = _longest_delay(pulses, samples)
     windows = _windows(samples, driven, runs, longest)
     step = min(STEP_S * samples.tick_hz, MOST_STEP)
     delays = np.arange(0.0, longest + 0.5 * step, step)
@@ -112,9 +113,11 @@ class _Fit:
     cost: float
 
 
-def _runs(driven: Array) -> list[tuple[int, int]]:
-    """First tick of each pulse, or of pulses without a pause between them, and the one after its last."""
-    on = np.any(driven != 0.0, axis=1)
+def _runs(on: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """First tick of each run of ticks that are on, and the one after its last.
+
+    A run is a pulse, pulses without a pause between them, or ticks in which a coil may have been driven.
+    """
     edges = np.flatnonzero(np.diff(np.concatenate([[0], on.astype(int), [0]])))
     return list(zip(edges[0::2].tolist(), edges[1::2].tolist(), strict=True))
 
@@ -130,8 +133,8 @@ def _windows(samples: Samples, driven: Array, runs: list[tuple[int, int]], longe
     windows = []
     for begin, end in runs:
         outputs = np.flatnonzero(np.any(driven[begin:end] != 0.0, axis=0))
-        if len(outputs) > 1:  # one right after another: what shows is of both
-            continue
+        if len(outputs) != 1 or not samples.reported[begin:end].all():
+            continue  # of two outputs, one right after another, or of nobody knows which
         output = int(outputs[0])
         rows = np.arange(max(0, begin - around), min(len(samples), end + around + longest))
         for first, last in runs:

@@ -18,6 +18,8 @@ Numbers = NDArray[np.int64]
 SURE_GAP_S, LONGEST_GAP_S = 3600.0, 86400.0
 """Time without a SYNC that is believed whatever the time stamps say, since a recording of a flight without a
 pace has stamps that are much closer; and that is believed at most, where they bear it out."""
+COILS, TOLD, UNTOLD, DISPUTED = slice(6, 9), 1.0, 0.0, -1.0
+"""Where a row has coil, level and what is known of them: reported, not reported, reported as two things."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +33,7 @@ class Samples:
         sun: readings of the Sun sensor, (n, 3).
         coil: output that was driven over the tick that ended, 0 to 2.
         level: its level, -3 to 3; 0 where none was driven, or nothing was reported.
-        reported: whether the coil driver has reported.
+        reported: whether the coil driver has reported, and not two things at once.
     """
 
     tick: Numbers
@@ -106,12 +108,10 @@ def read_samples(log: Path, tick_hz: int) -> Samples:
                 stamps_s.setdefault(sync.tick, entry.timestamp_us / 1e6)
                 pending = _nothing()
             else:
-                _take(frame, pending)
-                if not _is_coils(pending):
-                    raise HarnessError(
-                        f"{log}: line {entry.line}: a COIL_STATUS of coil {pending[6]:.0f} at level "
-                        f"{pending[7]:.0f}: there are coils 0 to 2 and levels -3 to 3"
-                    )
+                try:
+                    _take(frame, pending)
+                except ValueError as error:
+                    raise HarnessError(f"{log}: line {entry.line}: {error}") from None
     except LogTruncatedError:
         pass  # what was read is whole
     if not rows:
@@ -132,15 +132,11 @@ def _check_gaps(log: Path, stamps_s: dict[int, float], tick_hz: int) -> None:
 
 
 def _nothing() -> list[float]:
-    return [np.nan] * 6 + [0.0, 0.0, 0.0]
-
-
-def _is_coils(row: list[float]) -> bool:
-    """Whether the coil driver has reported a coil and a level that there are."""
-    return row[6] <= 2 and abs(row[7]) <= 3
+    return [np.nan] * 6 + [0.0, 0.0, UNTOLD]
 
 
 def _take(frame: Frame, row: list[float]) -> None:
+    """Put what a frame says into the row of its tick; ValueError: a coil or a level that no board has."""
     if frame.can_id not in (MagField.ID, SunVector.ID, CoilStatus.ID) or not intact(frame):
         return
     if frame.can_id == MagField.ID:
@@ -151,7 +147,13 @@ def _take(frame: Frame, row: list[float]) -> None:
         row[3:6] = (sun.s_x, sun.s_y, sun.s_z) if sun.valid else [np.nan] * 3
     else:
         status = CoilStatus.decode(frame.data)
-        row[6:9] = (status.coil, status.level, 1.0)
+        if status.coil > 2 or abs(status.level) > 3:
+            raise ValueError(
+                f"a COIL_STATUS of coil {status.coil} at level {status.level}: there are coils 0 to 2 and "
+                "levels -3 to 3"
+            )
+        told = [status.coil if status.level else 0.0, status.level, TOLD]
+        row[COILS] = told if row[COILS] in (_nothing()[COILS], told) else [0.0, 0.0, DISPUTED]
 
 
 def _filled(rows: dict[int, list[float]], epoch_unix_s: int, tick_hz: int) -> Samples:
@@ -166,5 +168,5 @@ def _filled(rows: dict[int, list[float]], epoch_unix_s: int, tick_hz: int) -> Sa
         sun=table[:, 3:6],
         coil=table[:, 6].astype(np.int64),
         level=table[:, 7].astype(np.int64),
-        reported=table[:, 8] > 0.0,
+        reported=table[:, 8] == TOLD,
     )

@@ -16,6 +16,8 @@ TOLD_OFFSET_NT = 2000.0
 TOLD_PART = 0.03
 """The same of a component of M, and of the coils' dipoles."""
 SIGMAS = 3.0
+BEYOND_MEASURE = 1e9
+"""Of nothing that was measured, a standard deviation."""
 
 
 def turn_rad(found: RunCalibration) -> Array:
@@ -81,7 +83,9 @@ def untold(found: RunCalibration) -> list[str]:
         text.append("no pulse shows in the field: its delay is not known, and taken for zero")
     if found.coils is not None and not are_coils(found.coils.matrix):
         text.append("what the pulses did to the rate is that of no dipoles of coils")
-    if found.coils is None:
+    if found.coils is None and not min(response.pulses):
+        text.append("the coils' dipoles are not known: each output needs a pulse that can be used")
+    elif found.coils is None:
         text.append(
             "the coils' dipoles are not known: the filter found no attitude in which the pulses make sense"
         )
@@ -132,6 +136,11 @@ def _values(values: Array | list[float], sigmas: Array | list[float], form: str)
 
 def _matrix(values: Array, sigmas: Array, form: str) -> list[str]:
     return [
-        "  " + "  ".join(form.format(value, sigma) for value, sigma in zip(row, row_sigma, strict=True))
+        "  " + "  ".join(_one(value, sigma, form) for value, sigma in zip(row, row_sigma, strict=True))
         for row, row_sigma in zip(values.tolist(), sigmas.tolist(), strict=True)
     ]
+
+
+def _one(value: float, sigma: float, form: str) -> str:
+    """An output without a pulse has no value, and a deviation beyond all measure."""
+    return form.format(value, sigma) if sigma < BEYOND_MEASURE else f"{'not known':>16}"

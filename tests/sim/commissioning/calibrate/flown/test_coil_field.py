@@ -73,6 +73,20 @@ def test_pulses_of_two_coils_without_a_pause_between_them_tell_nothing_of_either
     assert found.pulses == (1, 1, 1)
 
 
+def test_a_pulse_whose_report_was_lost_is_not_taken_for_none(pulsed):
+    """Nor does it shorten the delays that are looked for, or spoil the pulses beside it."""
+    samples = pulsed(RESPONSE, 2.0, pulses=12, every=20)
+    level, reported = samples.level.copy(), samples.reported.copy()
+    driven = np.flatnonzero(level)
+    lost = driven[[1, 9, 10, 11]]  # the middle of the first pulse, and the fourth
+    level[lost], reported[lost] = 0, False
+    lossy = replace(samples, level=level, reported=reported)
+    whole, found = coil_response(samples, LEVELS), coil_response(lossy, LEVELS)
+    assert found.nt_per_am2 == pytest.approx(RESPONSE, abs=0.1)
+    assert found.delay_ticks == pytest.approx(2.0, abs=0.1)
+    assert sum(found.pulses) == sum(whole.pulses) - 2
+
+
 def test_an_output_that_was_not_fired_is_not_known(pulsed):
     found = coil_response(pulsed(RESPONSE, 0.0, pulses=2), LEVELS)
     assert found.pulses == (1, 1, 0)

@@ -98,3 +98,18 @@ def test_a_level_or_a_coil_that_no_board_has_is_refused_with_its_line(log, level
         read_samples(path, 1)
     said = f"{path}: line 2: a COIL_STATUS of coil {coil} at level {level}: there are coils 0 to 2"
     assert str(error.value).startswith(said)
+
+
+def test_of_a_tick_with_two_statuses_that_differ_nothing_is_told(log):
+    """The frame of the tick before once more: a coil may have been driven or not."""
+    driven, idle = CoilStatus(3, 1, 0, 300, 0, 7), CoilStatus(0, 1, 0, 0, 0, 7)
+    lines = [sync(0, 1)]
+    for tick, statuses in enumerate(
+        [(driven,), (idle, driven), (driven, driven), (idle, CoilStatus(0, 2, 0, 0, 0, 8))], 1
+    ):
+        for status in statuses:
+            lines.append(format_line(format_time((EPOCH_UNIX_S + tick) * 10**6), "can0", status.encode()))
+        lines.append(sync(tick, 1))
+    samples = read_samples(log(*lines), 1)
+    assert samples.reported.tolist() == [False, True, False, True, True]
+    assert samples.level.tolist() == [0, 3, 0, 3, 0]
