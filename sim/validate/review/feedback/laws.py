@@ -107,13 +107,9 @@ def delayed() -> Study:
             high=2.0,
         ),
     )
-    return Study("review.feedback.delayed", (delayed_deg,), lambda found: judged(claims, found[0]))
-
-
-def delayed_deg() -> tuple[float, float]:
-    """The error in the last orbit, and the largest angle from the law with the rate."""
-    told, untold = (fly(flight(law, 20.0, near=False, **PD)) for law in ("pd", "pd_delayed"))
-    return untold.last_orbit_deg, apart_deg(untold, told)
+    return Study(
+        "review.feedback.delayed", (partial(beside_pd, "pd_delayed"),), lambda found: judged(claims, found[0])
+    )
 
 
 def direction() -> Study:
@@ -168,15 +164,11 @@ def sphere() -> Study:
     def conclude(found: Sequence[Any]) -> list[ClaimOutcome]:
         return judged(claims, (found[0], *found[1]))
 
-    return Study("review.feedback.sphere", (vertical_deg, output_deg), conclude)
-
-
-def output_deg() -> tuple[float, float]:
-    """The error in the last orbit, and the largest angle from the law with the rate."""
-    told, untold = (
-        fly(flight(law, 20.0, inertia_kgm2=SPHERE, near=False, **PD)) for law in ("pd", "sphere_output")
+    return Study(
+        "review.feedback.sphere",
+        (vertical_deg, partial(beside_pd, "sphere_output", inertia_kgm2=SPHERE)),
+        conclude,
     )
-    return untold.last_orbit_deg, apart_deg(untold, told)
 
 
 def two_step() -> Study:
@@ -258,6 +250,12 @@ def fields_in_body(flown: LawHistory) -> Array:
     b_eci_t = DirectDipole().at(flown.t_s, r_m)
     b_body_t: Array = (flown.c_body_from_eci @ b_eci_t[:, :, None])[:, :, 0]
     return b_body_t
+
+
+def beside_pd(law: str, **changed: object) -> tuple[float, float]:
+    """Of a law without a rate: error in the last orbit, and largest angle from pd, which has it; deg."""
+    told, untold = (fly(flight(one, 20.0, **(PD | {"near": False} | changed))) for one in ("pd", law))
+    return untold.last_orbit_deg, apart_deg(untold, told)
 
 
 def apart_deg(first: LawHistory, second: LawHistory) -> float:

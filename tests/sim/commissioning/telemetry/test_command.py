@@ -44,13 +44,11 @@ def test_the_document_has_the_keys_that_are_documented(short):
 
 
 def test_the_rate_is_told_about_the_axis_of_the_spin_whichever_that_is(short, tmp_path):
-    columns = {f"{name}_{axis}_": f"{name}_{after}_"
-               for name in ("mag", "gyro") for axis, after in zip("xyz", "yzx", strict=True)}  # fmt: skip
     head, *rows = short.read_text().splitlines()
-    named = [next((name.replace(old, new) for old, new in columns.items() if old in name), name)
-             for name in head.split(",")]  # fmt: skip
+    after = dict(zip("xyz", "yzx", strict=True))
+    turned_head = re.sub(r"\b(mag|gyro)_([xyz])_", lambda found: f"{found[1]}_{after[found[2]]}_", head)
     turned, page = tmp_path / "turned.csv", tmp_path / "page.html"
-    turned.write_text("\n".join([",".join(named), *rows]) + "\n")
+    turned.write_text("\n".join([turned_head, *rows]) + "\n")
     values = tomllib.loads(CALIBRATION.read_text())["calibration"]["magnetometer"]
     place = [2, 0, 1]
     offset_nt = [values["offset_nt"][one] for one in place]

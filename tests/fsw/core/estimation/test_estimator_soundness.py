@@ -1,0 +1,88 @@
+"""Whatever stands in the state or comes from sensors: a sound estimate or none, and no exception."""
+
+from math import inf, nan
+
+import numpy as np
+import pytest
+from estimator_samples import (
+    CONFIG,
+    REFERENCE,
+    SIZE,
+    seen_from,
+    step,
+)
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fsw.core.estimation import mekf
+from fsw.core.estimation.dynamics.error_dynamics import Driven
+from fsw.core.estimation.estimator import (
+    Used,
+)
+from fsw.core.estimation.orbital_attitude import orbital_attitude
+from fsw.core.estimation.parameters import NAMES
+from fsw.core.gate.readings import NOTHING
+from fsw.wire.messages import MagField, SunVector
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # overflow is what is tried
+class TestSoundness:
+    @pytest.mark.parametrize("bad", [nan, inf, -inf, 1e200])
+    @pytest.mark.parametrize("readings", [NOTHING, seen_from()], ids=["silent", "speaking"])
+    @pytest.mark.parametrize("field", ["q_body_from_eci", "omega_body_radps", *NAMES])
+    def test_a_broken_estimate_is_replaced_and_nothing_is_raised(self, settled, field, readings, bad):
+        estimate = settled.estimate
+        if field in NAMES:
+            values = (*getattr(estimate.parameters, field)[:-1], bad)
+            estimate = estimate._replace(parameters=estimate.parameters._replace(**{field: values}))
+        else:
+            estimate = estimate._replace(**{field: (*getattr(estimate, field)[:-1], bad)})
+        broken = settled._replace(estimate=estimate)
+        state, _ = step(broken, readings)
+        assert state.estimate is None or mekf.healthy(state.estimate)
+        if not np.isfinite(bad):
+            assert state.restarts == 1
+            assert (state.estimate is not None) is (readings is not NOTHING)
+
+    @pytest.mark.parametrize(
+        ("at", "bad"),
+        [(at, bad) for at in ((0, 0), (0, 1), (4, 4), (3, 8), (11, 11)) for bad in (nan, inf, -1.0)]
+        + [((0, 0), 1e300), ((4, 4), 1e300), ((11, 11), 1e300)],
+    )
+    def test_so_is_a_broken_covariance(self, settled, at, bad):
+        covariance = settled.estimate.covariance.copy()
+        covariance[at] = covariance[at[::-1]] = bad
+        broken = settled._replace(estimate=settled.estimate._replace(covariance=covariance))
+        for readings in (seen_from(), NOTHING):
+            state, _ = step(broken, readings)
+            assert state.estimate is None or mekf.healthy(state.estimate)
+
+    def test_a_variance_that_the_update_makes_negative_is_lost(self, settled):
+        """What ties attitude and bias together has grown in one place alone: the two no longer agree."""
+        for value in (1e-2, -1e-2, 1.0, -1.0):
+            covariance = settled.estimate.covariance.copy()
+            covariance[2, 6] = value
+            broken = settled._replace(estimate=settled.estimate._replace(covariance=covariance))
+            state, _ = step(broken, seen_from())
+            assert state.estimate is None or mekf.healthy(state.estimate)
+            orbital_attitude(state.estimate, REFERENCE, CONFIG.valid_sigma_rad)
+
+    def test_a_covariance_that_overflows_in_the_prediction_is_caught_before_the_update(self, settled):
+        spinning = settled.estimate._replace(
+            omega_body_radps=(1e60, -2e60, 3e60), covariance=1e100 * np.eye(SIZE)
+        )
+        state, used = step(settled._replace(estimate=spinning), seen_from())
+        assert state.restarts == 1
+        assert used == Used(True, True, False)
+
+    @given(
+        st.tuples(*[st.floats(-65536.0, 65534.0)] * 3),
+        st.tuples(*[st.floats(-1.1, 1.1)] * 3),
+        st.integers(1, 100),
+        st.floats(-8.0, 8.0),
+    )
+    @settings(max_examples=150, deadline=None)
+    def test_no_reading_breaks_it(self, settled, b_nt, sun, elapsed, m):
+        readings = seen_from(field=MagField(1, *b_nt), sun=SunVector(1, *sun))
+        state, _ = step(settled, readings, driven=[Driven((m, -m, m), (-m, m, m))] * elapsed)
+        assert state.estimate is None or mekf.healthy(state.estimate)
