@@ -35,6 +35,7 @@ _COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
 }
 _WORST_FIRST = ("failed", "not judged", "met")
 """Verdicts of requirements."""
+_KINDS = {bool: "true or false", str: "a word", list: "a list", int: "a number", float: "a number"}
 _EXPRESSION = re.compile(r"\s*(?P<key>[\w.]+)\s*(?P<sign><=|>=|==|!=|<|>)\s*(?P<value>\S.*?)\s*")
 
 
@@ -57,13 +58,16 @@ class FlownScenario:
 
         Args:
             expressions: ``KEY SIGN VALUE``: a dotted key of summary.json, one of < <= > >= == !=, and a
-                value as in TOML or a bare word. ``requirements`` is the verdict of all requirements of the
-                scenario together, met, failed or not judged; ``requirements.ape`` that of one index.
+                value of the same kind, as in TOML or a bare word. ``requirements`` is the verdict of all
+                requirements of the scenario together, met, failed or not judged; ``requirements.ape`` that of
+                one index.
 
         Raises:
             AssertionError: one does not hold; all that do not are named.
             ExpressionError: one cannot be judged.
         """
+        if not expressions:
+            raise ExpressionError("expect() without an expression asserts nothing")
         missed = [clause for clause in map(self._missed, expressions) if clause]
         assert not missed, f"{self.run.path}: {'; '.join(missed)}"
 
@@ -86,11 +90,13 @@ class FlownScenario:
                 allowed = ", ".join(value) if isinstance(value, Mapping) else "none"
                 raise ExpressionError(f"{expression!r}: no {part!r} in the summary, of {allowed}")
             value = value[part]
-        try:
-            holds = _COMPARISONS[found["sign"]](value, _value(found["value"]))
-        except TypeError as error:
-            raise ExpressionError(f"{expression!r}: {error}") from None
-        return "" if holds else f"{expression} does not hold: {value!r}"
+        wanted = _value(found["value"])
+        kind = _KINDS.get(type(value))
+        if kind is None or kind != _KINDS.get(type(wanted)) or str(wanted) == "nan":
+            raise ExpressionError(f"{expression!r}: {value!r} in the summary cannot be compared with that")
+        if found["sign"] not in ("==", "!=") and kind != "a number":
+            raise ExpressionError(f"{expression!r}: only numbers have an order, {value!r} is {kind}")
+        return "" if _COMPARISONS[found["sign"]](value, wanted) else f"{expression} does not hold: {value!r}"
 
     def _requirements_missed(self, expression: str, found: re.Match[str]) -> str:
         """The same over the requirements of the scenario: the worst verdict of those that are meant."""

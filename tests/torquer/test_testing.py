@@ -17,7 +17,8 @@ SUMMARY = {
     "limits_ok": True,
     "mode_final": "POINT",
     "pulses": {"total": 7},
-    "pointing_deg": {"final": 2.5},
+    "pointing_deg": {"final": 2.5, "settled": None},
+    "isolated": ["coil 2"],
 }
 
 
@@ -40,6 +41,9 @@ def flown(tmp_path):
         "mode_final == POINT",
         'mode_final == "POINT"',
         "limits_ok == true",
+        "mode_final != SAFE",
+        'isolated == ["coil 2"]',
+        "isolated != []",
     ],
 )
 def test_what_holds(flown, expression):
@@ -63,12 +67,25 @@ def test_all_that_does_not_hold_is_named_with_its_value(flown):
         ("pulses.total = 7", "is none"),
         ("pulses.totl == 7", "no 'totl' in the summary, of total"),
         ("pulses.total.sum == 7", "no 'sum' in the summary, of none"),
-        ("mode_final < 3", "not supported between"),
+        ("mode_final < 3", "'POINT' in the summary cannot be compared"),
+        ("limits_ok != False", "True in the summary cannot be compared"),
+        ("limits_ok == 1", "True in the summary cannot be compared"),
+        ("pulses.total != seven", "7 in the summary cannot be compared"),
+        ("pulses.total != nan", "7 in the summary cannot be compared"),
+        ("pointing_deg.settled != 3", "None in the summary cannot be compared"),
+        ("pulses != 7", "in the summary cannot be compared"),
+        ("mode_final < SAFE", "only numbers have an order, 'POINT' is a word"),
+        ("limits_ok >= false", "only numbers have an order, True is true or false"),
     ],
 )
 def test_what_cannot_be_judged_is_no_pass(flown, expression, what):
     with pytest.raises(ExpressionError, match=what):
         flown.expect(expression)
+
+
+def test_nothing_expected_is_no_pass(flown):
+    with pytest.raises(ExpressionError, match="asserts nothing"):
+        flown.expect()
 
 
 REQUIREMENTS = [
