@@ -23,7 +23,7 @@ WRONG_ORBITS = 4.0
 HONEST = "0.992 by an honest filter"
 """Three axes at once."""
 CELLS, GAIN_PART, TURN_DEG = 6, 0.1, 2.0
-SUNLIT_DEG, ECLIPSE_DEG, INSIDE = 2.0, 4.0, 0.95
+SUNLIT_DEG, ECLIPSE_DEG, INSIDE = 2.0, 3.0, 0.95
 CROSSED = ("cell 1", "cell 3")
 WRONG_DEG, SOON_S = 10.0, 60.0
 NAMED_PART, SOON_PART, SOON_PART_ONE = 0.8, 0.8, 0.6
