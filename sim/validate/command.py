@@ -154,7 +154,7 @@ def _results(out: Path | None, whole: bool, record: bool, studies: Sequence[Stud
         raise HarnessError(f"--out {out}: the outcomes beside the page would have its name: end it in .md")
     before = read_record(figures) if record and figures is not None else None
     flown = [study for study in all_studies(None) if isinstance(study, FlightStudy)] if record else []
-    claimed = frozenset(claim.id for study in flown for claim in claims_of(study))
+    claimed = {claim.id: claim for study in flown for claim in claims_of(study)}
     return ResultFiles(page, figures, frozenset(study.id for study in studies), claimed, before)
 
 

@@ -90,9 +90,18 @@ def _study_of(claim: str, studies: Collection[str]) -> str:
     return max((one for one in studies if f"{claim}.".startswith(f"{one}.")), key=len, default="")
 
 
-def of_other_code(record: Record) -> set[str]:
-    """The claims whose flights other code than this has flown."""
-    return {name for name, one in record.items() if one.code not in ("", code_digest())}
+def outdated(record: Record, made: Mapping[str, Claim]) -> set[str]:
+    """The claims whose flights other code than this has flown, or that were judged by other limits or words.
+
+    Args:
+        record: what was computed.
+        made: the claims as this code makes them, by their ids; one that is not there counts as unchanged.
+    """
+    return {
+        name
+        for name, (outcome, code) in record.items()
+        if code not in ("", code_digest()) or made.get(name, outcome.claim) != outcome.claim
+    }
 
 
 def as_figures(record: Record) -> dict[str, dict[str, str]]:

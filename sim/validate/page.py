@@ -44,12 +44,12 @@ def render(
         outcomes: of all claims of the page.
         finished: the studies whose reference files and recorded passes are listed.
         wall_s: of this run.
-        earlier: claims whose flights other code has flown; they are marked.
+        earlier: claims that other code has flown or judged; they are marked.
         unknown: claims that are made and have no outcome yet.
     """
     lines = [_HEAD, tally(outcomes) + ".", "", *claims_table(outcomes, earlier), ""]
     if earlier:
-        lines += [f"\\*: flown by an earlier version, {len(earlier)} of {len(outcomes)}.", ""]
+        lines += [f"\\*: flown or judged by an earlier version, {len(earlier)} of {len(outcomes)}.", ""]
     if unknown:
         lines += [f"Claimed, and not computed yet: {', '.join(unknown)}.", ""]
     lines += [

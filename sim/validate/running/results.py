@@ -1,14 +1,15 @@
 """The page and the file of outcomes: of a run, or of all, with each study that is done."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from sim.campaign.claim import Claim
 from sim.campaign.runner import StudyResult
 from sim.console import say
 from sim.errors import HarnessError
 from sim.record.run_dir import replace_file
-from sim.validate.outcomes import Record, as_text, of_other_code, with_record
+from sim.validate.outcomes import Record, as_text, outdated, with_record
 from sim.validate.page import render
 
 
@@ -20,7 +21,7 @@ class ResultFiles:
         page: None: not written.
         figures: the file of outcomes; None: not written.
         studies: ids of all studies.
-        claimed: claims that are made, by all studies that tell them beforehand.
+        claimed: claims that are made, by all studies that tell them beforehand, by their ids.
         before: what ``figures`` held of all studies, where the outcomes are put among those; None: it is to
             hold those of this run alone.
         done: the studies of this run that are done.
@@ -29,7 +30,7 @@ class ResultFiles:
     page: Path | None
     figures: Path | None
     studies: frozenset[str]
-    claimed: frozenset[str] = frozenset()
+    claimed: Mapping[str, Claim] = field(default_factory=dict)
     before: Record | None = None
     done: list[StudyResult] = field(default_factory=list)
 
@@ -42,9 +43,12 @@ class ResultFiles:
         self.done.append(study)
         if self.before is not None:
             known = with_record(self.before, self.done, self.studies)
-            outcomes, unknown = [one.outcome for one in known.values()], sorted(self.claimed - known.keys())
+            outcomes, unknown = (
+                [one.outcome for one in known.values()],
+                sorted(self.claimed.keys() - known.keys()),
+            )
             # no details: those of a part would stand for the whole
-            self._write(known, render(outcomes, [], wall_s, of_other_code(known), unknown))
+            self._write(known, render(outcomes, [], wall_s, outdated(known, self.claimed), unknown))
 
     def finish(self, finished: Sequence[StudyResult], wall_s: float) -> None:
         """All studies are done; say which files there are.
@@ -55,7 +59,7 @@ class ResultFiles:
         if self.before is None:
             known = with_record({}, finished, self.studies)
             outcomes = [outcome for study in finished for outcome in study.outcomes]
-            self._write(known, render(outcomes, finished, wall_s, of_other_code(known)))
+            self._write(known, render(outcomes, finished, wall_s, outdated(known, self.claimed)))
         for name, file in (("figures", self.figures), ("page", self.page)):
             if file is not None:
                 say(f"{name}: {file}")

@@ -173,6 +173,11 @@ class TestCommand:
         assert "Claimed, and not computed yet: b.error, b.time.\n" in page.read_text()
         assert self.call("--only", "b", "--record", "--out", page).exit_code == 0
         assert "not computed yet" not in page.read_text()
+        assert "\\*" not in page.read_text()
+        figures[0] = replace(figures[0], high=2.0)
+        parts[1] = campaign("b", "", [Group("", (order,))], figures)
+        assert self.call("--only", "a", "--record", "--out", page).exit_code == 0
+        assert "PASS \\* |\n" in page.read_text(), "its limit is another now"
 
     def test_a_kill_while_outcomes_are_written_leaves_those_before(self, tmp_path, monkeypatch, study):
         parts = [study("a", [1.0])]

@@ -1,6 +1,7 @@
 """validation.json: what was computed is kept until it is computed again."""
 
 import json
+from dataclasses import replace
 from math import inf, nan
 
 import pytest
@@ -14,7 +15,7 @@ from sim.validate.outcomes import (
     as_figures,
     as_record,
     as_text,
-    of_other_code,
+    outdated,
     read_record,
     with_record,
 )
@@ -108,7 +109,14 @@ def test_what_is_fitted_is_not_met_however_it_was_written(path):
 
 def test_flights_of_other_code_are_told_from_those_of_this_and_from_what_has_none():
     code = {"a": code_digest(), "b": "", "c": "5eed", "d": "unknown"}
-    assert of_other_code({name: ROW._replace(code=of) for name, of in code.items()}) == {"c", "d"}
+    assert outdated({name: ROW._replace(code=of) for name, of in code.items()}, {}) == {"c", "d"}
+
+
+def test_a_claim_that_is_judged_by_another_limit_now_is_outdated():
+    row = ROW._replace(code=code_digest())
+    record = {"a.b": row, "a.c": row}
+    assert outdated(record, {"a.b": CLAIM}) == set()
+    assert outdated(record, {"a.b": replace(CLAIM, high=1.9), "a.gone": CLAIM}) == {"a.b"}
 
 
 def test_a_figure_is_told_with_limits_and_verdict():

@@ -51,7 +51,7 @@ class TestPage:
         marked = render(self.outcomes(), [], 61.4, {"a.c"})
         assert [row for row in marked.splitlines() if "\\*" in row] == [
             "| Too much (`a.c`) | Her | 2e-09 at row 8 |  | <= 1e-09 (rounding) | own choice | FAIL \\* |",
-            "\\*: flown by an earlier version, 1 of 4.",
+            "\\*: flown or judged by an earlier version, 1 of 4.",
         ]
 
     def test_the_terminal_names_the_worst_row_and_whose_the_limit_is(self):
