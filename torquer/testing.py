@@ -91,13 +91,7 @@ class FlownScenario:
                 allowed = ", ".join(value) if isinstance(value, Mapping) else "none"
                 raise ExpressionError(f"{expression!r}: no {part!r} in the summary, of {allowed}")
             value = value[part]
-        wanted = _value(found["value"])
-        kind = _KINDS.get(type(value))
-        no_number = isinstance(wanted, float) and isnan(wanted)  # differs from every figure
-        if kind is None or kind != _KINDS.get(type(wanted)) or no_number:
-            raise ExpressionError(f"{expression!r}: {value!r} in the summary cannot be compared with that")
-        if found["sign"] not in ("==", "!=") and kind != "a number":
-            raise ExpressionError(f"{expression!r}: only numbers have an order, {value!r} is {kind}")
+        wanted = _comparable(expression, found, value)
         return "" if _COMPARISONS[found["sign"]](value, wanted) else f"{expression} does not hold: {value!r}"
 
     def _requirements_missed(self, expression: str, found: re.Match[str]) -> str:
@@ -165,6 +159,26 @@ def fly(tmp_path_factory: pytest.TempPathFactory) -> Fly:
         return FlownScenario(run)
 
     return fly_once
+
+
+def _comparable(expression: str, found: re.Match[str], value: object) -> object:
+    """The value that a figure of the summary is compared with; refused where the comparison tells nothing."""
+    wanted = _value(found["value"])
+    kind = _KINDS.get(type(value))
+    no_number = isinstance(wanted, float) and isnan(wanted)  # differs from every figure
+    if kind is None or kind != _KINDS.get(type(wanted)) or no_number:
+        raise ExpressionError(f"{expression!r}: {value!r} in the summary cannot be compared with that")
+    if found["sign"] not in ("==", "!=") and kind != "a number":
+        raise ExpressionError(f"{expression!r}: only numbers have an order, {value!r} is {kind}")
+    if found["key"] == "mode_final" and wanted not in (modes := _modes()):
+        raise ExpressionError(f"{expression!r}: no such mode, of {', '.join(modes)}")
+    return wanted
+
+
+def _modes() -> tuple[str, ...]:
+    from fsw.wire.messages import Mode
+
+    return tuple(mode.name for mode in Mode)
 
 
 def _value(text: str) -> object:

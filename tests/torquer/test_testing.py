@@ -68,6 +68,8 @@ def test_all_that_does_not_hold_is_named_with_its_value(flown):
         ("pulses.totl == 7", "no 'totl' in the summary, of total"),
         ("pulses.total.sum == 7", "no 'sum' in the summary, of none"),
         ("mode_final < 3", "'POINT' in the summary cannot be compared"),
+        ("mode_final != SAFF", "no such mode, of .*SAFE"),
+        ("mode_final != safe", "no such mode, of .*SAFE"),
         ("limits_ok != False", "True in the summary cannot be compared"),
         ("limits_ok == 1", "True in the summary cannot be compared"),
         ("pulses.total != seven", "7 in the summary cannot be compared"),
