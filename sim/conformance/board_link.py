@@ -140,11 +140,11 @@ class BoardLink:
         self._bus.send([sync, *frames, TickDone(tick, 0).encode()])
         return self._listen(tick + 1, at_s, self.period_s, due=True, early_s=early_s)
 
-    def sync(self, tick: int) -> TickReply:
-        """Send a SYNC alone, of any tick, and listen for the time of a tick."""
+    def sync(self, tick: int, seconds: float | None = None) -> TickReply:
+        """Send a SYNC alone, of any tick, and listen for so long; None: for the time of a tick."""
         at_s = self.due_s()
         self._bus.send([Sync(tick, self._epoch_unix_s).encode()])
-        return self._listen(tick, at_s, self.period_s)
+        return self._listen(tick, at_s, self.period_s if seconds is None else seconds)
 
     def restart(self) -> TickReply:
         """Send PLANT_BOOT, which restarts a board in a later tick than 0, and listen for a tick."""

@@ -68,6 +68,11 @@ class BoardUnderTest:
             )
         return reply
 
+    def expect_locked_out(self, since_s: float, coil: int = 1) -> None:
+        """A request is refused, if it comes before the end of a back-off that began at ``since_s``."""
+        if self.link.due_s() < since_s + self.limits.backoff_ms / 1000.0 - SLACK_S:
+            self.expect_off(self.expect_refusal(self.request(coil=coil), CoilRefusedReason.LOCKOUT))
+
     def expect_off(self, reply: TickReply) -> CoilStatus:
         """The status of a tick in which nothing may have been driven."""
         status = reply.status

@@ -122,7 +122,7 @@ def back_off(board: BoardUnderTest) -> None:
     link = board.link
     board.follow_pulse(request, reply, another)
     if board.limits.shared:
-        board.expect_off(board.expect_refusal(board.request(coil=0), CoilRefusedReason.LOCKOUT))
+        board.expect_locked_out(end_s, coil=0)
     else:
         other_request, first_reply = board.expect_accepted(coil=0, duration_ms=max(1, duration_ms // 2))
         board.follow_pulse(other_request, first_reply)
@@ -140,19 +140,18 @@ def dead_man_in_a_pulse(board: BoardUnderTest) -> None:
     """No SYNC while a coil is on: off, COIL_EVENT, a full lockout; meanwhile no request is accepted."""
     board.wait_until_free()
     board.expect_accepted()
-    _stop_sync(board)
-    board.expect_off(board.expect_refusal(board.request(), CoilRefusedReason.LOCKOUT))
+    board.expect_locked_out(_stop_sync(board).at_s)
 
 
-def _stop_sync(board: BoardUnderTest) -> None:
+def _stop_sync(board: BoardUnderTest) -> TickReply:
     during = board.link.silence(1.5 * board.limits.deadman_s + board.link.period_s)
     if during.messages:
         raise NonconformanceError(f"it sends without a SYNC: {names(during.messages)}")
-    expect_dead_man(board, "no SYNC")
+    return expect_dead_man(board, "no SYNC")
 
 
-def expect_dead_man(board: BoardUnderTest, why: str) -> None:
-    """The dead-man is reported in the next tick, with a full lockout.
+def expect_dead_man(board: BoardUnderTest, why: str) -> TickReply:
+    """The reply in the next tick, which must report the dead-man, with a full lockout.
 
     Raises:
         NonconformanceError: it is not.
@@ -164,14 +163,16 @@ def expect_dead_man(board: BoardUnderTest, why: str) -> None:
             f"{why} for {1.5 * board.limits.deadman_s:g} s: events {events}, not the dead-man"
         )
     board.expect_lockout(reply, 1)
+    return reply
 
 
 def restart_in_a_pulse(board: BoardUnderTest) -> None:
     """A restart while a coil is on: off at once, and a full lockout."""
     board.wait_until_free()
     board.expect_accepted()
-    board.expect_lockout(board.link.restart())
-    board.expect_off(board.expect_refusal(board.request(), CoilRefusedReason.LOCKOUT))
+    restarted = board.link.restart()
+    board.expect_lockout(restarted)
+    board.expect_locked_out(restarted.at_s)
 
 
 def heartbeats(board: BoardUnderTest) -> None:

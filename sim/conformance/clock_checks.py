@@ -75,18 +75,17 @@ def held_tick(board: BoardUnderTest) -> None:
     """
     board.wait_until_free()
     link, limits = board.link, board.limits
-    longest_s = limits.deadman_s - 2.5 * link.period_s  # short of the dead-man
-    _hold(link, longest_s)
-    duration_ms = min(limits.pulse_ms, ceil(2.1 * board.tick_ms))  # longer than the ticks that follow
+    held_s = (limits.deadman_s - link.period_s) / 2.0  # the tick after it passes without a SYNC, too
+    link.sync(link.tick, held_s)
+    # longer than the ticks that follow, but over before more of them come: those would end it by their count
+    most_ms = int(1000.0 * (link.period_s + held_s) - 2.0 * SLACK_MS)
+    duration_ms = min(limits.pulse_ms, ceil(2.1 * board.tick_ms), most_ms)
     request, reply = board.expect_accepted(duration_ms=duration_ms)
     from_s = reply.at_s  # before it was sent: the tester may be held up after it
-    if duration_ms + SLACK_MS < 1000.0 * (link.period_s + longest_s):
-        _hold(link, longest_s)
-        reply = link.step()
-        if reply.status.remaining_ms:
-            raise NonconformanceError(
-                f"a pulse of {duration_ms} ms goes on in a tick that is held for longer"
-            )
+    link.sync(link.tick, held_s)
+    reply = link.step()
+    if reply.status.remaining_ms:
+        raise NonconformanceError(f"a pulse of {duration_ms} ms goes on in a tick that is held for longer")
     burst_s = min(BURST_S, link.period_s / 10.0)
     for _ in range(ceil((limits.pulse_ms + limits.backoff_ms) / board.tick_ms) + 3):
         reply = link.step(early_s=burst_s)
@@ -97,12 +96,6 @@ def held_tick(board: BoardUnderTest) -> None:
         _expect_locked_out(board, reply, left_ms)
         if not board.send(board.request()).refused:
             raise NonconformanceError(f"accepted {left_ms:.0f} ms before the end of its back-off")
-
-
-def _hold(link: BoardLink, seconds: float) -> None:
-    """One SYNC, and nothing after it: for a tick at least."""
-    link.sync(link.tick)
-    link.silence(max(0.0, seconds - link.period_s))
 
 
 def _expect_locked_out(board: BoardUnderTest, reply: TickReply, least_ms: float) -> None:

@@ -11,6 +11,9 @@ from sim.errors import HarnessError
 from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario
 
+LEAST_DEADMAN_TICKS = 2
+"""A tick is held for part of the dead-man, and may be late."""
+
 _MARKS = {True: "ok    ", False: "FAILED"}
 
 
@@ -19,13 +22,19 @@ def conformance(scenario: Scenario, kind: str, bus: str, armed: bool, deadman_s:
 
     Raises:
         BusError: the bus cannot be used.
-        HarnessError: no board answers, another node sends SYNC, or the scenario's coil board is another one.
+        HarnessError: no board answers, another node sends SYNC, the scenario's coil board is another one, or
+            its dead-man is too short.
     """
     if kind == "coil" and scenario.coils.driver == "continuous":
         raise HarnessError(
             f"{scenario.name}: coils.driver: the board is a continuous driver; the checks are of a pulsed one"
         )
     tick_hz = scenario.time.tick_hz
+    if kind == "coil" and deadman_s * tick_hz < LEAST_DEADMAN_TICKS:
+        raise HarnessError(
+            f"--deadman-s {deadman_s:g}: at {tick_hz} Hz the checks need at least "
+            f"{LEAST_DEADMAN_TICKS / tick_hz:g} s, as a SYNC that is late would wake a shorter one"
+        )
     board = coil_limits(scenario.coils, tick_hz)
     limits = BoardLimits(board.pulse_ms, board.backoff_ms, board.shared, deadman_s)
     spec = resolve(bus)

@@ -17,17 +17,8 @@ import pytest
 
 pytestmark = pytest.mark.long
 
-LIMITS = (
-    "--set",
-    "coils.pulse_s=1.2",
-    "--set",
-    "coils.backoff_s=3.9",
-    "--tick-hz",
-    "2",
-    "--deadman-s",
-    "2.0",
-)
-BOARD = ("coil", "--pulse-s", "1.2", "--backoff-s", "3.9", "--tick-hz", "2", "--deadman-s", "2.0")
+LIMITS = ("coils.pulse_s=1.2", "coils.backoff_s=3.9")
+BOARD = ("coil", "--pulse-s", "1.2", "--backoff-s", "3.9", "--deadman-s", "2.0")
 SHORT = (*BOARD, "--backoff-s", "3.0")
 
 
@@ -67,26 +58,37 @@ def cable():
             os.close(descriptor)
 
 
-def conformance(bus, *options):
-    return start("torquer", "hil", "--conformance", "coil", "--bus", bus, *LIMITS, *options)
+def board(bus, tick_hz, words):
+    started = start("hil_stub", *words, "--bus", bus, "--tick-hz", tick_hz)
+    assert started.stderr.readline().startswith("on ")
+    return started
+
+
+def conformance(bus, tick_hz, *options):
+    limits = (word for limit in LIMITS for word in ("--set", limit))
+    words = (*limits, "--tick-hz", tick_hz, "--deadman-s", "2.0", *options)
+    return start("torquer", "hil", "--conformance", "coil", "--bus", bus, *words)
 
 
 @pytest.fixture(scope="module")
 def ended():
-    """Exit code, output and errors of each suite, by name."""
+    """Exit code, output and errors of each suite, by name.
+
+    Over serial a tick has a whole second, as four processes and the cable's thread share it.
+    """
     serial = importlib.util.find_spec("serial") is not None
     boards, suites = [], {}
+    armed = ("--arm", "--json")
     with cable() as (bench_port, board_port):
-        ways = {"loop": (bus := loop(), bus, BOARD, ("--arm", "--json"))}
-        ways["short"] = (bus := loop(), bus, SHORT, ())
+        ways = {"loop": (bus := loop(), bus, "2", BOARD, armed)}
+        ways["short"] = (bus := loop(), bus, "2", SHORT, ())
         if serial:
-            ways["slcan"] = (bench_port, board_port, BOARD, ("--arm", "--json"))
+            ways["slcan"] = (bench_port, board_port, "1", BOARD, armed)
         try:
-            for name, (bench_bus, board_bus, board, options) in ways.items():
-                boards.append(start("hil_stub", *board, "--bus", board_bus))
-                assert boards[-1].stderr.readline().startswith("on ")
-                suites[name] = conformance(bench_bus, *options)
-            suites["nobody"] = conformance(loop())
+            for name, (bench_bus, board_bus, tick_hz, words, options) in ways.items():
+                boards.append(board(board_bus, tick_hz, words))
+                suites[name] = conformance(bench_bus, tick_hz, *options)
+            suites["nobody"] = conformance(loop(), "2")
             result = {
                 name: (*suite.communicate(timeout=300), suite.returncode) for name, suite in suites.items()
             }

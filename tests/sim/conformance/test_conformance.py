@@ -49,11 +49,21 @@ def test_a_computer_that_is_busy_for_a_tick_does_not_blame_the_board(link_to, bu
     assert failures(run_checks(link, BoardLimits(), armed=True)) == {}
 
 
-@pytest.mark.parametrize(("pulse_ms", "backoff_ms", "deadman_s"), [(2500, 7300, 5.0), (500, 1500, 0.5)])
-def test_it_conforms_with_other_limits(link_to, pulse_ms, backoff_ms, deadman_s, failures):
-    limits = CoilLimits(10, pulse_ms, backoff_ms)
-    link = link_to(lambda: CoilBoard(limits), 10, deadman_ms=round(1000 * deadman_s))
+@pytest.mark.parametrize("deadman_s", [2.0, 2.5, 5.0, 60.0])
+@pytest.mark.parametrize(
+    ("pulse_ms", "backoff_ms"), [(2500, 7300), (1200, 3900), (700, 2000), (100, 1000), (1, 0)]
+)
+@pytest.mark.parametrize("hz", [1, 3])
+def test_it_conforms_with_other_limits(link_to, hz, pulse_ms, backoff_ms, deadman_s, failures):
+    """Pulses and back-offs shorter than a tick, a dead-man of two ticks."""
+    limits = CoilLimits(hz, pulse_ms, backoff_ms)
+    link = link_to(lambda: CoilBoard(limits), hz, deadman_ms=round(1000 * deadman_s))
     assert failures(run_checks(link, BoardLimits(pulse_ms, backoff_ms, True, deadman_s), armed=True)) == {}
+
+
+def test_it_conforms_with_a_dead_man_of_half_a_second(link_to, failures):
+    link = link_to(lambda: CoilBoard(CoilLimits(10, 500, 1500)), 10, deadman_ms=500)
+    assert failures(run_checks(link, BoardLimits(500, 1500, True, 0.5), armed=True)) == {}
 
 
 @pytest.mark.parametrize(
@@ -247,6 +257,24 @@ IN_THE_BOARD = {
 def test_a_fault_in_the_board_is_found(link_to, monkeypatch, plant, finds, failures):
     plant(monkeypatch)
     found = failures(run_checks(link_to(lambda: CoilBoard(CoilLimits(1))), BoardLimits(), armed=True))
+    assert finds in found, found
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        "no lockout at boot",
+        "no back-off",
+        "lockout not judged",
+        "a dead-man that only switches off",
+        "a clock that is told of time by ticks alone",
+    ],
+)
+def test_limits_of_few_ticks_hide_no_fault(link_to, monkeypatch, fault, failures):
+    plant, finds = IN_THE_BOARD[fault]
+    plant(monkeypatch)
+    link = link_to(lambda: CoilBoard(CoilLimits(1, 1200, 3900)), deadman_ms=2000)
+    found = failures(run_checks(link, BoardLimits(1200, 3900, True, 2.0), armed=True))
     assert finds in found, found
 
 
