@@ -109,6 +109,11 @@ def hil(settings: HilSettings) -> int:
         raise HarnessError(f"fault[0], {kind}: a bench injects no faults: fly the scenario by sil")
     if settings.scenario.wheel is not None:
         raise HarnessError("[wheel]: a bench has no board of a wheel: fly the scenario by sil")
+    if "coil" not in settings.real and settings.deadman_s * settings.scenario.time.tick_hz <= 1.0:
+        raise HarnessError(
+            f"--deadman-s {settings.deadman_s:g}: at {settings.scenario.time.tick_hz} Hz it would end every "
+            f"pulse, as SYNC comes every {1.0 / settings.scenario.time.tick_hz:g} s: it has to be longer"
+        )
     if settings.stimulus != "plant" and settings.scenario.knowledge == "perfect":
         raise HarnessError("a scenario with knowledge = 'perfect' needs the plant: --stimulus plant")
     with (

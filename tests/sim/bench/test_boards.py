@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from fsw.bus.interface import BusError
 from sim.bench.command import BOARDS, HilSettings, boards_of, hil, real_boards
 from sim.errors import HarnessError
 from sim.scenario.schema import load
@@ -42,3 +43,12 @@ def test_a_satellite_whose_wheel_no_board_would_drive_is_refused():
     settings = replace(SETTINGS, scenario=load("microsat-wheel"))
     with pytest.raises(HarnessError, match=r"^\[wheel\]: a bench has no board of a wheel"):
         hil(settings)
+
+
+def test_a_dead_man_no_longer_than_a_tick_is_refused_and_that_of_a_real_board_is_not_judged():
+    with pytest.raises(HarnessError, match=r"^--deadman-s 1: at 1 Hz"):
+        hil(replace(SETTINGS, deadman_s=1.0))
+    with pytest.raises(BusError, match="no such bus"):
+        hil(replace(SETTINGS, deadman_s=1.01, bus="no such bus"))
+    with pytest.raises(BusError, match="no such bus"):
+        hil(replace(SETTINGS, deadman_s=1.0, bus="no such bus", real=frozenset({"coil"})))
