@@ -311,3 +311,13 @@ def test_a_board_that_speaks_out_of_turn_is_found(link_to, failures):
 
 def test_the_number_of_the_dead_man_is_that_of_the_board():
     assert checks.DEAD_MAN == CoilEventCode.DEAD_MAN
+
+
+@pytest.mark.parametrize(
+    ("told_s", "is_s", "finds"),
+    [(5.0, 2.0, "held_tick"), (60.0, 40.0, "held_tick"), (5.0, 9.0, "repeated_tick")],
+)
+def test_a_dead_man_that_is_far_from_what_the_bench_says_is_found(link_to, told_s, is_s, finds, failures):
+    link = link_to(lambda: CoilBoard(CoilLimits(1, 1200, 3900)), deadman_ms=round(1000 * is_s))
+    found = failures(run_checks(link, BoardLimits(1200, 3900, True, told_s), armed=True))
+    assert finds in found, found
