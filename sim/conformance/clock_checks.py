@@ -75,7 +75,7 @@ def held_tick(board: BoardUnderTest) -> None:
     """
     board.wait_until_free()
     link, limits = board.link, board.limits
-    # no SYNC goes on in the count for this and a tick: short of the dead-man, by half of what is left at least
+    # for so long and a tick no SYNC goes on in the count: that has to be short of the dead-man
     held_s = max(limits.deadman_s - 2.5 * link.period_s, (limits.deadman_s - link.period_s) / 2.0)
     link.sync(link.tick, held_s)
     # longer than the ticks that follow, but over before more of them come: those would end it by their count

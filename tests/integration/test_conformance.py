@@ -73,7 +73,7 @@ def conformance(bus, tick_hz, *options):
 def ended():
     """Exit code, output and errors of each suite, by name.
 
-    Over serial a tick has a whole second: each frame passes the cable's thread, and seven processes run at once.
+    Over serial a tick has a whole second: frames pass the cable's thread, and seven processes run at once.
     """
     serial = importlib.util.find_spec("serial") is not None
     boards, suites = [], {}
