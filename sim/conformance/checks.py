@@ -176,7 +176,7 @@ def restart_in_a_pulse(board: BoardUnderTest) -> None:
 
 
 def heartbeats(board: BoardUnderTest) -> None:
-    """A heartbeat every 60 s of ticks after boot; where none was due so far, it waits for one."""
+    """A heartbeat every 60 s of ticks after boot, none before; where none was due so far, it waits for one."""
     link = board.link
     if not _heartbeats_due(link):
         link.restart()
@@ -190,16 +190,28 @@ def heartbeats(board: BoardUnderTest) -> None:
         raise NonconformanceError(
             f"no heartbeat in tick {missing[0]}, {HEARTBEAT_S} s after boot or the last one"
         )
+    for life in _lives(link):
+        beats = [reply.tick - life[0].tick for reply in life for _ in reply.only(link.kind.heartbeat)]
+        for number, ticks in enumerate(beats, 1):
+            if ticks < number * HEARTBEAT_S * link.tick_hz:
+                raise NonconformanceError(
+                    f"heartbeat {number} after boot comes {ticks} ticks after it, "
+                    f"{ticks / link.tick_hz:g} s and not {number * HEARTBEAT_S}"
+                )
+
+
+def _lives(link: BoardLink) -> list[list[TickReply]]:
+    """The replies so far from each boot to the next."""
+    boots = [n for n, reply in enumerate(link.replies) if reply.only(link.kind.boot)]
+    return [link.replies[first:last] for first, last in pairwise([*boots, len(link.replies)])]
 
 
 def _heartbeats_due(link: BoardLink) -> list[TickReply]:
     """The replies so far that had to have a heartbeat."""
-    boots = [n for n, reply in enumerate(link.replies) if reply.only(link.kind.boot)]
-    lives = [link.replies[first:last] for first, last in pairwise([*boots, len(link.replies)])]
     period = HEARTBEAT_S * link.tick_hz
     return [
         reply
-        for life in lives
+        for life in _lives(link)
         for reply in life
         if reply.due and reply.tick > life[0].tick and (reply.tick - life[0].tick) % period == 0
     ]

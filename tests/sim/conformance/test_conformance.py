@@ -321,3 +321,9 @@ def test_a_dead_man_that_is_far_from_what_the_bench_says_is_found(link_to, told_
     link = link_to(lambda: CoilBoard(CoilLimits(1, 1200, 3900)), deadman_ms=round(1000 * is_s))
     found = failures(run_checks(link, BoardLimits(1200, 3900, True, told_s), armed=True))
     assert finds in found, found
+
+
+@pytest.mark.parametrize(("of_board", "of_bench"), [(1, 2), (1, 10), (2, 1), (10, 1)])
+def test_a_board_with_another_tick_rate_is_found_without_power(link_to, of_board, of_bench, failures):
+    link = link_to(lambda: CoilBoard(CoilLimits(of_board)), of_bench)
+    assert "heartbeats" in failures(run_checks(link, BoardLimits(), armed=False))
