@@ -176,7 +176,7 @@ def restart_in_a_pulse(board: BoardUnderTest) -> None:
 
 
 def heartbeats(board: BoardUnderTest) -> None:
-    """A heartbeat every 60 s of ticks after boot, none before; where none was due so far, it waits for one."""
+    """A heartbeat every 60 s of ticks after boot, none before; where none was due yet, it waits for one."""
     link = board.link
     if not _heartbeats_due(link):
         link.restart()
