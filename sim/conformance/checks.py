@@ -7,10 +7,15 @@ from fsw.wire.frame import EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import AnyMessage, CoilEvent, CoilRefusedReason, CoilStatus, Sync
 from sim.conformance.board_link import BoardKind, BoardLink, NonconformanceError, TickReply
 from sim.conformance.board_under_test import BoardUnderTest, reasons
+from sim.errors import HarnessError
 
 DEAD_MAN = 2
 """``event`` of COIL_EVENT; restated here, so that the checks do not depend on the board's code."""
 HEARTBEAT_S = 60
+DEAD_MAN_SLACK_S, DEAD_MAN_PART = 0.1, 0.02
+"""How far a dead-man may be from what the bench says [s], and by which part of it."""
+SILENCES = 10
+"""Attempts at a silence in which this computer is not held up."""
 
 
 def boot(board: BoardUnderTest) -> None:
@@ -130,24 +135,42 @@ def back_off(board: BoardUnderTest) -> None:
 
 
 def dead_man(board: BoardUnderTest) -> None:
-    """No SYNC: off, COIL_EVENT, and a full lockout that begins when SYNC is back."""
-    board.link.step()
-    board.expect_off(board.link.step())
-    _stop_sync(board)
+    """No SYNC: off, COIL_EVENT, and a full lockout that begins when SYNC is back; not before its time."""
+    link, deadman_s = board.link, board.limits.deadman_s
+    slack_s = DEAD_MAN_SLACK_S + DEAD_MAN_PART * deadman_s
+    board.expect_off(link.step())
+    for _ in range(SILENCES):
+        since_s = link.clock()
+        link.step(early_s=0.0)
+        _silence(board, deadman_s - slack_s - (link.clock() - since_s))
+        silent_s = link.clock() - since_s
+        events = _events(link.step())
+        if silent_s < deadman_s - slack_s / 2.0:
+            break
+    else:
+        raise HarnessError(
+            f"this computer was held up in each of {SILENCES} silences: the dead-man is not judged"
+        )
+    if events:
+        raise NonconformanceError(f"no SYNC for {silent_s:.3f} s, less than the dead-man: events {events}")
+    link.step(early_s=0.0)
+    _silence(board, deadman_s + slack_s)
+    expect_dead_man(board, f"no SYNC for {deadman_s + slack_s:g} s")
 
 
 def dead_man_in_a_pulse(board: BoardUnderTest) -> None:
     """No SYNC while a coil is on: off, COIL_EVENT, a full lockout; meanwhile no request is accepted."""
     board.wait_until_free()
     board.expect_accepted()
-    board.expect_locked_out(_stop_sync(board).at_s)
+    silent_s = 1.5 * board.limits.deadman_s + board.link.period_s
+    _silence(board, silent_s)
+    board.expect_locked_out(expect_dead_man(board, f"no SYNC for {silent_s:g} s").at_s)
 
 
-def _stop_sync(board: BoardUnderTest) -> TickReply:
-    during = board.link.silence(1.5 * board.limits.deadman_s + board.link.period_s)
+def _silence(board: BoardUnderTest, seconds: float) -> None:
+    during = board.link.silence(max(0.0, seconds))
     if during.messages:
         raise NonconformanceError(f"it sends without a SYNC: {names(during.messages)}")
-    return expect_dead_man(board, "no SYNC")
 
 
 def expect_dead_man(board: BoardUnderTest, why: str) -> TickReply:
@@ -157,13 +180,15 @@ def expect_dead_man(board: BoardUnderTest, why: str) -> TickReply:
         NonconformanceError: it is not.
     """
     reply = board.link.step()
-    events = [message.event for message in reply.messages if isinstance(message, CoilEvent)]
+    events = _events(reply)
     if events != [DEAD_MAN]:
-        raise NonconformanceError(
-            f"{why} for {1.5 * board.limits.deadman_s:g} s: events {events}, not the dead-man"
-        )
+        raise NonconformanceError(f"{why}: events {events}, not the dead-man")
     board.expect_lockout(reply, 1)
     return reply
+
+
+def _events(reply: TickReply) -> list[int]:
+    return [message.event for message in reply.messages if isinstance(message, CoilEvent)]
 
 
 def restart_in_a_pulse(board: BoardUnderTest) -> None:

@@ -17,7 +17,7 @@ from hil_stub.coils.coil_driver import CoilLimits
 from hil_stub.coils.events import CoilEventCode
 from hil_stub.sensors.stimulus import constant
 from sim.conformance import checks
-from sim.conformance.board_under_test import BoardLimits
+from sim.conformance.board_under_test import BoardLimits, BoardUnderTest
 from sim.conformance.check_runner import CHECKS, run_checks
 from sim.errors import HarnessError
 
@@ -313,14 +313,49 @@ def test_the_number_of_the_dead_man_is_that_of_the_board():
     assert checks.DEAD_MAN == CoilEventCode.DEAD_MAN
 
 
+@pytest.mark.parametrize("hz", [1, 10])
 @pytest.mark.parametrize(
-    ("told_s", "is_s", "finds"),
-    [(5.0, 2.0, "held_tick"), (60.0, 40.0, "held_tick"), (5.0, 9.0, "repeated_tick")],
+    ("told_s", "is_s"),
+    [
+        (5.0, 2.0),
+        (5.0, 4.0),
+        (5.0, 4.7),
+        (5.0, 5.3),
+        (5.0, 9.0),
+        (60.0, 40.0),
+        (60.0, 58.0),
+        (2.0, 1.2),
+        (2.0, 2.3),
+    ],
 )
-def test_a_dead_man_that_is_far_from_what_the_bench_says_is_found(link_to, told_s, is_s, finds, failures):
+def test_a_dead_man_that_is_not_what_the_bench_says_is_found_without_power(
+    link_to, told_s, is_s, hz, failures
+):
+    link = link_to(lambda: CoilBoard(CoilLimits(hz, 1200, 3900)), hz, deadman_ms=round(1000 * is_s))
+    found = failures(run_checks(link, BoardLimits(1200, 3900, True, told_s), armed=False))
+    assert "dead_man" in found, found
+
+
+@pytest.mark.parametrize(("told_s", "is_s"), [(5.0, 4.95), (5.0, 5.05), (60.0, 59.0), (60.0, 61.0)])
+def test_a_dead_man_within_the_tolerance_of_a_clock_conforms(link_to, told_s, is_s, failures):
     link = link_to(lambda: CoilBoard(CoilLimits(1, 1200, 3900)), deadman_ms=round(1000 * is_s))
-    found = failures(run_checks(link, BoardLimits(1200, 3900, True, told_s), armed=True))
-    assert finds in found, found
+    assert failures(run_checks(link, BoardLimits(1200, 3900, True, told_s), armed=True)) == {}
+
+
+def test_a_computer_that_is_held_up_in_every_silence_does_not_judge_the_dead_man(link_to):
+    link = link_to(lambda: CoilBoard(CoilLimits(1)))
+    bus, receive = link._bus, link._bus.receive
+
+    def held_up(timeout_s):
+        frame = receive(timeout_s)
+        if timeout_s > 3.0:
+            bus.now_s += 0.4
+        return frame
+
+    bus.receive = held_up
+    link.step()
+    with pytest.raises(HarnessError, match="held up in each of 10 silences"):
+        checks.dead_man(BoardUnderTest(link, BoardLimits()))
 
 
 @pytest.mark.parametrize(("of_board", "of_bench"), [(1, 2), (1, 10), (2, 1), (10, 1)])
