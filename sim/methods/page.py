@@ -24,7 +24,7 @@ fitted. *fitted*: a number of the scenario was chosen so that the figure is met,
 measured*: no figure has been written yet.
 """
 FITTED = "fitted"
-_COLUMNS = ("method", "source", "kind", "where", "claim", "measured", "verdict")
+_COLUMNS = ("method", "source", "kind", "claim", "measured", "verdict", "where")
 
 
 def page(methods: Sequence[Method], figures: Figures) -> str:
@@ -33,7 +33,7 @@ def page(methods: Sequence[Method], figures: Figures) -> str:
     absent = ", ".join(map(str, left)) if left else "none"
     lines = [
         _HEAD,
-        f"{len(methods)} methods: {_counted(methods)}. Of them {_judged(methods, figures)}.",
+        f"{len(methods)} methods: {_counted(methods)}. Verdicts: {_judged(methods, figures)}.",
         "",
         f"References of the review that no method names: {absent}.",
         "",
@@ -67,10 +67,10 @@ def _cells(method: Method, figures: Figures) -> tuple[str, ...]:
         method.name,
         method.source,
         method.kind.value,
-        where,
         said,
         measured,
         verdict(method, figures),
+        where,
     )
 
 

@@ -39,10 +39,10 @@ def test_the_verdict_is_that_of_all_figures(claims, expected):
 def test_a_row_a_method():
     rows = [line for line in page([LAW, STUDY, NONE], FIGURES).splitlines() if line.startswith("| ")]
     assert rows[1:] == [
-        r"| A \| law | [O19] 1 [18, 20-23] | flown | `a.py` | So. | 1.5 deg, <= 2 (`a.one`) | holds |",
-        "| Study | [O15] sec. 3 [4] | ground | `sim/b.py` | It is so. | 1.5 deg, <= 2 (`a.one`); "
-        "not measured (`a.new`) | holds, in part not measured |",
-        "| None | [O19] 2 [1] | passed over | - | Nothing. No equation was found. | - | passed over |",
+        r"| A \| law | [O19] 1 [18, 20-23] | flown | So. | 1.5 deg, <= 2 (`a.one`) | holds | `a.py` |",
+        "| Study | [O15] sec. 3 [4] | ground | It is so. | 1.5 deg, <= 2 (`a.one`); "
+        "not measured (`a.new`) | holds, in part not measured | `sim/b.py` |",
+        "| None | [O19] 2 [1] | passed over | Nothing. No equation was found. | - | passed over | - |",
     ]
 
 
@@ -53,7 +53,7 @@ def test_a_figure_that_was_fitted_is_called_so():
 
 def test_the_top_counts_each_kind_and_names_the_references_left():
     text = page([LAW, STUDY, NONE], FIGURES)
-    assert "3 methods: 1 flown, 1 ground, 1 passed over. " in text
+    assert "3 methods: 1 flown, 1 ground, 1 passed over. Verdicts: 1 holds, 1 holds, in part not measured, 1 passed over." in text
     assert "References of the review that no method names: 2, 3, 4, 5," in text
     assert ", 17, 19, 24, " in text
 
