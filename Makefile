@@ -9,6 +9,7 @@
 # make faults     every fault in ten phases and with five seeds, 250 real kills among them, into docs/faults.md and .json.gz: some hours; stopped, it goes on where it was
 # make bench      how fast flights are beside Basilisk in the same minutes, into docs/performance.md: ten minutes
 # make scaling    what a campaign costs beside its flights, and what 10^6 runs take, into docs/scaling.md: ten minutes
+# make sizing   flights of what torquer size judges, into docs/sizing.md: a quarter of an hour
 # make soak       72 simulated hours, and an hour on the bench in real time, into docs/soak.md
 # make gains      search the gains of every law for the bodies that compare ships gains for: some hours; stopped, it goes on where it was
 # make golden     record the golden logs again: after a change that means to alter the answers of fsw
@@ -34,7 +35,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test test-long lint docs docs-gallery notebooks test-vcan test-chromium gains golden validate fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv sil test test-long lint docs docs-gallery notebooks test-vcan test-chromium gains golden validate fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -140,6 +141,9 @@ population: venv
 
 pulse-limits: venv
 	$(bin)/python tools/pulse_limits.py $(PULSE_LIMITS)
+
+sizing: venv
+	$(bin)/python tools/sizing.py
 
 soak: venv
 	$(bin)/python tools/soak.py $(SOAK)

@@ -1,0 +1,56 @@
+"""The page of ``make sizing``, from invented figures, and when the tool fails."""
+
+from dataclasses import replace
+
+import pytest
+import sizing
+from sizing import SATELLITES, Row, faults, main, orders_of, page
+
+from sim.scenario.schema import load
+from sim.sizing.command import SURE_DEG
+from sim.sizing.expectation import Expectation
+
+EXPECTED = Expectation(
+    field_t=2e-5,
+    disturbance_nm=5e-8,
+    floor_deg=0.4,
+    quantum_deg=0.3,
+    ripple_deg=0.0,
+    knowledge_deg=0.0,
+    load=0.1,
+)
+ROW = Row("levels 1, 2, 3", "microsat", "mpc", EXPECTED, (0.6, 0.3, 0.45))
+TOO_STRONG = ROW._replace(expected=replace(EXPECTED, floor_deg=SURE_DEG + 0.1), flown_deg=(90.0,))
+
+
+def test_a_row_has_the_parts_and_the_spread_of_the_flights():
+    text = page([ROW])
+    assert "| `microsat`, levels 1, 2, 3 | `mpc` | 0.40 | 0.30 | 0.00 | 0.00 | 0.10 | 0.50 " in text
+    assert "| 0.50 | 0.45 (0.30 to 0.60) |" in text
+    assert "10 orbits each with 3 seeds" in text
+
+
+def test_what_is_said_of_flights_is_of_small_floors_alone():
+    text = page([ROW, TOO_STRONG])
+    assert "Up to a floor of 3 deg flights have 0.60 to 1.20 times the figure" in text
+
+
+@pytest.mark.parametrize(("flown_deg", "fails"), [(0.26, False), (0.24, True), (0.99, False), (1.01, True)])
+def test_flights_further_off_than_a_factor_of_two_fail(flown_deg, fails):
+    assert bool(faults([ROW._replace(flown_deg=(0.5, flown_deg, flown_deg))])) is fails
+
+
+def test_a_figure_that_is_a_lower_bound_cannot_fail():
+    assert faults([TOO_STRONG, ROW._replace(expected=replace(EXPECTED, load=1.1), flown_deg=(90.0,))]) == []
+
+
+@pytest.mark.parametrize(("what", "name", "keys"), SATELLITES)
+def test_each_satellite_can_be_flown(what, name, keys):
+    assert load(name, keys).coils.driver == "pulsed"
+    assert [order.seed for order in orders_of(name, keys, 2)] == [1, 2]
+
+
+def test_a_page_that_cannot_be_written_is_told_before_anything_flies(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(sizing, "fly", None)
+    assert main(["--out", str(tmp_path)]) == 2
+    assert f"sizing: {tmp_path}: cannot be written" in capsys.readouterr().err
