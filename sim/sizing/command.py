@@ -11,6 +11,8 @@ from sim.scenario.schema import Scenario
 from sim.sizing.expectation import Expectation, expect
 from sim.sizing.levels import MOST_LOAD, Levels, levels_against
 
+ROUNDED = 1.05
+"""By so much the load of levels that were made for a tenth may exceed it: they have two digits."""
 SMALL_DEG = 15.0
 """Above it a floor by small angles is no figure: the satellite will not point."""
 SURE_DEG = 3.0
@@ -75,7 +77,7 @@ def as_text(scenario: Scenario, expectation: Expectation, levels: Levels) -> str
         _pointing(expectation),
         f"  levels     {_levels(levels)} A m^2 would do",
     ]
-    if expectation.load > MOST_LOAD:
+    if expectation.load > MOST_LOAD * ROUNDED:
         lines.append(f"  note: over {MOST_LOAD:.0%} of the coils' time: they hardly turn and damp as well")
     if points(expectation) and expectation.floor_deg > SURE_DEG:
         lines.append("  note: so large an error is a lower bound: flights had it or several times as much")

@@ -75,7 +75,7 @@ def expect(scenario: Scenario) -> Expectation:
 
 
 def _expect(scenario: Scenario) -> Expectation:
-    body, coils, torque_nm = _apart(body_of(scenario)), scenario.coils, disturbance_torque(scenario)
+    body, coils, torque_nm = apart(body_of(scenario)), scenario.coils, disturbance_torque(scenario)
     response = least_error(body, torque_nm)
     field_t = field_across(body)
     cycle_s = coils.pulse_s + coils.backoff_s
@@ -101,7 +101,7 @@ def _or_inf(figure: float) -> float:
     return inf if isnan(figure) else figure
 
 
-def _apart(body: Body) -> Body:
+def apart(body: Body) -> Body:
     """The body with moments about axes 2 and 3 that are a little larger, by unlike parts of their mean."""
     inertia = np.asarray(body.inertia_kgm2)
     inertia = inertia + np.diag([0.0, 0.5, 1.0]) * SPREAD * float(np.trace(inertia)) / 3.0

@@ -14,12 +14,7 @@ from sim.design.theory.pulsed import PulsedLoop
 from sim.report.requirements.evidence import FlightEvidence, Missed
 from sim.report.requirements.mismatch import beyond_bounds
 from sim.report.requirements.settling import fell_back, left_again, slow, swings
-from sim.report.requirements.sizing import (
-    gradient_level_am2,
-    least_error_deg,
-    mean_dipole,
-    pulse_turn_deg,
-)
+from sim.report.requirements.sizing import balance, gradient_level_am2, least_error_deg, pulse_turn_deg
 from sim.report.requirements.words import number, orbits, part
 from sim.scenario.schema import flight_table
 
@@ -28,6 +23,10 @@ TREND = 3
 COARSE = 4.0
 """Times the limit that a pulse may turn the body: the law fires where that reduces a libration, so that the
 error is about a fifth of the turn."""
+CONTRADICTED = 1.5
+"""Times the error of the flight that the least one by linear theory may be."""
+LOADED = 0.5
+"""Part of what the coils can give from which they are too weak to balance the disturbance and to point."""
 LATE = 0.4
 """Fraction of a flight after which it is late for what must come first: attitude, low rate."""
 
@@ -128,25 +127,25 @@ def _mismatch(missed: Missed, evidence: FlightEvidence) -> str:
 def _any_law(missed: Missed, evidence: FlightEvidence) -> str:
     if missed.limit is None or missed.what != "attitude" or not any(evidence.torque_nm):
         return ""
-    least = least_error_deg(evidence.scenario, evidence.torque_nm)
-    if least is None or least < 0.8 * missed.limit:
+    least, last = least_error_deg(evidence.scenario, evidence.torque_nm), evidence.trend[-2:]
+    flown = float(np.sqrt(np.mean(np.square(last)))) if last else inf
+    if least is None or least > CONTRADICTED * flown or min(least, flown) < 0.8 * missed.limit:
         return ""
     torque = number(float(np.linalg.norm(evidence.torque_nm)))
     return (
-        f"a torque of {torque} N m on the mean leaves {number(least)} deg whatever the law: "
+        f"a torque of {torque} N m on the mean leaves some {number(min(least, flown))} deg whatever the law: "
         "coils give none along the field"
     )
 
 
 def _disturbance(missed: Missed, evidence: FlightEvidence) -> str:
-    dipole = mean_dipole(evidence.scenario, evidence.torque_nm)
-    if dipole.needed < 0.7 * dipole.given:
+    found = balance(evidence.scenario, evidence.torque_nm, missed.what)
+    if found.load < LOADED:
         return ""
-    by = "disturbance torque" if dipole.torque > dipole.residual else "residual dipole"
-    level = 2.0 * dipole.needed / evidence.scenario.coils.on_part
+    by = "residual dipole" if found.of_dipole else "disturbance torque"
     return (
-        f"the {by} takes {number(dipole.needed)} A m^2 on the mean, the coils give {number(dipole.given)}: "
-        f"it takes a highest level of at least {number(level)} A m^2"
+        f"balancing the {by} takes {part(found.load)} of what the coils can give: too weak to point with; "
+        f"a highest level of {found.level_am2:g} A m^2 would do"
     )
 
 
@@ -206,12 +205,12 @@ def _never_in_point(missed: Missed, evidence: FlightEvidence) -> str:
     modes = flight_table(evidence.scenario).modes
     longest = max(evidence.in_mode, key=lambda mode: evidence.in_mode[mode], default=Mode.SAFE)
     needs = {
-        Mode.DETUMBLE: f", which ends under {modes.slow_degps:g} deg/s for {modes.settle_s:g} s",
-        Mode.ACQUIRE: f", which ends under {modes.near_deg:g} deg for {modes.hold_s:g} s",
+        Mode.DETUMBLE: f" (it ends under {modes.slow_degps:g} deg/s for {modes.settle_s:g} s)",
+        Mode.ACQUIRE: f" (it ends under {modes.near_deg:g} deg for {modes.hold_s:g} s)",
     }
     return (
-        f"mode POINT was never reached: {longest.name} for {part(evidence.in_mode.get(longest, 0.0))} of the "
-        f"flight{needs.get(longest, '')}"
+        f"mode POINT was never reached: {longest.name}{needs.get(longest, '')} for "
+        f"{part(evidence.in_mode.get(longest, 0.0))} of the flight"
     )
 
 

@@ -1,7 +1,8 @@
 """What the coils of a scenario can give on average, what its disturbances take, and what its levels cause."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import degrees, radians, sin, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,6 +10,8 @@ from sim.design.from_scenario import body_of
 from sim.design.theory.bodies import Body
 from sim.design.theory.feedforward import least_error
 from sim.scenario.schema import Scenario
+from sim.sizing.expectation import apart, expect
+from sim.sizing.levels import levels_against
 
 Vec3 = tuple[float, float, float]
 
@@ -45,13 +48,35 @@ def mean_dipole(scenario: Scenario, torque_nm: Vec3) -> MeanDipole:
     return MeanDipole(scenario.coils.on_part * scenario.coils.largest_am2, torque, residual)
 
 
+class Balance(NamedTuple):
+    """What balancing the disturbances takes.
+
+    Attributes:
+        load: part of what the coils can give; above 1 they cannot.
+        level_am2: highest level with which they would be strong enough, as ``torquer size`` says.
+        of_dipole: whether most of it is the residual dipole's, not the torque's.
+    """
+
+    load: float
+    level_am2: float
+    of_dipole: bool
+
+
+def balance(scenario: Scenario, torque_nm: Vec3, what: str) -> Balance:
+    """What it takes: by the mean torque of the flight, and for the whole attitude by that of the scenario."""
+    dipole, expected = mean_dipole(scenario, torque_nm), expect(scenario)
+    load = max(dipole.needed / dipole.given, expected.load if what == "attitude" else 0.0)
+    level_am2 = levels_against(scenario, replace(expected, load=load))[2]
+    return Balance(load, level_am2, dipole.residual > dipole.torque)
+
+
 def least_error_deg(scenario: Scenario, torque_nm: Vec3) -> float | None:
     """The least RMS error of the whole attitude under a constant torque, whatever the law.
 
     None for a body that the gravity gradient leaves free, for which there is no periodic motion.
     """
     try:
-        return degrees(least_error(body_of(scenario), torque_nm).rms_rad)
+        return degrees(least_error(apart(body_of(scenario)), torque_nm).rms_rad)
     except np.linalg.LinAlgError:
         return None
 

@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from sim.campaign.code_digest import FLIGHT_CODE, NOT_FLOWN, code_digest, program
+from sim.campaign.code_digest import FLIGHT_CODE, NOT_FLOWN, WORDS, code_digest, program
+from sim.campaign.flight import Order, fly_order
 from sim.errors import HarnessError
 from sim.fault_table.campaign import FAULT_CODE
+from sim.scenario.schema import parse_settings
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +35,7 @@ fly_order(Order("microsat", {}, 3, 0.01))
 house = {"fsw", "hil_stub", "sim", "torquer"}
 print(*(module.__file__ for name, module in sys.modules.items() if name.split(".")[0] in house))
 """
-ONLY_SHOWN = ("sim/console.py", "sim/drawing", "sim/errors.py", "sim/progress.py")
+ONLY_SHOWN = ("sim/console.py", "sim/drawing", "sim/errors.py", "sim/progress.py", "sim/sizing")
 """What a flight imports and no figure follows from."""
 
 
@@ -88,6 +90,25 @@ def test_it_is_of_all_that_a_flight_imports():
     assert len(imported) > 200
     assert not [file for file in imported if not any(file.is_relative_to(part) for part in parts)]
     assert not [file for file in imported if any(file.is_relative_to(part) for part in NOT_FLOWN)]
+
+
+def test_no_figure_of_a_flight_follows_from_the_words_that_tell_why(monkeypatch):
+    missed = 'requirement=[{index="ape",at_most_deg=0.01,by_orbit=0.05,last_orbits=0.05}]'
+    order = Order("microsat", parse_settings((missed,)), 3, 0.06)
+    summary = fly_order(order).summary
+    assert [one["verdict"] for one in summary["requirements"]] == ["failed"]
+    monkeypatch.setattr("sim.report.requirements.judge.reasons", lambda missed, evidence: [])
+    without = fly_order(order).summary
+    for one in (summary, without):
+        one["requirements"][0]["reasons"] = one["wall_seconds"] = one["realtime_factor"] = None
+    assert without == summary
+
+
+def test_the_words_are_asked_for_by_nothing_but_the_verdict(house):
+    names = [part.removesuffix(".py").replace("/", ".") for part in WORDS]
+    for file in house.rglob("*.py"):
+        if file.relative_to(house).as_posix() not in (*WORDS, "sim/report/requirements/judge.py"):
+            assert not [name for name in names if f"{name} import" in file.read_text()], file
 
 
 def test_a_part_that_is_not_there_is_told(tmp_path):
