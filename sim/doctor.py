@@ -61,11 +61,12 @@ def examine() -> list[Finding]:
 
 def report(findings: list[Finding]) -> int:
     """Print the findings: 1 if something that flights need is missing."""
+    width = max(len(finding.name) for finding in findings)
     for finding in findings:
         missing = finding.presence is Presence.MISSING
-        say(f"{finding.presence.value:<9} {finding.name:<14} {finding.found}", failed=missing)
+        say(f"{finding.presence.value:<9} {finding.name:<{width}} {finding.found}", failed=missing)
         if finding.remedy:
-            say(f"{'':<9} {'':<14} type: {finding.remedy}", failed=missing)
+            say(f"{'':<9} {'':<{width}} type: {finding.remedy}", failed=missing)
     ok = all(finding.presence is not Presence.MISSING for finding in findings)
     say("all that flights need is there" if ok else "something that flights need is missing", failed=not ok)
     answer({"ok": ok, "findings": [finding._asdict() for finding in findings]})

@@ -78,6 +78,7 @@ def _check_packages() -> None:
     house = Path(__file__).resolve().parents[1]
     for name in ("fsw", "hil_stub", "sim"):
         spec = find_spec(name)
-        found = Path(spec.origin).resolve().parent if spec and spec.origin else None
+        found = Path(spec.origin).resolve() if spec and spec.origin else None
+        found = found.parent if found and found.name == "__init__.py" else found
         if found != house / name:
             raise ImportError(f"torquer needs {house / name}, but {found} comes first on sys.path: rename it")

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
+from shlex import quote
 
 from fsw.input.schema import Nested
 from fsw.table.config import flight_config
@@ -70,7 +71,8 @@ class FlownCampaign:
         """What is not ok, a sentence each."""
         sentences = []
         if self.failed:
-            sentences.append(f"{_listed(self.failed)} failed, see the column failure; --retry flies again")
+            why = next(iter(self.analysis.failures.values()))
+            sentences.append(f"{_listed(self.failed)} failed (the first: {why}); --retry flies again")
         if self.broken:
             sentences.append(f"{_listed(self.broken)} broke the limits of the coils")
         sentences += [str(one) for one in self.verdicts if one.met is False]
@@ -184,17 +186,20 @@ def _watch(name: str, total: int) -> Iterator[Callable[[RunRow], None]]:
             bar(done)
             now = time.monotonic()
             if not sys.stderr.isatty() and (now - said >= LINE_EVERY_S or done == total):
-                said, left_s = now, (now - began) / done * (total - done)
-                rate = 60.0 * done / (now - began)
-                line = f"{done} of {total} runs, {failed} failed, {rate:.1f} a minute"
-                note(f"{line}, {left_s / 60.0:.1f} min left")
+                said, rate = now, 60.0 * done / (now - began)
+                line = f"{done} of {total} runs, {failed} failed"
+                if done > 1:  # the others that flew beside the first are not counted yet
+                    line += f", {rate:.1f} a minute, {(total - done) / rate:.1f} min left"
+                note(line)
 
         yield take
 
 
 def _say_how_to_resume(folder: Path, chosen: Campaign, results: Results) -> None:
     there = len(results.runs())
-    note(f"{there} of {chosen.runs} runs are in {folder}; torquer campaign {folder} flies the rest")
+    note(
+        f"{there} of {chosen.runs} runs are in {folder}; torquer campaign {quote(str(folder))} flies the rest"
+    )
 
 
 def _conclude(folder: Path, chosen: Campaign, results: Results, parquet: bool) -> FlownCampaign:

@@ -22,7 +22,7 @@ from sim.errors import HarnessError
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.progress import note, progress
 from sim.record.destination import check_folder
-from sim.record.run_dir import write_json
+from sim.record.run_dir import RUN, write_json
 from sim.report.figures.controlled import Controlled
 from sim.report.summary_text import last_orbit
 from sim.scenario.schema import Scenario, load, orbit_period_s, parse_settings
@@ -177,8 +177,9 @@ def _write(
 def _new_folder(folder: Path) -> Path:
     """The folder, made before anything is flown."""
     check_folder(folder, (JSON, CSV, PICTURE, PAGE))
-    if (folder / JSON).exists():
-        raise HarnessError(f"{folder} already holds a comparison: choose another --out")
+    for name, what in ((JSON, "a comparison"), (RUN, "a run")):
+        if (folder / name).exists():
+            raise HarnessError(f"{folder} already holds {what}: choose another --out")
     return folder
 
 

@@ -21,6 +21,8 @@ from sim.sizing.levels import levels_against, two_digits
 
 TORQUE_PART, DIPOLE_PART = 0.1, 0.03
 """Parts of the bounds that the satellite is assumed to have: one that was built magnetically clean."""
+COMMENTS = 34
+"""Column of the comments, where the value is no longer."""
 STRONGEST_A = 0.4
 """Current at the strongest level, for a coil of which nothing is known."""
 COIL_FIELD_NT = 24_000.0
@@ -98,7 +100,14 @@ def _rendered(satellite: NewSatellite, file: str) -> str:
         keep_trailing_newline=True,
         autoescape=False,
     )
-    return environment.get_template("scenario.toml.j2").render(file=file, **_figures(satellite))
+    text = environment.get_template("scenario.toml.j2").render(file=file, **_figures(satellite))
+    return "".join(map(_aligned, text.splitlines(keepends=True)))
+
+
+def _aligned(line: str) -> str:
+    """The line with its comment, which has a tab before it, in the column of comments."""
+    value, tab, comment = line.partition("\t")
+    return f"{value:<{COMMENTS - 1}} {comment}" if tab else line
 
 
 def _figures(satellite: NewSatellite) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from sim.campaign.study import FlightStudy
 from sim.console import answer, counted, say, warn
 from sim.errors import HarnessError
 from sim.junit import prepare_junit, write_junit
-from sim.progress import progress
+from sim.progress import note, progress
 from sim.result_files import Files, check_results
 from sim.validate.flight_data import claims
 from sim.validate.flight_rows import FlightRows, keep_flight, with_known
@@ -89,6 +89,8 @@ def validate(
             _print(study)
         results.take(study, time.monotonic() - began)
 
+    if whole and keep is None:
+        note("some hours of flights; with --keep FILE one that is stopped goes on, --quick leaves them out")
     with progress("validating", sum(len(study.tasks) for study in studies)) as watch:
         finished = run(studies, workers or os.cpu_count() or 1, watch, report, _keeper(rows))
     if bar:

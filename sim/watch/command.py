@@ -73,7 +73,7 @@ def serve_page(watched: Watched, port: int) -> None:
     """
     from sim.watch.web import LiveView, serve  # noqa: PLC0415  an extra
 
-    serve(LiveView(watched.source, watched.seen), port, note)
+    serve(LiveView(watched.source, watched.seen), port, lambda address: note(f"{address} until Ctrl-C"))
     _check_whole(watched.source)
 
 

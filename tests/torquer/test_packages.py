@@ -55,6 +55,13 @@ def test_a_folder_called_sim_harms_no_command_and_none_of_its_processes(words, f
     assert done.returncode == 0
 
 
+def test_a_script_beside_a_file_of_that_name_is_told_which_it_is(tmp_path):
+    (tmp_path / "fsw.py").write_text(BROKEN)
+    (tmp_path / "script.py").write_text("import torquer\ntorquer.fly")
+    last = run(tmp_path, "script.py").stderr.splitlines()[-1]
+    assert f"{tmp_path / 'fsw.py'} comes first" in last
+
+
 def test_a_script_beside_such_a_folder_is_told_which_it_is(folder):
     (folder / "script.py").write_text("import torquer\ntorquer.fly")
     done = run(folder, "script.py")

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from torquer.cli.completions import of_scenarios
+from torquer.cli.numbers import Number, WholeNumber
 from torquer.cli.options import JSON, JUNIT, examples, law_and_settings, sentences
 
 EXAMPLES = examples(
@@ -16,14 +17,12 @@ EXAMPLES = examples(
 
 @click.command(epilog=EXAMPLES)
 @click.argument("source", metavar="CAMPAIGN.toml|SCENARIO|DIR", shell_complete=of_scenarios)
-@click.option("--runs", type=click.IntRange(1, 10**7), help="Default: those of the file; 100 of a scenario.")
+@click.option("--runs", type=WholeNumber(1, 10**7), help="Default: those of the file; 100 of a scenario.")
+@click.option("--orbits", type=Number(min=0.0, min_open=True), help="Of each run. Default: as the file says.")
 @click.option(
-    "--orbits", type=click.FloatRange(min=0.0, min_open=True), help="Of each run. Default: as the file says."
+    "--seed", type=WholeNumber(0, 10**15), help="Of all random streams. Default: as the file says, 1."
 )
-@click.option(
-    "--seed", type=click.IntRange(0, 10**15), help="Of all random streams. Default: as the file says, 1."
-)
-@click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
+@click.option("--workers", type=WholeNumber(min=1), help="Processes. Default: one a core.")
 @click.option(
     "--scheduler", metavar="ADDRESS|FILE", help="Fly on this Dask cluster instead. Needs torquer[cluster]."
 )

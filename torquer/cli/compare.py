@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from torquer.cli.completions import of_laws
+from torquer.cli.numbers import Number, WholeNumber
 from torquer.cli.options import (
     JSON,
     SEEDS,
@@ -39,11 +40,9 @@ EXAMPLES = examples(
     metavar="best|scenario|FILE",
     help="Those found for the body that ship, the scenario's, or of `torquer design --laws`.",
 )
-@click.option(
-    "--orbits", type=click.FloatRange(min=0.0, min_open=True), help="Default: those of the scenario."
-)
+@click.option("--orbits", type=Number(min=0.0, min_open=True), help="Default: those of the scenario.")
 @click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of all random streams.")
-@click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
+@click.option("--workers", type=WholeNumber(min=1), help="Processes. Default: one a core.")
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Folder. Default: compare/<scenario>-<UTC time>."
 )

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from torquer.cli.numbers import WholeNumber
 from torquer.cli.options import OUT_FILE, examples, sentences
 
 EXAMPLES = examples(
@@ -16,7 +17,7 @@ EXAMPLES = examples(
 @OUT_FILE
 @click.option(
     "--tick-hz",
-    type=click.IntRange(1, 100),
+    type=WholeNumber(1, 100),
     default=1,
     show_default=True,
     help="Ticks a second, for the cycle times.",

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from torquer.cli.completions import of_laws
+from torquer.cli.numbers import WholeNumber
 from torquer.cli.options import JSON, examples, law_and_settings, scenario_argument, sentences
 
 EXAMPLES = examples(
@@ -28,7 +29,7 @@ EXAMPLES = examples(
 @click.option(
     "--keep", type=click.Path(path_type=Path), help="With --laws: their file. Default: SCENARIO-gains.toml."
 )
-@click.option("--flights", type=click.IntRange(min=4), help="With --laws: flights for each. Default: 24.")
+@click.option("--flights", type=WholeNumber(min=4), help="With --laws: flights for each. Default: 24.")
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
@@ -76,7 +77,8 @@ def design(
         say(f"pictures: {', '.join(map(str, found.pictures))}")
         answer({"pictures": found.pictures})
     if found.written:
-        say(f"written: k_w and k_a of {found.written}")
+        which = "the best for a continuous dipole" if gains is None else "those given"
+        say(f"written: k_w and k_a of {found.written}, {which}")
         answer({"written": found.written})
     return int(not found.ok)
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from torquer.cli.completions import of_fault_rows
+from torquer.cli.numbers import WholeNumber
 from torquer.cli.options import JSON, JUNIT, examples, sentences
 
 EXAMPLES = examples(
@@ -23,11 +24,11 @@ EXAMPLES = examples(
     shell_complete=of_fault_rows,
     help="These rows alone, by their first words.",
 )
-@click.option("--phases", default=1, show_default=True, type=click.IntRange(min=1), help="Of each row.")
-@click.option("--seeds", default=1, show_default=True, type=click.IntRange(min=1), help="Of each phase.")
+@click.option("--phases", default=1, show_default=True, type=WholeNumber(min=1), help="Of each row.")
+@click.option("--seeds", default=1, show_default=True, type=WholeNumber(min=1), help="Of each phase.")
 @click.option("--list", "listing", is_flag=True, help="Print the rows and what they expect.")
 @click.option("--out", type=click.Path(path_type=Path), help="Folder of faults.xml (JUnit), .html and .json.")
-@click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
+@click.option("--workers", type=WholeNumber(min=1), help="Processes. Default: one a core.")
 @click.option("--slow", is_flag=True, help="Also rows that run real processes: minutes.")
 @click.option(
     "--keep",

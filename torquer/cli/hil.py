@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from sim.errors import HarnessError
+from torquer.cli.numbers import Number, WholeNumber
 from torquer.cli.options import (
     JSON,
     SEEDS,
@@ -22,7 +23,7 @@ EXAMPLES = examples(
     "torquer hil microsat --bus socketcan:can0 --conformance coil --arm",
 )
 
-BUDGET = click.FloatRange(0.0)
+BUDGET = Number(0.0)
 """Below zero it would be broken in any run."""
 
 
@@ -35,10 +36,10 @@ BUDGET = click.FloatRange(0.0)
     "--seconds",
     default=60.0,
     show_default=True,
-    type=click.FloatRange(0.0, 1e6, min_open=True),
+    type=Number(0.0, 1e6, min_open=True),
     help="How long.",
 )
-@click.option("--tick-hz", type=click.IntRange(1, 100), help="Ticks a second. Default: the scenario's.")
+@click.option("--tick-hz", type=WholeNumber(1, 100), help="Ticks a second. Default: the scenario's.")
 @click.option(
     "--stimulus", default="plant", show_default=True, help="What sensors see: plant, RUN, LOG or FILE.toml."
 )
@@ -50,7 +51,7 @@ BUDGET = click.FloatRange(0.0)
     "--slips",
     default=0,
     show_default=True,
-    type=click.IntRange(0),
+    type=WholeNumber(0),
     help="Budget of ticks without answer or sample.",
 )
 @click.option(
@@ -67,14 +68,14 @@ BUDGET = click.FloatRange(0.0)
     "--warm-s",
     default=60.0,
     show_default=True,
-    type=click.FloatRange(0.0),
+    type=Number(0.0),
     help="From when on memory is judged, in a longer run.",
 )
 @click.option(
     "--deadman-s",
     default=5.0,
     show_default=True,
-    type=click.FloatRange(0.1, 3600.0),
+    type=Number(0.1, 3600.0),
     help="The coil board's dead-man.",
 )
 @click.option(

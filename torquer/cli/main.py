@@ -148,6 +148,8 @@ def _sentence(error: click.ClickException) -> str:
         known = [word for word in options if word.startswith("-")]
         return f"{error.message.rstrip('.')}{did_you_mean(error.option_name, known)}"
     text = error.format_message()
+    if isinstance(error, click.MissingParameter):
+        text = " ".join(text.split())  # a choice is listed by lines
     kind = error.param.type if isinstance(error, click.BadParameter) and error.param is not None else None
     if isinstance(kind, click.Choice):
         given = text.partition("'")[2].rpartition("' is not")[0].rpartition("'")[2]

@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from torquer.cli.numbers import Number
 from torquer.cli.options import JSON, examples, sentences
 from torquer.cli.satellite_options import asked, satellite, satellite_options
 
@@ -20,10 +21,8 @@ EXAMPLES = examples(
 @click.argument("name")
 @satellite_options
 @click.option("--backoff", default="shared", show_default=True, type=click.Choice(["shared", "per_coil"]))
-@click.option(
-    "--magnetometer-nt", default=200.0, show_default=True, type=click.FloatRange(0.0), help="Noise."
-)
-@click.option("--sun-deg", default=0.5, show_default=True, type=click.FloatRange(0.0), help="Noise.")
+@click.option("--magnetometer-nt", default=200.0, show_default=True, type=Number(0.0), help="Noise.")
+@click.option("--sun-deg", default=0.5, show_default=True, type=Number(0.0), help="Noise.")
 @click.option(
     "--bounds",
     default="exact",

@@ -13,13 +13,14 @@ import click
 from fsw.bus.open_bus import KINDS
 from sim.console import Console, detail, fail, print_document, speaking, warn
 from torquer.cli.completions import of_buses, of_laws, of_scenarios, of_settings
+from torquer.cli.numbers import WholeNumber
 
 if TYPE_CHECKING:
     from sim.scenario.schema import Scenario
 
 Parameters = ParamSpec("Parameters")
 
-SEEDS = click.IntRange(0, 2**64 - 1)
+SEEDS = WholeNumber(0, 2**64 - 1)
 BUSES = f"auto, {KINDS}"
 RUN_OR_LOG = click.argument("run_or_log", metavar="RUN|LOG", type=click.Path(path_type=Path))
 SETTINGS = click.option(
@@ -170,10 +171,25 @@ def law_and_settings(command: Callable[..., Any]) -> Callable[..., Any]:
     )
     @wraps(command)
     def run(*args: Any, law: str | None, settings: tuple[str, ...], **kwargs: Any) -> Any:  # noqa: ANN401  (as click calls it)
+        if law is not None:
+            _check_law(law)
         named = () if law is None else (f"control.law={law}",)
         return command(*args, settings=(*named, *settings), **kwargs)
 
     return run
+
+
+def _check_law(law: str) -> None:
+    """Refuse a file without the name of a law in it, and a name that is meant to be a file's.
+
+    Raises:
+        UsageError: with what to write.
+    """
+    file, _, name = law.rpartition(":")
+    if law.endswith(".py"):
+        raise click.UsageError(f"--law {law}: which law of the file? Write {law}:NAME")
+    if file and not file.endswith(".py") and Path(f"{file}.py").is_file():
+        raise click.UsageError(f"--law {law}: did you mean {file}.py:{name}?")
 
 
 def load_scenario(

@@ -8,6 +8,7 @@ from click.core import ParameterSource
 from fsw.bus.open_bus import KINDS
 from sim.errors import HarnessError
 from torquer.cli.completions import of_buses
+from torquer.cli.numbers import Number, WholeNumber
 from torquer.cli.options import JSON, SEEDS, SETTINGS, examples, load_scenario, sentences
 
 EXAMPLES = examples(
@@ -31,14 +32,14 @@ OF_A_LOG = ("scenario", "settings", "at_rest", "field_nt", "offset_nt", "coil_fi
 @click.option("--arm", is_flag=True, help="Let coils be driven on the bench.")
 @click.option("--at-rest", is_flag=True, help="A log of a bench: the satellite did not move.")
 @click.option(
-    "--rounds", default=1, show_default=True, type=click.IntRange(1, 100), help="Pulses of each polarity."
+    "--rounds", default=1, show_default=True, type=WholeNumber(1, 100), help="Pulses of each polarity."
 )
 @click.option("--field-nt", type=(float, float, float), help="Field around the bench, body axes.")
 @click.option(
     "--offset-nt",
     default=1000.0,
     show_default=True,
-    type=click.FloatRange(0.0, 1e5),
+    type=Number(0.0, 1e5),
     help="Largest offset of the magnetometer, by axis: --field-nt is compared so closely.",
 )
 @click.option(

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import click
 
+from torquer.cli.numbers import Number
 from torquer.cli.options import (
     COMPRESS,
     SEEDS,
@@ -30,7 +31,7 @@ WAITING_NOTE_S = 30.0
 @bus_option()
 @click.option(
     "--orbits",
-    type=click.FloatRange(min=0.0, min_open=True),
+    type=Number(min=0.0, min_open=True),
     help="How long to fly; default: as in the scenario.",
 )
 @click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of all random streams.")

@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sim.errors import HarnessError
+from torquer.cli.numbers import Number
 
 if TYPE_CHECKING:
     from sim.new_scenario.satellite import NewSatellite
 
-_ABOVE_0 = click.FloatRange(min=0.0, min_open=True)
+_ABOVE_0 = Number(min=0.0, min_open=True)
 _THREE = (float, float, float)
 _OPTIONS = (
     click.option("--tle", metavar="FILE", type=click.Path(path_type=Path), help="Orbit: two TLE lines."),
-    click.option("--altitude-km", type=click.FloatRange(150.0, 40_000.0), help="Orbit: circular."),
-    click.option("--inclination-deg", type=click.FloatRange(0.0, 180.0), help="Of the circular orbit."),
+    click.option("--altitude-km", type=Number(150.0, 40_000.0), help="Orbit: circular."),
+    click.option("--inclination-deg", type=Number(0.0, 180.0), help="Of the circular orbit."),
     click.option("--mass-kg", type=_ABOVE_0, help="Of a homogeneous box, with --size-m."),
     click.option("--size-m", type=_THREE, metavar="A B C", help="Its edges; the longest points up."),
     click.option("--inertia-kgm2", type=_THREE, metavar="A B C", help="Principal moments, kg m^2."),
@@ -83,8 +84,8 @@ def asked(figures: dict[str, Any], tle: Path | None) -> tuple[dict[str, Any], Pa
         tle = _optional("File with the TLE (Enter: a circular orbit)", _tle_file)
     if tle is None:
         for name, text, usual, kind in (
-            ("altitude_km", "Altitude, km", 550.0, click.FloatRange(150.0, 40_000.0)),
-            ("inclination_deg", "Inclination, deg", 97.6, click.FloatRange(0.0, 180.0)),
+            ("altitude_km", "Altitude, km", 550.0, Number(150.0, 40_000.0)),
+            ("inclination_deg", "Inclination, deg", 97.6, Number(0.0, 180.0)),
         ):
             if found[name] is None:
                 found[name] = click.prompt(text, usual, type=kind)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from sim.errors import HarnessError
+from torquer.cli.numbers import Number, WholeNumber
 from torquer.cli.options import (
     COMPRESS,
     JSON,
@@ -37,9 +38,7 @@ EXAMPLES = examples(
 @scenario_argument(required=False)
 @bus_option(" or virtual.")
 @click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
-@click.option(
-    "--orbits", type=click.FloatRange(min=0.0, min_open=True), help="Default: those of the scenario."
-)
+@click.option("--orbits", type=Number(min=0.0, min_open=True), help="Default: those of the scenario.")
 @click.option("--seed", type=SEEDS, help="Of all random streams. Default: 1.")
 @click.option("--out", type=click.Path(path_type=Path), help="Default: runs/<scenario>-<UTC time>.")
 @click.option(
@@ -49,7 +48,7 @@ EXAMPLES = examples(
     type=click.Path(path_type=Path),
     help="Fly a run of this campaign again.",
 )
-@click.option("--run", type=click.IntRange(min=0), help="Its number. With --from.")
+@click.option("--run", type=WholeNumber(min=0), help="Its number. With --from.")
 @click.option(
     "--expect",
     "expected",

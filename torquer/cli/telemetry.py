@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from torquer.cli.numbers import Number
 from torquer.cli.options import JSON, examples, sentences
 
 EXAMPLES = examples(
@@ -32,7 +33,7 @@ EXAMPLES = examples(
     "start_s",
     default=400.0,
     show_default=True,
-    type=click.FloatRange(min=20.0, max=100000.0),
+    type=Number(min=20.0, max=100000.0),
     help="Seconds of field from which the filter starts.",
 )
 @click.option(

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from torquer.cli.numbers import WholeNumber
 from torquer.cli.options import JSON, JUNIT, examples, sentences
 
 EXAMPLES = examples(
@@ -33,11 +34,11 @@ EXAMPLES = examples(
 @click.option("--quick", is_flag=True, help="Leave out flights.")
 @click.option(
     "--satellites",
-    type=click.IntRange(min=1),
+    type=WholeNumber(min=1),
     help="At most so many of each population. A claim on the median or mean of more is then not judged. "
     "Default: all.",
 )
-@click.option("--workers", type=click.IntRange(min=1), help="Processes. Default: one a core.")
+@click.option("--workers", type=WholeNumber(min=1), help="Processes. Default: one a core.")
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
@@ -69,7 +70,10 @@ def validate(
     record: bool,
     keep: Path | None,
 ) -> int:
-    """Check every published figure and reference: claim, source, our figure, verdict."""
+    """Check every published figure and reference: claim, source, our figure, verdict.
+
+    All take some hours, most of it flights.
+    """
     from sim.validate.command import validate
 
     return validate(reference, only, out, quick, workers, satellites, junit, flight_data, record, keep)

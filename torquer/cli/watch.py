@@ -3,6 +3,7 @@
 import click
 
 from torquer.cli.completions import of_buses, of_scenarios
+from torquer.cli.numbers import WholeNumber
 from torquer.cli.options import examples, sentences
 
 EXAMPLES = examples(
@@ -29,7 +30,7 @@ EXAMPLES = examples(
 @click.option("--foxglove", is_flag=True, help="For Foxglove, on this machine. Needs torquer[watch].")
 @click.option(
     "--port",
-    type=click.IntRange(0, 65535),
+    type=WholeNumber(0, 65535),
     help="Of the page (8025) or of the server for Foxglove (8765); 0: any that is free.",
 )
 @sentences
@@ -46,10 +47,13 @@ def watch(source: str, pace: str, scenario: str | None, web: bool, foxglove: boo
     from sim.watch import command
 
     chosen = command.watch(source, parse_pace(pace), scenario)
-    if web:
-        command.serve_page(chosen, 8025 if port is None else port)
-    elif foxglove:
-        command.serve_foxglove(chosen, 8765 if port is None else port)
-    else:
-        command.show_on_terminal(chosen)
+    try:
+        if web:
+            command.serve_page(chosen, 8025 if port is None else port)
+        elif foxglove:
+            command.serve_foxglove(chosen, 8765 if port is None else port)
+        else:
+            command.show_on_terminal(chosen)
+    except KeyboardInterrupt:  # as it usually ends: there is nothing to say
+        return 130
     return 0

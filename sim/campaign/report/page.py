@@ -7,6 +7,7 @@ from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report import pictures, text
 from sim.campaign.report.analysis import CampaignAnalysis
 from sim.campaign.report.verdicts import value_words, verdicts
+from sim.console import counted
 from sim.drawing.canvas import style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import PageHeader, PageSection, Tile, sections_page
@@ -26,7 +27,7 @@ def write_page(path: Path, campaign: Campaign, analysis: CampaignAnalysis, versi
             f"{runs} of {campaign.runs} runs of {text.length(campaign, analysis)}",
             f"scenario {campaign.base['name']}",
             f"seed {campaign.seed}",
-            f"{len(analysis.inputs)} dispersed numbers",
+            counted(len(analysis.inputs), "dispersed number"),
             f"torquer {version}",
         ],
         badges=_badges(campaign, analysis),
@@ -51,7 +52,7 @@ def _badges(campaign: Campaign, analysis: CampaignAnalysis) -> list[tuple[str, s
 def _tiles(campaign: Campaign, analysis: CampaignAnalysis) -> list[Tile]:
     probability = campaign.statistics.probability
     return [
-        Tile(figure.name.replace("_", " "), value_words(found.value), f"{100.0 * probability:g} % of runs")
+        Tile(text.figure_words(figure.name), value_words(found.value), f"{100.0 * probability:g} % of runs")
         for figure in analysis.figures[:MOST_TILES]
         for found in figure.percentiles
         if found.probability == probability

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics
 from sim.campaign.report.verdicts import WORDS, meets, proportion, value_words, verdicts
+from sim.console import counted
 from sim.drawing.page_parts import Table
 from sim.statistics.indices import IndexPercentile, Interpretation
 from sim.statistics.order_statistics import Percentile, runs_needed
@@ -16,6 +17,15 @@ INDEX_NAMES = {
     "rpe": "RPE, relative performance error",
     "ake": "AKE, absolute knowledge error",
 }
+UNITS = {
+    "deg": "deg",
+    "degps": "deg/s",
+    "s": "s",
+    "orbits": "orbits",
+    "percent": "%",
+    "j": "J",
+    "am2": "A m^2",
+}
 ALIKE = 0.01
 """Runs whose length differs by less than this part have the scenario's: it is rounded to ticks."""
 STRONGEST = 3
@@ -26,7 +36,7 @@ _ABSENT = "–"
 def lines(campaign: Campaign, analysis: CampaignAnalysis) -> list[str]:
     """A few lines for the terminal."""
     runs = analysis.done + len(analysis.failures)
-    heading = f"{campaign.name}: {runs} runs of {length(campaign, analysis)}"
+    heading = f"{campaign.name}: {counted(runs, 'run')} of {length(campaign, analysis)}"
     rows = [heading, f"  success    {proportion(analysis.success, campaign)}"]
     rows += [f"  required   {one}" for one in verdicts(campaign, analysis) if one.group == "requirement"]
     rows += [f"  {figure.name}: {_percentiles(figure)}" for figure in analysis.figures]
@@ -57,9 +67,22 @@ def length(campaign: Campaign, analysis: CampaignAnalysis) -> str:
     nominal = float(campaign.base["time"]["orbits"])
     shortest, longest = (analysis.orbits.min(), analysis.orbits.max()) if analysis.done else (nominal,) * 2
     if max(abs(shortest - nominal), abs(longest - nominal)) <= ALIKE * nominal:
-        return f"{nominal:g} orbits"
+        return _orbits(f"{nominal:g}")
     least, most = f"{shortest:.3g}", f"{longest:.3g}"
-    return f"{least} orbits" if least == most else f"{least} to {most} orbits"
+    return _orbits(least) if least == most else f"{least} to {most} orbits"
+
+
+def _orbits(number: str) -> str:
+    return f"{number} orbit{'' if number == '1' else 's'}"
+
+
+def figure_words(figure: str) -> str:
+    """The key of a figure in words, its unit last: pointing rms last orbit, deg."""
+    words = figure.split("_")
+    units = [word for word in words if word in UNITS]
+    return ", ".join(
+        (" ".join(word for word in words if word not in UNITS), *(UNITS[unit] for unit in units))
+    )
 
 
 def requirement_table(campaign: Campaign, analysis: CampaignAnalysis) -> Table:

@@ -54,8 +54,8 @@ const watch = (() => {
       text("when", last.time ? `${last.time} UTC · tick ${state.tick}` : "waiting for SYNC");
       text("numbers", [
         `${number(state.turn_deg, "°")} off the orbit axes`, `3σ ${number(state.sigma3_deg, "°")}`,
-        `rate ${number(state.rate_degps, "°/s", 3)}`, `field off ${number(state.field_off_deg, "°")}`,
-        `Sun off ${number(state.sun_off_deg, "°")}`,
+        `rate ${number(state.rate_degps, "°/s", 3)}`, `field off prediction ${number(state.field_off_deg, "°")}`,
+        `Sun off prediction ${number(state.sun_off_deg, "°")}`,
       ].join(" · "));
       text("load", `${(100 * state.bus_load).toFixed(1)} % of 125 kbit/s · ${last.frames_per_s.toFixed(0)} frames/s`);
       tellCoils();

@@ -1,11 +1,14 @@
 """A campaign is continued by the code that began it."""
 
+import shlex
 import sqlite3
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from sim.campaign.code_digest import code_digest
-from sim.campaign.command import campaign
+from sim.campaign.command import FlownCampaign, _watch, campaign
 from sim.campaign.results.row import RunRow, Status
 from sim.campaign.results.store import CODE, RESULTS, open_results
 from sim.errors import HarnessError
@@ -51,6 +54,39 @@ def test_by_other_code_it_is_still_shown_where_no_run_is_missing(begun, small):
         for run in range(1, 6):
             results.add(RunRow(run, Status.DONE, "", 1, True, "", {"limits_ok": 1}))
     assert resume(begun) == "continued"
+
+
+def test_the_command_that_continues_it_can_be_typed_as_it_stands(small, tmp_path, monkeypatch, capsys):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    folder = tmp_path / "runs of today"
+    folder.mkdir()
+    small.write(folder)
+    monkeypatch.setattr("sim.campaign.command._fly", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        resume(folder)
+    command = capsys.readouterr().err.partition("; ")[2].removesuffix(" flies the rest\n")
+    assert shlex.split(command) == ["torquer", "campaign", str(folder)]
+
+
+def test_time_left_is_told_from_the_second_run_on(monkeypatch, capsys):
+    now = iter((0.0, 100.0, 200.0))
+    monkeypatch.setattr("sim.campaign.command.time.monotonic", lambda: next(now))
+    with _watch("x", 4) as take:
+        for run in range(2):
+            take(RunRow(run, Status.DONE, "", 1, True, "", {}))
+    assert [line for line in capsys.readouterr().err.splitlines() if " of 4 runs" in line] == [
+        "1 of 4 runs, 0 failed",
+        "2 of 4 runs, 0 failed, 0.6 a minute, 3.3 min left",
+    ]
+
+
+def test_why_a_run_failed_is_told(small, monkeypatch):
+    monkeypatch.setattr("sim.campaign.command.verdicts", lambda campaign, analysis: [])
+    analysis = SimpleNamespace(failures={3: "the wheel is too fast"})
+    flown = FlownCampaign(Path(), small, analysis, (3,), ())
+    assert "run 3 failed (the first: the wheel is too fast); --retry flies again" in flown.complaints
 
 
 def test_results_of_before_the_digest_are_continued_with_a_warning(begun, capsys):

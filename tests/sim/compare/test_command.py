@@ -86,13 +86,14 @@ def test_what_a_user_can_mend_is_one_sentence(torquer, tmp_path, words, named):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_comparison_is_not_overwritten(torquer, tmp_path):
+@pytest.mark.parametrize(("file", "what"), [("compare.json", "a comparison"), ("run.json", "a run")])
+def test_what_a_folder_holds_is_not_mixed_with_a_comparison(torquer, tmp_path, file, what):
     (tmp_path / "old").mkdir()
-    (tmp_path / "old" / "compare.json").write_text("{}")
+    (tmp_path / "old" / file).write_text("{}")
     result = torquer("posat1", *SHORT, "--out", "old")
     assert result.exit_code == 2
-    assert "already holds a comparison" in result.stderr
-    assert (tmp_path / "old" / "compare.json").read_text() == "{}"
+    assert f"already holds {what}" in result.stderr
+    assert [path.name for path in (tmp_path / "old").iterdir()] == [file]
 
 
 @pytest.mark.parametrize(

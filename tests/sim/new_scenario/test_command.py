@@ -1,6 +1,7 @@
 """``torquer new``: the scenario it writes, and what it refuses to overwrite."""
 
 import json
+import re
 from math import inf, nan
 
 import pytest
@@ -95,6 +96,14 @@ def test_every_key_has_a_comment(satellite):
     plain = {line.split(" = ")[0] for line in keys if "#" not in line}
     assert plain <= {"name", "summary", "altitude_km", "inclination_deg", "tle", "angle_deg", "axis"}
     assert {"tick_hz", "levels_am2", "noise_nt", "law", "torque_nm"} <= named
+
+
+@pytest.mark.parametrize("satellite", SATELLITES.values(), ids=SATELLITES)
+def test_comments_stand_below_each_other(satellite):
+    lines = scenario_text(satellite, "mine.toml").splitlines()
+    commented = [line.split("# ", 1)[0] for line in lines if re.match(r"[a-z0-9_]+ = .*[^ ] +# ", line)]
+    assert len(commented) > 20
+    assert {max(34, len(value.rstrip()) + 1) - len(value) for value in commented} == {0}
 
 
 @pytest.mark.long

@@ -70,6 +70,18 @@ def test_a_log_that_is_read_at_once_tells_all_that_happens(log):
 
 
 @pytest.mark.parametrize(
+    ("options", "shows"),
+    [([], "show_on_terminal"), (["--web"], "serve_page"), (["--foxglove"], "serve_foxglove")],
+)
+def test_ctrl_c_is_how_it_ends(log, options, shows, monkeypatch):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(f"sim.watch.command.{shows}", interrupt)
+    assert run(log, *options) == (130, "", "")
+
+
+@pytest.mark.parametrize(
     ("options", "complaint"),
     [
         (["--web", "--foxglove"], "exclude each other"),

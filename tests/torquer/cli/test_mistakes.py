@@ -51,6 +51,26 @@ def test_what_may_have_been_meant(words, meant, capsys, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["sil", "--law", "my_law.py"], "--law my_law.py: which law of the file? Write my_law.py:NAME"),
+        (["compare", "--law", "my_law:damp"], "--law my_law:damp: did you mean my_law.py:damp?"),
+        (["completion"], "Missing argument '{bash|zsh|fish}'. Choose from: bash, zsh, fish"),
+        (["sil", "--orbits", "two"], "'two' is not a valid number"),
+        (["campaign", "microsat", "--runs", "2.5"], "'2.5' is not a valid whole number"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_what_to_write_instead_is_told(words, says, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "my_law.py").write_text("")
+    code, out, err = run(capsys, *words)
+    assert (code, out) == (2, "")
+    assert says in err
+    assert err.count("\n") == 1
+
+
 @pytest.mark.parametrize("words", [["sil", "zzz"], ["zzz"], ["sil", "--zzz"], ["sil", "--set", "zzz=1"]])
 def test_nothing_is_guessed_where_nothing_is_near(words, capsys):
     code, _, err = run(capsys, *words)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from sim.campaign.report import text
 
@@ -18,6 +19,19 @@ def test_lines_say_what_matters(campaign_of_40, analysis):
     assert "depends on initial_angle_deg +0.97" in "\n".join(lines)
     assert "  worst runs 39 (78.5), 38 (77), 37 (75.5), 36 (74), 35 (72.5)" in lines
     assert lines[-1] == "  failed     2, first run 7: run 7: <too> fast"
+
+
+@pytest.mark.parametrize(
+    ("key", "words"),
+    [
+        ("pointing_deg_rms_last_orbit", "pointing rms last orbit, deg"),
+        ("converged_at_s", "converged at, s"),
+        ("estimate_deg_within_3sigma", "estimate within 3sigma, deg"),
+        ("limits_ok", "limits ok"),
+    ],
+)
+def test_the_unit_of_a_figure_comes_last(key, words):
+    assert text.figure_words(key) == words
 
 
 def test_indices_are_judged_by_their_bounds(campaign_of_40, analysis):
