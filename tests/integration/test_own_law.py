@@ -68,7 +68,7 @@ def test_a_law_that_fails_fails_the_flight_without_a_traceback(torquer, folder, 
     [
         ("none.py:law", "none.py: cannot be read (No such file or directory)"),
         ("bad.py:lwa", "bad.py: there is no lwa in it"),
-        ("bad.py", "control.law: 'bad.py' is not allowed: allowed is 'pd'"),
+        ("bad.py", "--law bad.py: which law of the file? Write bad.py:NAME"),
         ("nobodys", "or the entry point of a package"),
     ],
 )
