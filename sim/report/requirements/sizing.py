@@ -11,7 +11,7 @@ from sim.design.theory.bodies import Body
 from sim.design.theory.feedforward import least_error
 from sim.scenario.schema import Scenario
 from sim.sizing.expectation import apart, expect
-from sim.sizing.levels import levels_against
+from sim.sizing.levels import MOST_LOAD, levels_against, two_digits
 
 Vec3 = tuple[float, float, float]
 
@@ -64,10 +64,13 @@ class Balance(NamedTuple):
 
 def balance(scenario: Scenario, torque_nm: Vec3, what: str) -> Balance:
     """What it takes: by the mean torque of the flight, and for the whole attitude by that of the scenario."""
-    dipole, expected = mean_dipole(scenario, torque_nm), expect(scenario)
-    load = max(dipole.needed / dipole.given, expected.load if what == "attitude" else 0.0)
-    level_am2 = levels_against(scenario, replace(expected, load=load))[2]
-    return Balance(load, level_am2, dipole.residual > dipole.torque)
+    dipole = mean_dipole(scenario, torque_nm)
+    load, of_dipole = dipole.needed / dipole.given, dipole.residual > dipole.torque
+    if what != "attitude":
+        return Balance(load, two_digits(scenario.coils.largest_am2 * load / MOST_LOAD), of_dipole)
+    expected = expect(scenario)
+    load = max(load, expected.load)
+    return Balance(load, levels_against(scenario, replace(expected, load=load))[2], of_dipole)
 
 
 def least_error_deg(scenario: Scenario, torque_nm: Vec3) -> float | None:

@@ -164,6 +164,13 @@ def test_what_balancing_takes_is_what_size_and_the_warning_say(dipole_am2):
     assert found.of_dipole
 
 
+def test_of_a_boom_no_level_is_told_that_would_turn_the_whole_attitude():
+    """Its heaviest axis is 200 times its lightest; coils need not turn it, but balance what disturbs it."""
+    scenario = sound(name="posat1-ekf").scenario
+    found = balance(scenario, scenario.disturbance.torque_nm, "axis")
+    assert found.level_am2 == pytest.approx(scenario.coils.largest_am2 * found.load / 0.1, rel=0.05)
+
+
 class TestWhatWouldDo:
     def test_a_level_that_is_fine_enough_is_no_longer_too_coarse(self):
         coarse = FOUND["coarse"]
