@@ -22,7 +22,7 @@ from sim.scenario.residual_errors import coil_errors, magnetometer_errors, readi
 from sim.scenario.schema import Scenario, flight_table
 from sim.sizing.expectation import expect, field_across
 from sim.sizing.ignored_keys import ignored_keys
-from sim.sizing.levels import levels_against
+from sim.sizing.levels import TOO_WEAK, levels_against
 from sim.sizing.torques import surface_torque
 from sim.sizing.unbegun_faults import unbegun_faults
 from sim.sizing.unsent_telecommands import unsent_telecommands
@@ -32,7 +32,6 @@ OLD_TLE_DAYS = 366.0
 """A TLE is good for days; what is a year from its epoch is another year's."""
 WILD_STEP, FAINT_STEP = 30.0, 1e-3
 """Change of rate by a pulse of the strongest level, in orbital rates: 0.1 to 0.5 in a sound design."""
-MOST_LOAD = 0.5
 FASTEST_DEGPS = 30.0
 LEAST_INCLINATION_DEG = 10.0
 NOISE_NT, NOISE_DEG = (1.0, 5000.0), (1e-3, 10.0)
@@ -108,7 +107,7 @@ def _load(scenario: Scenario) -> Iterator[str]:
     if scenario.coils.driver != "pulsed":
         return
     expectation = expect(scenario)
-    if expectation.load > MOST_LOAD:
+    if expectation.load > TOO_WEAK:
         high = levels_against(scenario, expectation)[2]
         yield (
             f"balancing the disturbance of {expectation.disturbance_nm:.2g} N m takes "

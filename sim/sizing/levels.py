@@ -24,6 +24,8 @@ FINE, COARSE = 20.0, 4.0
 """Orbital rate over the change of rate by a pulse of the least and of the strongest level."""
 MOST_LOAD = 0.1
 """Part of the coils' time that balancing should take at most."""
+TOO_WEAK = 0.5
+"""Part of it from which coils are too weak to point with."""
 
 
 def levels_for(body: Body, pulse_s: float) -> Levels:

@@ -17,6 +17,7 @@ from sim.report.requirements.settling import fell_back, left_again, slow, swings
 from sim.report.requirements.sizing import balance, gradient_level_am2, least_error_deg, pulse_turn_deg
 from sim.report.requirements.words import number, orbits, part
 from sim.scenario.schema import flight_table
+from sim.sizing.levels import TOO_WEAK
 
 TREND = 3
 """Half orbits from which a trend is determined."""
@@ -25,8 +26,6 @@ COARSE = 4.0
 error is about a fifth of the turn."""
 CONTRADICTED = 1.5
 """Times the error of the flight that the least one by linear theory may be."""
-LOADED = 0.5
-"""Part of what the coils can give from which they are too weak to balance the disturbance and to point."""
 LATE = 0.4
 """Fraction of a flight after which it is late for what must come first: attitude, low rate."""
 
@@ -140,7 +139,7 @@ def _any_law(missed: Missed, evidence: FlightEvidence) -> str:
 
 def _disturbance(missed: Missed, evidence: FlightEvidence) -> str:
     found = balance(evidence.scenario, evidence.torque_nm, missed.what)
-    if found.load < LOADED:
+    if found.load < TOO_WEAK:
         return ""
     by = "residual dipole" if found.of_dipole else "disturbance torque"
     return (
