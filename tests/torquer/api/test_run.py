@@ -40,14 +40,13 @@ def test_every_variable_says_its_unit_in_name_and_attributes(histories, flown):
 
 
 def test_truth_is_what_the_plant_recorded(flown):
+    truth = flown.truth
     with h5py.File(flown.path / "truth.h5") as file:
-        assert np.array_equal(flown.truth.b_body_t, file["b_body_t"])
+        assert np.array_equal(truth.b_body_t, file["b_body_t"])
         for source in file["torque_body_nm"]:
-            assert np.array_equal(
-                flown.truth.torque_body_nm.sel(source=source), file["torque_body_nm"][source]
-            )
-    assert flown.truth.pointing_deg[-1] == flown.summary["pointing_deg"]["final"]
-    assert flown.truth.axis1_deg[-1] == flown.summary["axis1_deg"]["final"]
+            assert np.array_equal(truth.torque_body_nm.sel(source=source), file["torque_body_nm"][source])
+    assert truth.pointing_deg[-1] == flown.summary["pointing_deg"]["final"]
+    assert truth.axis1_deg[-1] == flown.summary["axis1_deg"]["final"]
 
 
 def test_the_estimate_is_that_of_the_flight(flown):
