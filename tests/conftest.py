@@ -5,6 +5,7 @@ run and on the next machine. With ``HYPOTHESIS_PROFILE=dev`` they look for new o
 """
 
 import os
+import signal
 from pathlib import Path
 from shutil import which
 
@@ -14,6 +15,10 @@ from hypothesis import settings
 settings.register_profile("ci", derandomize=True, deadline=None, print_blob=True)
 settings.register_profile("dev", deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    # as of any command that a shell script runs with "&"; the processes that tests interrupt would inherit it
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 """Their tests, which a user copies with them, fly for many seconds and carry no mark of ours."""
