@@ -75,7 +75,17 @@ def one_process(scenario: str, orbits: float) -> Measured:
 
 def parts_of(scenario: str, orbits: float) -> dict[str, Any]:
     """Where the time of a tick goes."""
-    command = [sys.executable, str(BENCHMARKS / "fly_once.py"), scenario, str(orbits), "--parts"]
+    return figures_of("fly_once.py", scenario, str(orbits), "--parts")
+
+
+def plans_of(scenario: str, orbits: float) -> dict[str, Any]:
+    """What the plans of ``pulse_mpc`` cost."""
+    return figures_of("plan_once.py", scenario, str(orbits))
+
+
+def figures_of(*words: str) -> dict[str, Any]:
+    """What a script of ``benchmarks`` prints."""
+    command = [sys.executable, str(BENCHMARKS / words[0]), *words[1:]]
     done = subprocess.run(command, env=environment(), capture_output=True, text=True, check=True)
     figures: dict[str, Any] = json.loads(done.stdout)
     return figures
@@ -170,7 +180,13 @@ def measure(rounds: int, orbits: float) -> tuple[list[Row], list[float]]:
     return rows, overheads
 
 
-def page(rows: list[Row], overheads: list[float], parts: dict[str, dict[str, Any]], peer_version: str) -> str:
+def page(
+    rows: list[Row],
+    overheads: list[float],
+    parts: dict[str, dict[str, Any]],
+    plans: dict[str, dict[str, Any]],
+    peer_version: str,
+) -> str:
     """The page."""
     reference = rows[0].factors
     lines = [
@@ -204,6 +220,13 @@ def page(rows: list[Row], overheads: list[float], parts: dict[str, dict[str, Any
         f"({dearer_us[0]:.0f} to {dearer_us[-1]:.0f} in the rounds) than one of `microsat`, which estimates",
         "attitude, rate, magnetometer bias and torque.",
     ]
+    for scenario, figures in plans.items():
+        mean_ms, rare_ms = figures["mean_ms"], figures["percentile_99_ms"]
+        lines += [
+            "",
+            f"A plan of `pulse_mpc` takes {mean_ms:.2f} ms in the mean on `{scenario}`, one in a hundred",
+            f"more than {rare_ms:.2f} ms ({figures['plans']} plans, those that find no pulse among them).",
+        ]
     for scenario, figures in parts.items():
         lines += [
             "",
@@ -230,8 +253,10 @@ def main() -> None:
     options = parser.parse_args()
     peer_version = install_peer()
     rows, overheads = measure(options.rounds, options.orbits)
-    parts = {scenario: parts_of(scenario, options.orbits) for scenario in ("microsat", "realsat")}
-    options.out.write_text(page(rows, overheads, parts, peer_version), encoding="utf-8")
+    scenarios = ("microsat", "realsat")
+    parts = {scenario: parts_of(scenario, options.orbits) for scenario in scenarios}
+    plans = {scenario: plans_of(scenario, options.orbits) for scenario in scenarios}
+    options.out.write_text(page(rows, overheads, parts, plans, peer_version), encoding="utf-8")
     print(options.out)
 
 
