@@ -41,6 +41,10 @@ def main(scenario_name: str, orbits: float) -> None:
         path = Path(folder, "run")
         run_dir.begin(path, scenario, 1, ticks_of(scenario, orbits), "virtual", LOCKSTEP)
         fly_virtual(path, scenario, lambda tick: None)
+    if not plans_ms:
+        sys.exit(
+            f"{scenario_name}: pulse_mpc made no plan in {orbits:g} orbits, POINT is not reached; fly more"
+        )
     figures = {
         "plans": len(plans_ms),
         "mean_ms": float(np.mean(plans_ms)),

@@ -86,7 +86,9 @@ def plans_of(scenario: str, orbits: float) -> dict[str, Any]:
 def figures_of(*words: str) -> dict[str, Any]:
     """What a script of ``benchmarks`` prints."""
     command = [sys.executable, str(BENCHMARKS / words[0]), *words[1:]]
-    done = subprocess.run(command, env=environment(), capture_output=True, text=True, check=True)
+    done = subprocess.run(command, env=environment(), capture_output=True, text=True, check=False)
+    if done.returncode:
+        sys.exit(done.stderr.strip())
     figures: dict[str, Any] = json.loads(done.stdout)
     return figures
 
@@ -252,10 +254,10 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=PAGE)
     options = parser.parse_args()
     peer_version = install_peer()
-    rows, overheads = measure(options.rounds, options.orbits)
     scenarios = ("microsat", "realsat")
-    parts = {scenario: parts_of(scenario, options.orbits) for scenario in scenarios}
     plans = {scenario: plans_of(scenario, options.orbits) for scenario in scenarios}
+    parts = {scenario: parts_of(scenario, options.orbits) for scenario in scenarios}
+    rows, overheads = measure(options.rounds, options.orbits)
     options.out.write_text(page(rows, overheads, parts, plans, peer_version), encoding="utf-8")
     print(options.out)
 
