@@ -12,6 +12,7 @@
 # make sizing   flights of what torquer size judges, into docs/sizing.md: a quarter of an hour
 # make soak       72 simulated hours, and an hour on the bench in real time, into docs/soak.md
 # make gains      search the gains of every law for the bodies that compare ships gains for: some hours; stopped, it goes on where it was
+# make comparison every law that a body has a use for, on the same bodies, with those gains, into docs/comparison.md: an hour or two; stopped, it goes on where it was
 # make golden     record the golden logs again: after a change that means to alter the answers of fsw
 # make docs      build the documentation into build/docs, each warning an error: half a minute
 # make docs-gallery   the same, with notebooks and gallery executed: some minutes
@@ -35,7 +36,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test test-long lint docs docs-gallery notebooks test-vcan test-chromium gains golden validate fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv sil test test-long lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -103,6 +104,9 @@ bodies := microsat cubesat3u posat1 pitch-wheel microsat-wheel spinner
 gains: $(bodies:%=gains-%)
 gains-%: venv
 	$(bin)/torquer design $* --laws all --keep sim/design/tuning/found/$*.toml
+
+comparison: venv
+	$(bin)/python tools/comparison.py $(COMPARISON)
 
 golden: venv
 	$(bin)/python tests/golden/record.py

@@ -1,0 +1,211 @@
+"""Compare the laws on six satellites, and write docs/comparison.md with a picture of each.
+
+The flights are those of ``torquer compare BODY``. The table of a satellite is recorded in
+docs/comparison.json once it has flown whole; a satellite that the present code, gains and scenario have flown
+is not flown again. --render writes the page anew without flying. Exit code 1 where the limits were broken.
+"""
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
+from zlib import crc32
+
+from argument_types import count
+from comparison_picture import draw
+from jinja2 import Environment, StrictUndefined
+
+from fsw.core.laws.entry import Aim
+from sim.campaign.code_digest import code_digest
+from sim.compare.case import Driver
+from sim.compare.command import JSON as COMPARED
+from sim.compare.command import compare
+from sim.compare.score import Score
+from sim.compare.table import as_table, error_text, ranked
+from sim.design.tuning.cost import BY_RATE
+from sim.design.tuning.kept import FOLDER as GAINS
+from sim.drawing.page_parts import Table
+from sim.errors import HarnessError
+from sim.record.destination import check_file
+from sim.report.figures.controlled import Controlled
+from sim.scenario.schema import load
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGE, TEMPLATE = ROOT / "docs" / "comparison.md", ROOT / "tools" / "comparison.md.j2"
+SATELLITES = {
+    "microsat": "50 kg, three unequal moments, magnetometer and Sun sensor",
+    "cubesat3u": "a CubeSat of 3 units, long and slender",
+    "posat1": "50 kg with a gravity gradient boom, that holds an axis to the vertical and tumbles at first",
+    "pitch-wheel": "a wheel of constant speed along the pitch axis, the horizon for a sensor",
+    "microsat-wheel": "the 50 kg satellite with a wheel that is driven",
+    "spinner": "spins about its axis 1",
+}
+Record = dict[str, Any]
+
+
+class Compared(NamedTuple):
+    """A satellite whose laws have flown.
+
+    Attributes:
+        name: of the scenario.
+        what: the satellite, in words.
+        by: what the laws are judged by.
+        flown_s: length of a flight, s.
+        scores: best first, each aim for itself.
+        of_other_code: whether code, gains or scenario have changed since.
+    """
+
+    name: str
+    what: str
+    by: Controlled
+    flown_s: float
+    scores: Sequence[Score]
+    of_other_code: bool
+
+    @property
+    def picture(self) -> str:
+        """Its file, beside the page."""
+        return f"comparison-{self.name}.svg"
+
+    def best(self, driver: Driver) -> Score | None:
+        """The law with the least error over the last orbit among those that control what is judged."""
+        return min(self._judged(driver), key=lambda score: score.error_rms or 0.0, default=None)
+
+    def thriftiest(self, driver: Driver) -> Score | None:
+        """Of those that settled, the one that took least of the coils."""
+        settled = [score for score in self._judged(driver) if score.settle_orbits is not None]
+        return min(settled, key=lambda score: score.dipole_squared_a2m4s or 0.0, default=None)
+
+    def _judged(self, driver: Driver) -> list[Score]:
+        strays = BY_RATE if self.by.unit == "deg" else frozenset()
+        return [
+            score
+            for score in self.scores
+            if score.driver is driver and score.error_rms is not None and score.aim not in strays
+        ]
+
+
+def state_of(name: str) -> str:
+    """Of code, scenario and gains: a comparison by others is out of date."""
+    gains = GAINS / f"{name}.toml"
+    parts = (load(name).model_dump_json(), gains.read_text() if gains.exists() else "")
+    return f"{code_digest()} {crc32(json.dumps(parts).encode()):08x}"
+
+
+def fly(name: str, workers: int) -> Record:
+    """Compare the laws on a satellite, with the gains that ship: what is recorded."""
+    with TemporaryDirectory() as folder:
+        compare(name, (), None, "both", None, 1, workers, Path(folder))
+        return {**json.loads(Path(folder, COMPARED).read_text()), "state": state_of(name)}
+
+
+def read_record(path: Path) -> dict[str, Record]:
+    """What is recorded; nothing if there is no file.
+
+    Raises:
+        HarnessError: the file is none of this tool.
+    """
+    if not path.exists():
+        return {}
+    try:
+        records: dict[str, Record] = json.loads(path.read_text(encoding="utf-8"))
+        for name, record in records.items():
+            compared(name, record)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise HarnessError(f"{path}: no record of comparisons: {error}") from None
+    return records
+
+
+def compared(name: str, record: Record) -> Compared:
+    """A record as values, its scores ranked."""
+    by = Controlled(**record["judged"])
+    scores = [
+        Score(**{**row, "aim": Aim(row["aim"]), "driver": Driver(row["driver"])}) for row in record["rows"]
+    ]
+    is_old = record["state"] != state_of(name)
+    return Compared(name, SATELLITES[name], by, record["sim_seconds"], ranked(scores, by), is_old)
+
+
+def winner(score: Score | None, by: Controlled) -> str:
+    """A law and its error, for the first table."""
+    if score is None:
+        return "none"
+    return f"`{score.law}` {error_text(score.error_rms or 0.0, by.unit)} {by.unit}"
+
+
+def markdown(table: Table) -> str:
+    """A table of the page."""
+    rows = [table.head, ["---"] * len(table.head), *table.rows]
+    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+
+
+def page(satellites: Sequence[Compared]) -> str:
+    """The page: the template ``comparison.md.j2`` with the figures."""
+    environment = Environment(
+        undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
+    )
+    template = environment.from_string(TEMPLATE.read_text(encoding="utf-8"))
+    return template.render(
+        satellites=satellites,
+        tables={satellite.name: as_table(satellite.scores, satellite.by) for satellite in satellites},
+        drivers=list(Driver),
+        winner=winner,
+        markdown=markdown,
+        version=version("torquer"),
+    )
+
+
+def write(records: dict[str, Record], out: Path) -> None:
+    """The record, the page and its pictures."""
+    record_path(out).write_text(json.dumps(records, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+    satellites = [compared(name, records[name]) for name in SATELLITES if name in records]
+    for satellite in satellites:
+        draw(satellite.scores, satellite.by, out.with_name(satellite.picture))
+    out.write_text(page(satellites), encoding="utf-8")
+
+
+def record_path(out: Path) -> Path:
+    """Of the record, beside the page."""
+    return out.with_suffix(".json")
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Fly what is missing, write the page; 1 where limits were broken."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("bodies", nargs="*", metavar="BODY", help=f"default: {' '.join(SATELLITES)}")
+    parser.add_argument("--workers", type=count, default=os.cpu_count() or 1, help="processes")
+    parser.add_argument("--render", action="store_true", help="fly nothing")
+    parser.add_argument(
+        "--out", type=Path, default=PAGE, help="the page; its record and pictures lie beside it"
+    )
+    arguments = parser.parse_args(words)
+    for name in arguments.bodies:
+        if name not in SATELLITES:
+            parser.error(f"there is no satellite '{name}' here: choose among {', '.join(SATELLITES)}")
+    try:
+        check_file(arguments.out)
+        records = read_record(record_path(arguments.out))
+        for name in () if arguments.render else arguments.bodies or SATELLITES:
+            if name in records and not compared(name, records[name]).of_other_code:
+                print(f"{name}: flown already by this code, with these gains")
+                continue
+            records[name] = fly(name, arguments.workers)
+            write(records, arguments.out)
+        if arguments.render:
+            write(records, arguments.out)
+    except HarnessError as error:
+        print(f"comparison: {error}", file=sys.stderr)
+        return error.exit_code
+    print(arguments.out)
+    return int(any(row["limits_ok"] is False for record in records.values() for row in record["rows"]))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
