@@ -3,6 +3,7 @@
 # make test-long   those of over a second: many orbits, processes, waits in real time; on a CAN interface where there is one: a quarter of an hour
 # make lint   style, types, layers, generated code, pages and pictures
 # make validate   compute every claim and reference figure, into docs/validation.md: some hours; stopped, it goes on where it was
+# make same-flights SINCE=COMMIT   are all flights byte for byte those of the commit? then its records count as this code's: a quarter of an hour
 # make population   fly populations of random satellites, into docs/population.md: some hours; stopped, it goes on where it was
 # make pulse-limits   how near mpc and pulse_mpc come to the least error, over the coils and the disturbances, into docs/pulse-limits.md: ten minutes
 # make replay-elsewhere   does a log of 20 orbits replay with other processor features, into docs/replay.md
@@ -36,7 +37,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test test-long lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv sil test test-long lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate same-flights fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -139,6 +140,9 @@ bench: venv
 
 scaling: venv
 	$(bin)/python tools/scaling.py
+
+same-flights: venv
+	$(bin)/python tools/same_flights.py $(SINCE) --carry-over
 
 population: venv
 	$(bin)/python tools/population.py $(POPULATION)

@@ -44,7 +44,7 @@ def resolve(spec: str) -> str:
                 "bus 'virtual' joins nodes of one process: it cannot be opened by a node of its own"
             )
         case _:
-            raise BusError(f"unknown bus '{spec}': use {KINDS} or auto")
+            raise BusError(f"unknown bus '{spec}': use {KINDS} or auto; torquer sil has virtual too")
 
 
 def open_bus(spec: str) -> Bus:

@@ -2,10 +2,12 @@
 
 import signal
 from dataclasses import dataclass, replace
+from inspect import signature
 from itertools import islice
 from math import isfinite
 from operator import index
 from pathlib import Path
+from shlex import quote
 from threading import current_thread, main_thread
 from types import FrameType
 from typing import Any
@@ -25,6 +27,8 @@ LONGEST_S = 5.0
 """Processor time after which a call is aborted."""
 MOST_MEMORY = 1000
 """Numbers that a law may carry from one tick to the next."""
+ARGUMENTS = ("inputs", "memory", "setpoint", "config")
+"""Of a law, in this order."""
 ASKED_TWICE = 16
 """In each tick that is a multiple of this the law is called twice; a pure one gives the same answer."""
 
@@ -64,7 +68,7 @@ def withheld(control: ControlTable) -> str:
     """Why the source of the table's own law is not executed, as a sentence."""
     return (
         f"the run flew a law of its own ({flown(control)}), which is executed only where it is named again: "
-        f"--law {control.law}"
+        f"--law {quote(control.law)}"
     )
 
 
@@ -84,17 +88,30 @@ def declared(control: ControlTable) -> ControlLaw:
     found = own_code.load(control.law, control.law_sha256, GROUP)
     if isinstance(found, ControlLaw):
         parts = {"point": found.point, "acquire": found.acquire or found.point}
-        if wrong := [name for name, part in parts.items() if not callable(part)]:
-            raise TableError(f"{control.law}: {wrong[0]} is no function")
+        for name, part in parts.items():
+            _check_form(part, f"{control.law}: {name}")
         if not isinstance(found.aim, Aim):
             raise TableError(
                 f"{control.law}: its aim is none of {', '.join(f'Aim.{aim.name}' for aim in Aim)}"
             )
         return found
     if callable(found) and not isinstance(found, type):
+        _check_form(found, control.law)
         return ControlLaw(found)
     kind = f"the class {found.__name__}" if isinstance(found, type) else f"of type {type(found).__name__}"
     raise TableError(f"{control.law} is {kind}, not a law: neither a function nor a ControlLaw")
+
+
+def _check_form(form: object, what: str) -> None:
+    """Refuse what cannot be called with the arguments of a law, before it flies."""
+    if not callable(form):
+        raise TableError(f"{what} is no function")
+    try:
+        signature(form).bind(*ARGUMENTS)
+    except TypeError as error:
+        raise TableError(f"{what} cannot be called as a law, with {', '.join(ARGUMENTS)}: {error}") from None
+    except ValueError:  # one of a compiled module, which does not tell
+        return
 
 
 def with_own_law(config: ControlConfig, control: ControlTable) -> ControlConfig:
@@ -208,10 +225,13 @@ def _vector(name: str, values: object) -> tuple[float, float, float]:
 
 def _numbers(name: str, values: object) -> tuple[float, ...]:
     try:
-        given = islice(iter(values), MOST_MEMORY + 1)  # type: ignore[call-overload]  # whatever they gave
-        numbers = tuple(map(float, given))
+        given = list(islice(iter(values), MOST_MEMORY + 1))  # type: ignore[call-overload]  # whatever they gave
     except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name} is {_kind(values)}, not a sequence of numbers") from None
+    try:
+        numbers = tuple(map(float, given))
+    except (TypeError, ValueError, OverflowError):
+        numbers = tuple(_number(f"{name}[{at}]", value) for at, value in enumerate(given))  # tells which
     if len(numbers) > MOST_MEMORY:
         raise ValueError(f"{name} has more than {MOST_MEMORY} numbers")
     if not all(map(isfinite, numbers)):

@@ -125,7 +125,9 @@ class FlightTable(Section):
         ceilings = {
             "residual_dipole_am2": Ceiling(coils.largest_am2, "the largest dipole of a coil"),
             "torque_nm": Ceiling(
-                self._most_torque_nm, "what a coil gives in the mean, pulse and back-off, in a strong field"
+                self._most_torque_nm,
+                f"what a coil of {coils.largest_am2:g} A m^2 gives in the mean, pulse and back-off, in a "
+                "strong field",
             ),
             "coil_gain_percent": Ceiling(gain, "so that no sound coil is below fdir.weak_coil_part"),
         }

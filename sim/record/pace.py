@@ -13,13 +13,15 @@ class Pace:
 
 
 LOCKSTEP = Pace()
+FASTEST = 1e6
+"""No factor is as large."""
 
 
 def parse_pace(text: str) -> Pace:
     """``lockstep`` or ``realtime[:FACTOR]``.
 
     Raises:
-        HarnessError: anything else, or a factor that is not positive.
+        HarnessError: anything else, or a factor that is not between these.
     """
     kind, colon, factor = text.partition(":")
     if kind == "lockstep" and not colon:
@@ -29,6 +31,9 @@ def parse_pace(text: str) -> Pace:
             value = float(factor) if colon else 1.0
         except ValueError:
             value = 0.0
-        if 0.0 < value < 1e6:
+        if 0.0 < value < FASTEST:
             return Pace(value)
-    raise HarnessError(f"--pace {text}: write lockstep, realtime or realtime:FACTOR with a positive factor")
+    raise HarnessError(
+        f"--pace {text}: write lockstep, realtime or realtime:FACTOR with a factor above 0 "
+        f"and below {FASTEST:.0f}"
+    )

@@ -178,7 +178,7 @@ class TruthReader:
         self._path = path
         with self._damage_told():
             check_regular(path)
-            self._file = h5py.File(path, "r", locking=not being_written)
+            self._file = h5py.File(path, "r", locking=False if being_written else None)
         try:
             with self._damage_told():
                 self._names = _names(self._file, path.stat().st_size)

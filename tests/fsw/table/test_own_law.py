@@ -15,7 +15,7 @@ from fsw.core.laws.table import LAWS
 from fsw.input.schema import TableError
 from fsw.table import own_law
 from fsw.table.config import flight_config
-from fsw.table.own_law import GuardedLaw, LawError, declared, named
+from fsw.table.own_law import GuardedLaw, LawError, declared, named, withheld
 from fsw.table.table import flight_table, lay_over, load_flight_table
 
 LAW = """
@@ -36,6 +36,9 @@ mine = ControlLaw(point, acquire, Gains, Aim.RATE)
 plain = point
 number = 3
 broken = ControlLaw(3)
+short = lambda inputs, memory: Demand((0.0, 0.0, 0.0))
+lopsided = ControlLaw(point, acquire=lambda *, inputs: None)
+any_number = ControlLaw(lambda *arguments, more=1: Demand((0.0, 0.0, 0.0)))
 unsound = ControlLaw(point, gains=int)
 aimless = ControlLaw(point, aim="three_axis")
 pd = point
@@ -101,6 +104,13 @@ class TestInATable:
 DEFAULT_CRC = "3a164a7f"
 
 
+def test_why_it_is_withheld_ends_with_an_option_to_paste(tmp_path):
+    folder = tmp_path / "my laws"
+    folder.mkdir()
+    (folder / "laws.py").write_text(LAW)
+    assert withheld(table_of(folder).control).endswith(f"--law '{folder / 'laws.py'}:mine'")
+
+
 class TestLoaded:
     def test_with_its_gains_and_forms(self, folder):
         config = flight_config(table_of(folder, gains={"mine": {"push_am2": 0.25}})).control
@@ -114,6 +124,9 @@ class TestLoaded:
         assert declared(table_of(folder, "plain").control).aim is Aim.THREE_AXIS
         assert declared(table_of(folder, "mine").control).aim is Aim.RATE
 
+    def test_whatever_takes_four_arguments_is_a_form(self, folder):
+        assert callable(declared(table_of(folder, "any_number").control).point)
+
     @pytest.mark.parametrize(
         ("name", "gains", "what"),
         [
@@ -123,6 +136,8 @@ class TestLoaded:
             ("number", {}, "is of type int, not a law"),
             ("Gains", {}, "is the class Gains, not a law"),
             ("broken", {}, "point is no function"),
+            ("short", {}, "cannot be called as a law, with inputs, memory, setpoint, config: too many"),
+            ("lopsided", {}, "lopsided: acquire cannot be called as a law, with inputs, memory, setpoint"),
             ("unsound", {}, "int is no frozen dataclass"),
             ("aimless", {}, r"its aim is none of Aim\.THREE_AXIS"),
             ("missing", {}, "there is no missing in it"),
@@ -175,9 +190,9 @@ class TestInFlight:
             ((0.0, 0.0, 0.0), "it returns a tuple, not a Demand"),
             (Demand((0.0, float("nan"), 0.0)), "m_body_am2 is not finite: 0, nan, 0"),
             (Demand((0.0, 0.0)), "m_body_am2 has 2 numbers, not 3"),
-            (Demand("abc"), "m_body_am2 is a str, not a sequence of numbers"),
+            (Demand("abc"), "m_body_am2[0] is a str, not a number"),
             (Demand(None), "m_body_am2 is nothing"),
-            (Demand(np.zeros((3, 3))), "m_body_am2 is a ndarray"),
+            (Demand(np.zeros((3, 3))), "m_body_am2[0] is a ndarray, not a number"),
             (Demand(impulse_body_nms=(1.0, float("inf"), 0.0)), "impulse_body_nms is not finite"),
             (Demand(wheel_torque_nm=float("nan")), "wheel_torque_nm is not finite: nan"),
             (Demand(wheel_torque_nm=10**400), "wheel_torque_nm is a int, not a number"),
@@ -187,7 +202,9 @@ class TestInFlight:
             (Demand(pulse=(0.0, 1)), "pulse is not a coil 0 to 2 and a level -3 to 3"),
             (Demand(pulse="01"), "pulse is not a coil 0 to 2 and a level -3 to 3"),
             (Demand(memory=range(2000)), "memory has more than 1000 numbers"),
-            (Demand(memory=("x",)), "memory is a tuple"),
+            (Demand(memory=(1, 0.5, "x")), "memory[2] is a str, not a number"),
+            (Demand(memory=(10**400,)), "memory[0] is a int, not a number"),
+            (Demand(memory=3.5), "memory is a float, not a sequence of numbers"),
         ],
     )
     def test_only_a_whole_demand_gets_further(self, answer, what):

@@ -236,8 +236,8 @@ CONTINUOUS = {"driver": "continuous", "max_dipole_am2": 3.0, "on_fraction": 0.5}
     [
         ("residual_dipole_am2", {"coils": COILS}, 6.0, "the largest dipole of a coil"),
         ("residual_dipole_am2", {"coils": CONTINUOUS}, 3.0, "the largest dipole of a coil"),
-        ("torque_nm", {"coils": COILS}, 6.0 * 0.04 * 5e-5, "what a coil gives in the mean"),
-        ("torque_nm", {"coils": CONTINUOUS}, 3.0 * 0.5 * 5e-5, "what a coil gives in the mean"),
+        ("torque_nm", {"coils": COILS}, 6.0 * 0.04 * 5e-5, "what a coil of 6 A m^2 gives in the mean"),
+        ("torque_nm", {"coils": CONTINUOUS}, 3.0 * 0.5 * 5e-5, "what a coil of 3 A m^2 gives in the mean"),
         ("torque_variation_nm", {"uncertainty": {"torque_nm": 4e-8}}, 8e-8, "from one bound of the torque"),
         ("coil_gain_percent", {"fdir": {"weak_coil_part": 0.9}}, 10.0, "fdir.weak_coil_part"),
     ],

@@ -30,6 +30,7 @@ def test_pace(text, pace):
         "realtime:",
         "realtime:0",
         "realtime:-1",
+        "realtime:1000000",
         "realtime:fast",
         "realtime:nan",
         "realtime:inf",
@@ -37,7 +38,10 @@ def test_pace(text, pace):
     ],
 )
 def test_no_pace(text):
-    with pytest.raises(HarnessError, match="write lockstep, realtime or realtime:FACTOR") as caught:
+    with pytest.raises(
+        HarnessError,
+        match="write lockstep, realtime or realtime:FACTOR with a factor above 0 and below 1000000",
+    ) as caught:
         parse_pace(text)
     assert str(caught.value).startswith(f"--pace {text}: ")
     assert caught.value.exit_code == 2

@@ -122,6 +122,14 @@ def test_a_magnitude_that_no_history_has_is_refused(tmp_path, value):
         read_truth(tmp_path / "truth.h5")
 
 
+def test_it_is_read_beside_a_file_of_the_user_that_is_open(tmp_path):
+    path = tmp_path / "truth.h5"
+    write(path, 5, 5)
+    with h5py.File(path) as file:
+        assert_rows(read_truth(path), 5)
+        assert file["t_s"].shape == (5,)
+
+
 READ = """
 import sys
 from pathlib import Path

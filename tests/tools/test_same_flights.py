@@ -1,0 +1,104 @@
+"""Which flights differ between two versions, and what is carried over then."""
+
+import gzip
+import json
+
+import pytest
+import same_flights
+from same_flights import carry_over, different, main, scenarios
+
+from sim.campaign.code_digest import code_digest
+
+OLD, NEW = "0123456789abcdef", "fedcba9876543210"
+
+
+@pytest.fixture
+def records(tmp_path, monkeypatch):
+    """A repository with records by the old code and by another one."""
+    docs = tmp_path / "docs"
+    docs.mkdir()
+    text = json.dumps({"a": {"code": OLD}, "b": {"code": "another"}, "c": {"state": f"{OLD} 12345678"}})
+    (docs / "validation.json").write_text(text)
+    (docs / "faults.json.gz").write_bytes(gzip.compress(text.encode()))
+    monkeypatch.setattr(same_flights, "ROOT", tmp_path)
+    monkeypatch.setattr(same_flights, "exported", lambda commit, folder: None)
+    monkeypatch.setattr(same_flights, "run", lambda tree, *words: NEW if tree == tmp_path else OLD)
+    return docs
+
+
+def flights_of(before, now):
+    digests = iter((before, now))
+    return lambda tree, orbits, workers: next(digests)
+
+
+@pytest.mark.parametrize(
+    ("before", "now", "names"),
+    [
+        ({"a": "1", "b": "2"}, {"a": "1", "b": "2"}, []),
+        ({"a": "1", "b": "2"}, {"a": "1", "b": "3"}, ["b"]),
+        ({"a": "1"}, {"a": "1", "b": "2"}, ["b"]),
+        ({"a": "1", "b": "2"}, {"b": "2"}, ["a"]),
+    ],
+)
+def test_a_flight_differs_by_its_digest_or_where_one_version_lacks_it(before, now, names):
+    assert different(before, now) == names
+
+
+def test_what_is_carried_over_are_the_digests_of_the_old_code_alone(records):
+    assert carry_over(records, {OLD: NEW}) == ["validation.json: 2", "faults.json.gz: 2"]
+    for text in (
+        (records / "validation.json").read_bytes(),
+        gzip.decompress((records / "faults.json.gz").read_bytes()),
+    ):
+        found = json.loads(text)
+        assert (found["a"]["code"], found["b"]["code"]) == (NEW, "another")
+        assert found["c"]["state"] == f"{NEW} 12345678"
+
+
+def test_flights_that_differ_are_named_and_nothing_is_carried_over(records, capsys):
+    before = (records / "validation.json").read_bytes()
+    fly = flights_of({"microsat": "1", "posat1": "1"}, {"microsat": "1", "posat1": "2"})
+    assert main(["HEAD", "--carry-over"], fly) == 1
+    assert capsys.readouterr().out == "differs: posat1\n1 of 2 flights differ\n"
+    assert (records / "validation.json").read_bytes() == before
+
+
+def test_the_same_flights_are_carried_over_on_request(records, capsys):
+    before = (records / "validation.json").read_bytes()
+    assert main(["HEAD"], flights_of({"microsat": "1"}, {"microsat": "1"})) == 0
+    assert (records / "validation.json").read_bytes() == before
+    assert main(["HEAD", "--carry-over"], flights_of({"microsat": "1"}, {"microsat": "1"})) == 0
+    assert NEW in (records / "validation.json").read_text()
+    assert "1 flight the same byte for byte as by HEAD" in capsys.readouterr().out
+
+
+def test_the_digests_are_read_from_a_tree(monkeypatch):
+    assert same_flights.run(same_flights.ROOT, "-c", same_flights.DIGESTS).split()[0] == code_digest()
+
+
+def test_every_scenario_that_ships_is_flown():
+    assert {"microsat", "realsat", "spinner"} <= set(scenarios(same_flights.ROOT))
+
+
+def test_no_commit_is_one_sentence(capsys):
+    assert main(["no-such-commit"]) == 2
+    assert capsys.readouterr().err.startswith("same_flights: fatal: ")
+
+
+@pytest.mark.long
+def test_a_flight_has_the_same_digest_again_and_another_with_more_orbits():
+    digest = same_flights.flown(same_flights.ROOT, "microsat", 0.01)
+    assert same_flights.flown(same_flights.ROOT, "microsat", 0.01) == digest
+    assert same_flights.flown(same_flights.ROOT, "microsat", 0.02) != digest
+
+
+@pytest.mark.long
+def test_a_fault_has_the_same_digest_again_and_is_not_another_one():
+    first, again = (same_flights.faults(same_flights.ROOT, ["none", "mag-nan"]) for _ in range(2))
+    assert first == again
+    assert first["fault none"] != first["fault mag-nan"]
+
+
+def test_the_time_a_computer_takes_is_no_figure_at_any_depth():
+    row = {"cases": [{"wall_s": 1.5, "figures": {"worst step ms": 3.0, "pulses": 7}}], "code": OLD}
+    assert same_flights.figures(row) == {"cases": [{"figures": {"pulses": 7}}]}

@@ -1,0 +1,175 @@
+"""Are the flights of this code those of an earlier commit, byte for byte?
+
+    python tools/same_flights.py COMMIT [--orbits N] [--carry-over]
+
+For a change that means to alter no flight, such as one of a sentence. Both versions fly every shipped
+scenario and inject every fault once, but for those that kill processes; log, truth and summary, and what each fault did, must be equal. Exit
+code 1 if one is not. With --carry-over, and if all are, what docs/ has recorded by the commit counts as
+recorded by this code: the digests there are replaced.
+"""
+
+import argparse
+import gzip
+import hashlib
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from argument_types import count, positive
+
+from sim.console import counted
+from sim.errors import HarnessError
+
+ROOT = Path(__file__).resolve().parent.parent
+SCENARIOS = "sim/scenario/shipped"
+NO_FIGURES = frozenset(
+    {"wall_seconds", "realtime_factor", "wall_s", "worst step ms", "code", "otherwise_flown", "injected"}
+)
+"""Of a summary or a row of faults: the time that the computer took, the digest of the code, and words."""
+DIGESTS = """
+from sim.campaign.code_digest import code_digest
+from sim.fault_table.campaign import FAULT_CODE
+print(code_digest(), code_digest(FAULT_CODE))
+"""
+RECORDS = ("validation.json", "comparison.json", "faults.json.gz")
+"""In docs/; those that are there hold digests."""
+
+Digests = Mapping[str, str]
+Json = Any
+
+
+def run(tree: Path, *words: str) -> str:
+    """Python in a tree, on its own modules: what it prints. That a flight missed its aim is no error here.
+
+    Raises:
+        HarnessError: it failed otherwise.
+    """
+    environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONSAFEPATH": "1", "OPENBLAS_NUM_THREADS": "1"}
+    done = subprocess.run(
+        [sys.executable, *words], cwd=tree, env=environment, capture_output=True, text=True, check=False
+    )
+    if done.returncode not in (0, 1):
+        raise HarnessError(f"python {' '.join(words)} in {tree}: {done.stderr.strip()}")
+    return done.stdout
+
+
+def flown(tree: Path, scenario: str, orbits: float) -> str:
+    """The digest of log, truth and summary of a flight."""
+    with TemporaryDirectory() as folder:
+        out = Path(folder, "run")
+        words = ("sil", scenario, "--bus", "virtual", "--orbits", str(orbits), "--out", str(out), "--quiet")
+        run(tree, "-m", "torquer", *words)
+        summary = figures(json.loads((out / "summary.json").read_text()))
+        files = [_sha256((out / name).read_bytes()) for name in ("bus.log", "truth.h5")]
+        parts = [json.dumps(summary), *files]
+        return _sha256("\n".join(parts).encode())
+
+
+def faults(tree: Path, rows: Sequence[str] = ()) -> dict[str, str]:
+    """The digest of what each fault of the table did, once each; of some rows alone if they are named."""
+    with TemporaryDirectory() as folder:
+        kept = Path(folder, "faults.json")
+        chosen = [word for row in rows for word in ("--row", row)]
+        once = ["--phases", "1", "--seeds", "1", "--quiet"]
+        files = ("--keep", str(kept), "--out", str(Path(folder, "out")))
+        run(tree, "-m", "torquer", "faults", *once, *files, *chosen)
+        found = json.loads(kept.read_text())["rows"]
+    return {f"fault {row['row']}": _sha256(json.dumps(figures(row)).encode()) for row in found}
+
+
+def figures(value: Json) -> Json:
+    """Without what differs from run to run, or says the same in other words."""
+    if isinstance(value, dict):
+        return {key: figures(one) for key, one in value.items() if key not in NO_FIGURES}
+    return [figures(one) for one in value] if isinstance(value, list) else value
+
+
+def scenarios(tree: Path) -> list[str]:
+    """Those that ship."""
+    return sorted(path.stem for path in (tree / SCENARIOS).glob("*.toml"))
+
+
+def flights(tree: Path, orbits: float, workers: int) -> Digests:
+    """The digests of all flights of a tree."""
+    names = scenarios(tree)
+    with ThreadPoolExecutor(workers) as pool:
+        digests = dict(zip(names, pool.map(lambda name: flown(tree, name, orbits), names), strict=True))
+    print(f"{len(digests)} scenarios flown; faults now", file=sys.stderr, flush=True)
+    return digests | faults(tree)
+
+
+def different(before: Digests, now: Digests) -> list[str]:
+    """The flights that differ, or that only one version has."""
+    return sorted(name for name in before.keys() | now.keys() if before.get(name) != now.get(name))
+
+
+def carry_over(docs: Path, replaced: Mapping[str, str]) -> list[str]:
+    """Replace digests in the records; the files that had one, each with how many."""
+    said = []
+    for path in (docs / name for name in RECORDS if (docs / name).exists()):
+        packed = path.suffix == ".gz"
+        text = (gzip.decompress(path.read_bytes()) if packed else path.read_bytes()).decode()
+        digests = sum(text.count(f'"{old}') for old in replaced)
+        for old, new in replaced.items():
+            text = text.replace(f'"{old}', f'"{new}')
+        if digests:
+            path.write_bytes(gzip.compress(text.encode(), mtime=0) if packed else text.encode())
+            said.append(f"{path.name}: {digests}")
+    return said
+
+
+def exported(commit: str, folder: Path) -> None:
+    """The files of a commit.
+
+    Raises:
+        HarnessError: there is no such commit.
+    """
+    archive = subprocess.run(["git", "archive", commit], cwd=ROOT, capture_output=True, check=False)
+    if archive.returncode:
+        raise HarnessError(archive.stderr.decode().strip())
+    subprocess.run(["tar", "-x", "-C", str(folder)], input=archive.stdout, check=True)
+
+
+def _sha256(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
+def main(words: Sequence[str] | None = None, fly: Callable[..., Digests] = flights) -> int:
+    """Fly both, compare; 1 if a flight differs."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("commit", help="the earlier one")
+    parser.add_argument("--orbits", type=positive, default=1.0, help="of each flight of a scenario")
+    parser.add_argument("--workers", type=count, default=os.cpu_count() or 1, help="flights at once")
+    parser.add_argument("--carry-over", action="store_true", help="write the digests of this code in docs/")
+    arguments = parser.parse_args(words)
+    try:
+        with TemporaryDirectory() as folder:
+            exported(arguments.commit, Path(folder))
+            trees = (Path(folder), ROOT)
+            before, now = (fly(tree, arguments.orbits, arguments.workers) for tree in trees)
+            codes = [run(tree, "-c", DIGESTS).split() for tree in trees]
+    except HarnessError as error:
+        print(f"same_flights: {error}", file=sys.stderr)
+        return error.exit_code
+    apart = different(before, now)
+    if apart:
+        print(
+            "\n".join([*(f"differs: {name}" for name in apart), f"{len(apart)} of {len(now)} flights differ"])
+        )
+        return 1
+    print(f"{counted(len(now), 'flight')} the same byte for byte as by {arguments.commit}")
+    if arguments.carry_over:
+        print("\n".join(carry_over(ROOT / "docs", dict(zip(*codes, strict=True)))))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
