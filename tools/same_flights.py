@@ -3,9 +3,9 @@
     python tools/same_flights.py COMMIT [--orbits N] [--carry-over]
 
 For a change that means to alter no flight, such as one of a sentence. Both versions fly every shipped
-scenario and inject every fault once, but for those that kill processes; log, truth and summary, and what each fault did, must be equal. Exit
-code 1 if one is not. With --carry-over, and if all are, what docs/ has recorded by the commit counts as
-recorded by this code: the digests there are replaced.
+scenario and inject every fault once, but for those that kill processes; log, truth and summary, and what each
+fault did, must be equal. Exit code 1 if one is not. With --carry-over, and if all are, what docs/ has
+recorded by the commit counts as recorded by this code: the digests there are replaced.
 """
 
 import argparse
