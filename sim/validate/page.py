@@ -29,8 +29,8 @@ paper's figure, to which a number of the scenario was fitted; that it is met sho
 count. A paper tells one flight; what all starts give stands in the column *all starts*: least, median and
 most, and how many meet the tolerance. Settled means from then on to the end, for 600 s at least.
 
-A row that an earlier version has flown or judged has a star. A version whose flights are the same, byte for
-byte (`make same-flights`), is no other version.
+A star marks what other code has flown or judged. Code whose flights are the same, byte for byte
+(`make same-flights`), does not count as other code.
 """
 
 
