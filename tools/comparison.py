@@ -57,7 +57,7 @@ class Compared(NamedTuple):
         by: what the laws are judged by.
         flown_s: length of a flight, s.
         scores: best first, each aim for itself.
-        of_other_code: whether code, gains or scenario have changed since.
+        outdated: whether code, gains or scenario have changed since.
     """
 
     name: str
@@ -65,7 +65,7 @@ class Compared(NamedTuple):
     by: Controlled
     flown_s: float
     scores: Sequence[Score]
-    of_other_code: bool
+    outdated: bool
 
     @property
     def picture(self) -> str:
@@ -127,8 +127,8 @@ def compared(name: str, record: Record) -> Compared:
     scores = [
         Score(**{**row, "aim": Aim(row["aim"]), "driver": Driver(row["driver"])}) for row in record["rows"]
     ]
-    is_old = record["state"] != state_of(name)
-    return Compared(name, SATELLITES[name], by, record["sim_seconds"], ranked(scores, by), is_old)
+    outdated = record["state"] != state_of(name)
+    return Compared(name, SATELLITES[name], by, record["sim_seconds"], ranked(scores, by), outdated)
 
 
 def winner(score: Score | None, by: Controlled) -> str:
@@ -193,7 +193,7 @@ def main(words: Sequence[str] | None = None) -> int:
         check_file(arguments.out)
         records = read_record(record_path(arguments.out))
         for name in () if arguments.render else arguments.bodies or SATELLITES:
-            if name in records and not compared(name, records[name]).of_other_code:
+            if name in records and not compared(name, records[name]).outdated:
                 print(f"{name}: flown already by this code, with these gains")
                 continue
             records[name] = fly(name, arguments.workers)
