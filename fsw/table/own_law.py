@@ -107,7 +107,7 @@ def _check_form(form: object, what: str) -> None:
     if not callable(form):
         raise TableError(f"{what} is no function")
     try:
-        signature(form).bind(*ARGUMENTS)
+        signature(form, follow_wrapped=False).bind(*ARGUMENTS)
     except TypeError as error:
         raise TableError(f"{what} cannot be called as a law, with {', '.join(ARGUMENTS)}: {error}") from None
     except ValueError:  # one of a compiled module, which does not tell

@@ -20,6 +20,7 @@ from fsw.table.table import flight_table, lay_over, load_flight_table
 
 LAW = """
 from dataclasses import dataclass
+from functools import partial, wraps
 from fsw.own_law import Aim, ControlLaw, Demand, quantity
 
 @dataclass(frozen=True)
@@ -39,6 +40,9 @@ broken = ControlLaw(3)
 short = lambda inputs, memory: Demand((0.0, 0.0, 0.0))
 lopsided = ControlLaw(point, acquire=lambda *, inputs: None)
 any_number = ControlLaw(lambda *arguments, more=1: Demand((0.0, 0.0, 0.0)))
+wrapped = wraps(lambda inputs: None)(lambda inputs, memory, setpoint, config: point)
+bound = partial(lambda size, inputs, memory, setpoint, config: point, 0.5)
+one_too_many = partial(point, 1)
 unsound = ControlLaw(point, gains=int)
 aimless = ControlLaw(point, aim="three_axis")
 pd = point
@@ -124,8 +128,9 @@ class TestLoaded:
         assert declared(table_of(folder, "plain").control).aim is Aim.THREE_AXIS
         assert declared(table_of(folder, "mine").control).aim is Aim.RATE
 
-    def test_whatever_takes_four_arguments_is_a_form(self, folder):
-        assert callable(declared(table_of(folder, "any_number").control).point)
+    @pytest.mark.parametrize("name", ["any_number", "wrapped", "bound"])
+    def test_whatever_takes_four_arguments_is_a_form(self, folder, name):
+        assert callable(declared(table_of(folder, name).control).point)
 
     @pytest.mark.parametrize(
         ("name", "gains", "what"),
@@ -137,6 +142,7 @@ class TestLoaded:
             ("Gains", {}, "is the class Gains, not a law"),
             ("broken", {}, "point is no function"),
             ("short", {}, "cannot be called as a law, with inputs, memory, setpoint, config: too many"),
+            ("one_too_many", {}, "one_too_many cannot be called as a law"),
             ("lopsided", {}, "lopsided: acquire cannot be called as a law, with inputs, memory, setpoint"),
             ("unsound", {}, "int is no frozen dataclass"),
             ("aimless", {}, r"its aim is none of Aim\.THREE_AXIS"),
