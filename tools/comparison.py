@@ -32,6 +32,7 @@ from sim.design.tuning.kept import FOLDER as GAINS
 from sim.drawing.page_parts import Table
 from sim.errors import HarnessError
 from sim.record.destination import check_file
+from sim.record.run_dir import replace_file
 from sim.report.figures.controlled import Controlled
 from sim.scenario.schema import load
 
@@ -162,7 +163,7 @@ def page(satellites: Sequence[Compared]) -> str:
 
 def write(records: dict[str, Record], out: Path) -> None:
     """The record, the page and its pictures."""
-    record_path(out).write_text(json.dumps(records, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+    replace_file(record_path(out), (json.dumps(records, indent=1, sort_keys=True) + "\n").encode())
     satellites = [compared(name, records[name]) for name in SATELLITES if name in records]
     for satellite in satellites:
         draw(satellite.scores, satellite.by, out.with_name(satellite.picture))

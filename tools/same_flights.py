@@ -25,6 +25,7 @@ from argument_types import count, positive
 
 from sim.console import counted
 from sim.errors import HarnessError
+from sim.record.run_dir import replace_file
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENARIOS = "sim/scenario/shipped"
@@ -119,7 +120,7 @@ def carry_over(docs: Path, replaced: Mapping[str, str]) -> list[str]:
         for old, new in replaced.items():
             text = text.replace(f'"{old}', f'"{new}')
         if digests:
-            path.write_bytes(gzip.compress(text.encode(), mtime=0) if packed else text.encode())
+            replace_file(path, gzip.compress(text.encode(), mtime=0) if packed else text.encode())
             said.append(f"{path.name}: {digests}")
     return said
 
