@@ -3,6 +3,7 @@
 # make test-long   those of over a second: many orbits, processes, waits in real time; on a CAN interface where there is one: a quarter of an hour
 # make lint   style, types, layers, generated code, pages and pictures
 # make validate   compute every claim and reference figure, into docs/validation.md: some hours; stopped, it goes on where it was
+# make validate-recorded the same whole, but flights that this code has flown and judged count as docs/validation.json has them: a minute or two
 # make same-flights SINCE=COMMIT   are all flights byte for byte those of the commit? then its records count as this code's: a quarter of an hour
 # make population   fly populations of random satellites, into docs/population.md: some hours; stopped, it goes on where it was
 # make pulse-limits   how near mpc and pulse_mpc come to the least error, over the coils and the disturbances, into docs/pulse-limits.md: ten minutes
@@ -37,7 +38,7 @@ bin := .venv/bin
 installed := .venv/.installed
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test test-long lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate same-flights fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv sil test test-long lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate validate-recorded same-flights fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -114,6 +115,9 @@ golden: venv
 
 validate: venv
 	$(bin)/torquer validate --keep build/flights.jsonl
+
+validate-recorded: venv
+	$(bin)/torquer validate --recorded docs/validation.json --record
 
 fuzz: venv
 	TORQUER_FUZZ_FRAMES=1000000 TORQUER_FUZZ_MUTATIONS=1000 $(bin)/pytest -q --timeout 7200 tests/fuzz

@@ -19,9 +19,10 @@ from sim.validate.flight_rows import FlightRows, keep_flight, with_known
 from sim.validate.outcomes import read_record
 from sim.validate.page import as_json, line, loose, suites, tally
 from sim.validate.reference import reference
-from sim.validate.registry import all_studies, choose_studies, find_repository
+from sim.validate.registry import all_studies, choose_studies, find_repository, judging_digests
 from sim.validate.running.guard import claims_of, guarded
 from sim.validate.running.kept_results import keep_result, with_known_results
+from sim.validate.running.recorded import recorded_studies
 from sim.validate.running.results import ResultFiles
 
 PAGE = "validation.md"
@@ -39,6 +40,7 @@ def validate(
     flight_data: Path | None = None,
     record: bool = False,
     keep: Path | None = None,
+    recorded: Path | None = None,
 ) -> int:
     """Run the studies, print each outcome, write the page.
 
@@ -59,19 +61,22 @@ def validate(
         record: put the outcomes of each study that is done among those of ``validation.json``, and write the
             page of all.
         keep: file of flights; those in it, of this code, are not flown again, and each new one is added.
+        recorded: file of outcomes; those in it of flights that this code has flown and judged count.
 
     Returns:
         The exit code: 1 if a claim fails, else 0, also where some are not judged, which is said.
 
     Raises:
         HarnessError: reference data are malformed or missing, an id is unknown, a file cannot be written,
-            ``keep`` holds something else, or ``record`` does not keep such outcomes.
+            ``keep`` or ``recorded`` holds something else, or there are no such outcomes.
     """
     began = time.monotonic()
-    if record:
-        _check_record(folder, satellites)
+    for option, given in (("--record", record), ("--recorded", recorded)):
+        if given:
+            _check_whole(option, folder, satellites)
     there_are = _studies(folder, flight_data, satellites)
-    studies = choose_studies(there_are, only, quick)
+    known = {} if recorded is None else _recorded(recorded, there_are)
+    studies = choose_studies(there_are, only, quick, known)
     whole = folder is None and flight_data is None and not only and not quick and satellites is None
     results = _results(out, whole, record, there_are)
     written = {"--out": results.page, "the outcomes": results.figures, "--keep": keep, "--junit": junit}
@@ -80,8 +85,8 @@ def validate(
     rows = FlightRows(keep) if keep is not None else None
     if rows is not None:
         studies = with_known_results(with_known(studies, rows), rows)
-    given = folder is not None or flight_data is not None
-    studies = [guarded(study, (HarnessError,) if given else ()) for study in studies]  # the user's own files
+    passed = (HarnessError,) if folder is not None or flight_data is not None else ()  # the user's own files
+    studies = [guarded(study, passed) for study in studies]
     bar = sys.stderr.isatty()  # then the outcomes are printed after the progress bar
 
     def report(study: StudyResult) -> None:
@@ -89,7 +94,7 @@ def validate(
             _print(study)
         results.take(study, time.monotonic() - began)
 
-    if whole and keep is None:
+    if whole and keep is None and any(study.has_flights and study.tasks for study in studies):
         note("some hours of flights; with --keep FILE one that is stopped goes on, --quick leaves them out")
     with progress("validating", sum(len(study.tasks) for study in studies)) as watch:
         finished = run(studies, workers or os.cpu_count() or 1, watch, report, _keeper(rows))
@@ -138,15 +143,25 @@ def _data_files(folder: Path | None) -> Files:
     return {f"{file.name} of the data": file for file in files if file.suffix in DATA_SUFFIXES}
 
 
-def _check_record(folder: Path | None, satellites: int | None) -> None:
-    """Refuse what would put other outcomes in the place of those of the project."""
+def _check_whole(option: str, folder: Path | None, satellites: int | None) -> None:
+    """Refuse other outcomes than those of the project."""
     if folder is not None:
         raise HarnessError(
-            "--record keeps outcomes by the reference files that ship, not by those of another folder: leave "
-            "out --reference"
+            f"{option} is for outcomes by the reference files that ship, not by those of another folder: "
+            "leave out --reference"
         )
     if satellites is not None:
-        raise HarnessError("--record keeps outcomes of whole populations: leave out --satellites")
+        raise HarnessError(f"{option} is for outcomes of whole populations: leave out --satellites")
+
+
+def _recorded(path: Path, studies: Sequence[Study]) -> dict[str, Study]:
+    """The studies with recorded outcomes, by their ids."""
+    if not path.exists():
+        raise HarnessError(f"--recorded {path}: no such file; --record writes one")
+    known = recorded_studies(studies, read_record(path), judging_digests())
+    flown = sum(len(study.tasks) for study in studies if study.id in known)
+    note(f"{path}: {counted(flown, 'flight')} that this code has flown and judged, not flown again")
+    return known
 
 
 def _results(out: Path | None, whole: bool, record: bool, studies: Sequence[Study]) -> ResultFiles:
@@ -157,7 +172,8 @@ def _results(out: Path | None, whole: bool, record: bool, studies: Sequence[Stud
     before = read_record(figures) if record and figures is not None else None
     flown = [study for study in all_studies(None) if isinstance(study, FlightStudy)] if record else []
     claimed = {claim.id: claim for study in flown for claim in claims_of(study)}
-    return ResultFiles(page, figures, frozenset(study.id for study in studies), claimed, before)
+    ids = frozenset(study.id for study in studies)
+    return ResultFiles(page, figures, ids, judging_digests(), claimed, before)
 
 
 def _keeper(rows: FlightRows | None) -> Callable[[object], None] | None:

@@ -22,14 +22,17 @@ DIGITS = 6
 
 
 class Recorded(NamedTuple):
-    """An outcome, and the digest of the code of its flights, empty where there are none."""
+    """An outcome, and the digests of the code that flew and of the code that judged; empty: no flights."""
 
     outcome: ClaimOutcome
     code: str
+    judge: str = ""
 
 
 Record = Mapping[str, Recorded]
 """By the id of the claim."""
+Judges = Mapping[str, str]
+"""By the id of each study with flights: the digest of the code that judges them."""
 
 
 class _Row(BaseModel):
@@ -49,23 +52,28 @@ class _Row(BaseModel):
     where: str
     spread: Spread | None
     code: str
+    judge: str = ""
 
 
 class _File(RootModel[dict[str, _Row]]):
     """The whole file."""
 
 
-def as_record(finished: Sequence[StudyResult]) -> Record:
+def as_record(finished: Sequence[StudyResult], judges: Judges) -> Record:
     """What the file is to hold of them; a claim that is not judged is left out."""
     return {
-        outcome.claim.id: Recorded(outcome, code_digest() if done.study.has_flights else "")
+        outcome.claim.id: Recorded(outcome, code_digest(), judges.get(done.study.id, ""))
+        if done.study.has_flights
+        else Recorded(outcome, "")
         for done in finished
         for outcome in done.outcomes
         if outcome.verdict not in (ClaimVerdict.ABSENT, ClaimVerdict.TOO_FEW)
     }
 
 
-def with_record(before: Record, finished: Sequence[StudyResult], studies: Collection[str]) -> Record:
+def with_record(
+    before: Record, finished: Sequence[StudyResult], studies: Collection[str], judges: Judges
+) -> Record:
     """The outcomes of now and, of other studies, those before, sorted: what a study no longer claims goes.
 
     A claim whose data are not there now keeps its outcome.
@@ -74,33 +82,34 @@ def with_record(before: Record, finished: Sequence[StudyResult], studies: Collec
         before: what the file held.
         finished: what was run.
         studies: ids of all studies; a claim is of the one with the longest id that it begins with.
+        judges: digests of the code that judges flights.
     """
     run_now = {done.study.id for done in finished}
     claimed = {outcome.claim.id for done in finished for outcome in done.outcomes}
     kept = {
-        name: one
-        for name, one in before.items()
-        if name in claimed or _study_of(name, studies) not in run_now
+        name: one for name, one in before.items() if name in claimed or study_of(name, studies) not in run_now
     }
-    return dict(sorted({**kept, **as_record(finished)}.items()))
+    return dict(sorted({**kept, **as_record(finished, judges)}.items()))
 
 
-def _study_of(claim: str, studies: Collection[str]) -> str:
+def study_of(claim: str, studies: Collection[str]) -> str:
     """The study of a claim; empty where none has it."""
     return max((one for one in studies if f"{claim}.".startswith(f"{one}.")), key=len, default="")
 
 
-def outdated(record: Record, made: Mapping[str, Claim]) -> set[str]:
-    """The claims whose flights other code than this has flown, or that were judged by other limits or words.
+def outdated(record: Record, made: Mapping[str, Claim], judges: Judges) -> set[str]:
+    """The claims whose flights other code has flown or judged, or that now have other limits or words.
 
     Args:
         record: what was computed.
         made: the claims as this code makes them, by their ids; one that is not there counts as unchanged.
+        judges: digests of the code that judges flights.
     """
     return {
         name
-        for name, (outcome, code) in record.items()
-        if code not in ("", code_digest()) or made.get(name, outcome.claim) != outcome.claim
+        for name, (outcome, code, judge) in record.items()
+        if made.get(name, outcome.claim) != outcome.claim
+        or (code and (code, judge) != (code_digest(), judges.get(study_of(name, judges), "")))
     }
 
 
@@ -155,6 +164,7 @@ def _row(one: Recorded) -> _Row:
         where=outcome.where,
         spread=None if outcome.spread is None else _rounded_spread(outcome.spread),
         code=one.code,
+        judge=one.judge,
     )
 
 
@@ -163,7 +173,7 @@ def _recorded(name: str, row: _Row) -> Recorded:
     met = row.verdict is ClaimVerdict.PASS
     fitted = met and row.threshold is Threshold.FITTED  # however it was called when it was written
     verdict = ClaimVerdict.FITTED if fitted else row.verdict
-    return Recorded(ClaimOutcome(claim, verdict, row.ours, row.where, row.spread), row.code)
+    return Recorded(ClaimOutcome(claim, verdict, row.ours, row.where, row.spread), row.code, row.judge)
 
 
 def _rounded_spread(spread: Spread) -> Spread:

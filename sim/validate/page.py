@@ -30,7 +30,9 @@ count. A paper tells one flight; what all starts give stands in the column *all 
 most, and how many meet the tolerance. Settled means from then on to the end, for 600 s at least.
 
 A star marks what other code has flown or judged. Code whose flights are the same, byte for byte
-(`make same-flights`), does not count as other code.
+(`make same-flights`), does not count as other code. Rows without a star of flights that take hours may be of
+an earlier run of the same code: `torquer validate --recorded docs/validation.json` judges the whole with them
+in a minute or two, and flies what is missing.
 """
 
 

@@ -1,7 +1,8 @@
 """All studies, and the choice among them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import ModuleType
 
 from fsw.input.near import did_you_mean
 from sim.campaign.claim import Study
@@ -23,6 +24,16 @@ from sim.validate.review import (
     wheel,
 )
 from sim.validate.review.rigid import fixed_wheel, pointing
+from sim.validate.running.judging_code import judging_digest
+
+MODULES: tuple[ModuleType, ...] = (
+    *(computed, prediction, minimisers, posat1, microsat, shipped, optimal_pulses, cells),
+    *(damping, spin, wheel, one_axis, feedback, sliding, optimal, predictive, fixed_wheel, pointing),
+    *(driven_wheel, claims, wirings, calibrated),
+)
+"""Those that make studies, beside those of the reference files."""
+OF_SATELLITES = (optimal_pulses, cells, claims, calibrated)
+"""Those whose studies fly populations."""
 
 
 def all_studies(satellites: int | None = None) -> list[Study]:
@@ -31,33 +42,30 @@ def all_studies(satellites: int | None = None) -> list[Study]:
     Raises:
         HarnessError: reference data that ship are missing.
     """
-    return [
-        *reference.shipped_studies(),
-        *computed.studies(),
-        *prediction.studies(),
-        *minimisers.studies(),
-        *posat1.studies(),
-        *microsat.studies(),
-        *shipped.studies(),
-        *optimal_pulses.studies(satellites),
-        *cells.studies(satellites),
-        *(
-            study
-            for section in (
-                *(damping, spin, wheel, one_axis, feedback, sliding, optimal, predictive),
-                *(fixed_wheel, pointing),
-            )
-            for study in section.studies()
-        ),
-        *driven_wheel.studies(),
-        *claims.studies(satellites),
-        *wirings.studies(),
-        *calibrated.studies(satellites),
-    ]
+    made = [study for module in MODULES for study in _made_by(module, satellites)]
+    return [*reference.shipped_studies(), *made]
 
 
-def choose_studies(studies: Sequence[Study], only: Sequence[str], quick: bool) -> list[Study]:
-    """The studies whose ids begin with one of ``only`` (all, if it is empty); ``quick`` leaves out flights.
+def judging_digests() -> dict[str, str]:
+    """By the id of each study with flights: what tells the code that judges them from other code."""
+    return {
+        study.id: judging_digest(module.__name__)
+        for module in MODULES
+        for study in _made_by(module, None)
+        if study.has_flights
+    }
+
+
+def choose_studies(
+    studies: Sequence[Study], only: Sequence[str], quick: bool, known: Mapping[str, Study]
+) -> list[Study]:
+    """The studies to run.
+
+    Args:
+        studies: all.
+        only: first words of the ids of those that are meant; none: all.
+        quick: leave out flights.
+        known: by their ids, studies that take the place of flights.
 
     Raises:
         HarnessError: a word of ``only`` matches no study, or no study is left.
@@ -68,11 +76,20 @@ def choose_studies(studies: Sequence[Study], only: Sequence[str], quick: bool) -
             raise HarnessError(
                 f"--only {word}: no such claims{did_you_mean(word, ids)}; there are {', '.join(ids)}"
             )
-    studies_left = [study for study in studies if not only or any(_begins(study.id, word) for word in only)]
-    studies_left = [study for study in studies_left if not (quick and study.has_flights)]
+    meant = [study for study in studies if not only or any(_begins(study.id, word) for word in only)]
+    studies_left = [
+        known.get(study.id, study)
+        for study in meant
+        if study.id in known or not (quick and study.has_flights)
+    ]
     if not studies_left:
         raise HarnessError("--quick leaves out flights, and --only names nothing else")
     return studies_left
+
+
+def _made_by(module: ModuleType, satellites: int | None) -> Sequence[Study]:
+    studies: Sequence[Study] = module.studies(satellites) if module in OF_SATELLITES else module.studies()
+    return studies
 
 
 def find_repository(start: Path) -> Path | None:

@@ -12,6 +12,7 @@ EXAMPLES = examples(
     "torquer validate --only population --satellites 20",
     "torquer validate --only review --record",
     "torquer validate --keep build/flights.jsonl --out validation.md",
+    "torquer validate --recorded docs/validation.json --out validation.md",
 )
 
 
@@ -55,6 +56,12 @@ EXAMPLES = examples(
     type=click.Path(path_type=Path),
     help="Keep each flight here; a run that was stopped flies those that are missing.",
 )
+@click.option(
+    "--recorded",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Outcomes as --record writes them: flights that this code has flown and judged count from there.",
+)
 @JUNIT
 @JSON
 @sentences
@@ -69,6 +76,7 @@ def validate(
     junit: Path | None,
     record: bool,
     keep: Path | None,
+    recorded: Path | None,
 ) -> int:
     """Check every published figure and reference: claim, source, our figure, verdict.
 
@@ -76,4 +84,6 @@ def validate(
     """
     from sim.validate.command import validate
 
-    return validate(reference, only, out, quick, workers, satellites, junit, flight_data, record, keep)
+    return validate(
+        reference, only, out, quick, workers, satellites, junit, flight_data, record, keep, recorded
+    )

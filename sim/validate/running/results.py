@@ -9,7 +9,7 @@ from sim.campaign.runner import StudyResult
 from sim.console import say
 from sim.errors import HarnessError
 from sim.record.run_dir import replace_file
-from sim.validate.outcomes import Record, as_text, outdated, with_record
+from sim.validate.outcomes import Judges, Record, as_text, outdated, with_record
 from sim.validate.page import render
 
 
@@ -21,6 +21,7 @@ class ResultFiles:
         page: None: not written.
         figures: the file of outcomes; None: not written.
         studies: ids of all studies.
+        judges: digests of the code that judges flights.
         claimed: claims that are made, by all studies that tell them beforehand, by their ids.
         before: what ``figures`` held of all studies, where the outcomes are put among those; None: it is to
             hold those of this run alone.
@@ -30,6 +31,7 @@ class ResultFiles:
     page: Path | None
     figures: Path | None
     studies: frozenset[str]
+    judges: Judges
     claimed: Mapping[str, Claim] = field(default_factory=dict)
     before: Record | None = None
     done: list[StudyResult] = field(default_factory=list)
@@ -42,13 +44,15 @@ class ResultFiles:
         """
         self.done.append(study)
         if self.before is not None:
-            known = with_record(self.before, self.done, self.studies)
+            known = with_record(self.before, self.done, self.studies, self.judges)
             outcomes, unknown = (
                 [one.outcome for one in known.values()],
                 sorted(self.claimed.keys() - known.keys()),
             )
             # no details: those of a part would stand for the whole
-            self._write(known, render(outcomes, [], wall_s, outdated(known, self.claimed), unknown))
+            self._write(
+                known, render(outcomes, [], wall_s, outdated(known, self.claimed, self.judges), unknown)
+            )
 
     def finish(self, finished: Sequence[StudyResult], wall_s: float) -> None:
         """All studies are done; say which files there are.
@@ -57,9 +61,9 @@ class ResultFiles:
             HarnessError: a file cannot be written.
         """
         if self.before is None:
-            known = with_record({}, finished, self.studies)
+            known = with_record({}, finished, self.studies, self.judges)
             outcomes = [outcome for study in finished for outcome in study.outcomes]
-            self._write(known, render(outcomes, finished, wall_s, outdated(known, self.claimed)))
+            self._write(known, render(outcomes, finished, wall_s, outdated(known, self.claimed, self.judges)))
         for name, file in (("figures", self.figures), ("page", self.page)):
             if file is not None:
                 say(f"{name}: {file}")

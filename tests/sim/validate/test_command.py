@@ -179,6 +179,62 @@ class TestCommand:
         assert self.call("--only", "a", "--record", "--out", page).exit_code == 0
         assert "PASS \\* |\n" in page.read_text(), "its limit is another now"
 
+    @pytest.fixture
+    def recorded(self, tmp_path, monkeypatch, study):
+        """The record of a study with flights, and what is flown after it; there is another study without."""
+        flown = []
+
+        def fly():
+            flown.append("a")
+            return 1.5
+
+        flight = replace(study("a", [], has_flights=True), tasks=(fly,))
+        flight = replace(flight, conclude=lambda results: [Claim("a", "", "", "1").judge(results[0])])
+        monkeypatch.setattr(command, "all_studies", lambda satellites: [flight, study("b", [2.0])])
+        monkeypatch.setattr(command, "judging_digests", lambda: {"a": "by this"})
+        assert self.call("--only", "a", "--record", "--out", tmp_path / "page.md").exit_code == 0
+        flown.clear()
+        return tmp_path / "page.json", flown
+
+    @pytest.mark.parametrize("words", [(), ("--quick",)])
+    def test_what_is_recorded_is_judged_whole_without_being_flown(self, recorded, words):
+        figures, flown = recorded
+        result = self.call("--recorded", figures, "--out", figures.parent / "whole.md", *words)
+        assert (result.exit_code, flown) == (0, [])
+        assert "2 claims met, 0 failed" in result.stdout
+        assert f"{figures}: 1 flight that this code has flown and judged, not flown again\n" in result.stderr
+
+    def test_what_other_code_has_recorded_is_flown_again_and_left_out_by_quick(self, recorded, monkeypatch):
+        figures, flown = recorded
+        monkeypatch.setattr(command, "judging_digests", lambda: {"a": "by other"})
+        quick = self.call("--recorded", figures, "--quick")
+        assert ("1 claim met" in quick.stdout, flown) == (True, [])
+        whole = self.call("--recorded", figures, "--out", figures.parent / "whole.md")
+        assert ("2 claims met" in whole.stdout, flown) == (True, ["a"])
+
+    def test_a_recorded_figure_beyond_its_limit_is_exit_code_1(self, recorded):
+        figures, flown = recorded
+        figures.write_text(figures.read_text().replace('"high":"Infinity"', '"high":1.0', 1))
+        result = self.call("--recorded", figures, "--quick")
+        assert (result.exit_code, flown) == (1, [])
+        assert "FAIL   a: : 1.5 (<= 1, own choice)" in result.stdout
+
+    @pytest.mark.parametrize(
+        ("words", "why"),
+        [
+            (("--recorded", "none.json"), "--recorded none.json: no such file; --record writes one"),
+            (("--recorded", "notes.txt"), "notes.txt: no outcomes of torquer validate: "),
+            (("--recorded", "page.json", "--satellites", "2"), "--recorded is for outcomes of whole populat"),
+            (("--recorded", "page.json", "--reference", DATA), "--recorded is for outcomes by the reference"),
+        ],
+    )
+    def test_a_record_that_cannot_count_is_refused(self, recorded, monkeypatch, words, why):
+        monkeypatch.chdir(recorded[0].parent)
+        Path("notes.txt").write_text("mine\n")
+        result = self.call("--quick", *words)
+        assert (result.exit_code, result.stdout, result.stderr.count("\n")) == (2, "", 1)
+        assert result.stderr.startswith(f"torquer: {why}")
+
     def test_a_kill_while_outcomes_are_written_leaves_those_before(self, tmp_path, monkeypatch, study):
         parts = [study("a", [1.0])]
         monkeypatch.setattr(command, "all_studies", lambda satellites: parts)
@@ -197,8 +253,8 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("words", "why"),
         [
-            (("--satellites", "2"), "--record keeps outcomes of whole populations: leave out --satellites"),
-            (("--reference", DATA), "--record keeps outcomes by the reference files that ship"),
+            (("--satellites", "2"), "--record is for outcomes of whole populations: leave out --satellites"),
+            (("--reference", DATA), "--record is for outcomes by the reference files that ship"),
         ],
     )
     def test_outcomes_of_less_or_of_other_files_are_not_recorded(self, tmp_path, words, why):

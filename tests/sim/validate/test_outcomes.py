@@ -22,7 +22,7 @@ from sim.validate.outcomes import (
 
 CLAIM = Claim("a.b", "Least", "Somebody", "deg", high=2.0, threshold=Threshold.PAPER, wide="for this reason")
 SPREAD = Spread(flights=12, meet=11, least=1.25, median=1.5, most=inf)
-ROW = Recorded(CLAIM.judge(1.5, "flight 7", SPREAD), "5eed")
+ROW = Recorded(CLAIM.judge(1.5, "flight 7", SPREAD), "5eed", "ca5e")
 
 
 @pytest.fixture
@@ -30,12 +30,12 @@ def path(tmp_path):
     return tmp_path / "validation.json"
 
 
-def test_a_claim_that_was_judged_is_recorded_with_the_code_of_its_flights(study):
+def test_a_claim_that_was_judged_is_recorded_with_the_code_that_flew_and_the_code_that_judged(study):
     absent = ClaimOutcome(Claim("a.c", "No data", "Nobody", ""), ClaimVerdict.ABSENT)
     flown = StudyResult(study("a", [], has_flights=True), (CLAIM.judge(1.5), absent), (), 1.0)
     computed = StudyResult(study("d", []), (Claim("d", "", "", "1").judge(1.0),), (), 1.0)
-    assert as_record([flown, computed]) == {
-        "a.b": Recorded(CLAIM.judge(1.5), code_digest()),
+    assert as_record([flown, computed], {"a": "by this", "d": "of no flight"}) == {
+        "a.b": Recorded(CLAIM.judge(1.5), code_digest(), "by this"),
         "d": Recorded(Claim("d", "", "", "1").judge(1.0), ""),
     }
 
@@ -44,7 +44,7 @@ def test_the_new_outcome_stands_for_the_old_one_and_those_of_other_studies_stay(
     now = StudyResult(
         study("a", []), (Claim("a.b", "", "", "1").judge(1.9), Claim("a.0", "", "", "1").judge(1.0)), (), 1.0
     )
-    found = with_record({"b.x": ROW, "a.b": ROW}, [now], {"a", "b"})
+    found = with_record({"b.x": ROW, "a.b": ROW}, [now], {"a", "b"}, {})
     assert list(found) == ["a.0", "a.b", "b.x"]
     assert found["b.x"] == ROW
     assert found["a.b"].outcome.ours == 1.9
@@ -53,20 +53,20 @@ def test_the_new_outcome_stands_for_the_old_one_and_those_of_other_studies_stay(
 def test_a_claim_that_its_study_no_longer_makes_does_not_stay(study):
     now = StudyResult(study("a", []), (Claim("a.b", "", "", "1").judge(1.0),), (), 1.0)
     before = {name: ROW for name in ("a.b", "a.gone", "a.part.c", "ab.c", "of_no_study.d")}
-    assert list(with_record(before, [now], {"a", "a.part", "ab"})) == [
+    assert list(with_record(before, [now], {"a", "a.part", "ab"}, {})) == [
         "a.b",
         "a.part.c",
         "ab.c",
         "of_no_study.d",
     ]
     part = StudyResult(study("a.part", []), (), (), 1.0)
-    assert "a.part.c" not in with_record(before, [part], {"a", "a.part", "ab"})
+    assert "a.part.c" not in with_record(before, [part], {"a", "a.part", "ab"}, {})
 
 
 def test_a_claim_whose_data_are_not_there_keeps_its_outcome(study):
     absent = ClaimOutcome(Claim("a.b", "", "", "1"), ClaimVerdict.ABSENT)
     now = StudyResult(study("a", []), (absent,), (), 1.0)
-    assert with_record({"a.b": ROW, "a.gone": ROW}, [now], {"a"}) == {"a.b": ROW}
+    assert with_record({"a.b": ROW, "a.gone": ROW}, [now], {"a"}, {}) == {"a.b": ROW}
 
 
 def test_the_file_holds_a_claim_a_line_and_is_read_back(path, tmp_path):
@@ -109,14 +109,24 @@ def test_what_is_fitted_is_not_met_however_it_was_written(path):
 
 def test_flights_of_other_code_are_told_from_those_of_this_and_from_what_has_none():
     code = {"a": code_digest(), "b": "", "c": "5eed", "d": "unknown"}
-    assert outdated({name: ROW._replace(code=of) for name, of in code.items()}, {}) == {"c", "d"}
+    assert outdated({name: ROW._replace(code=of, judge="") for name, of in code.items()}, {}, {}) == {
+        "c",
+        "d",
+    }
+
+
+def test_a_claim_that_other_code_has_judged_is_outdated():
+    ours, other = (ROW._replace(code=code_digest(), judge=judge) for judge in ("by this", "5eed"))
+    computed = ROW._replace(code="")
+    record = {"a.b": ours, "a.c": other, "a.part.d": ours, "d.e": computed, "gone.f": ours}
+    assert outdated(record, {}, {"a": "by this", "a.part": "by that"}) == {"a.c", "a.part.d", "gone.f"}
 
 
 def test_a_claim_that_is_judged_by_another_limit_now_is_outdated():
-    row = ROW._replace(code=code_digest())
+    row = ROW._replace(code=code_digest(), judge="")
     record = {"a.b": row, "a.c": row}
-    assert outdated(record, {"a.b": CLAIM}) == set()
-    assert outdated(record, {"a.b": replace(CLAIM, high=1.9), "a.gone": CLAIM}) == {"a.b"}
+    assert outdated(record, {"a.b": CLAIM}, {}) == set()
+    assert outdated(record, {"a.b": replace(CLAIM, high=1.9), "a.gone": CLAIM}, {}) == {"a.b"}
 
 
 def test_a_figure_is_told_with_limits_and_verdict():

@@ -85,7 +85,7 @@ class TestPage:
         assert "| 2 deg of 3 of the 30 satellites that it is claimed for |" in render([few], finished, 1.0)
         assert as_json(few)["verdict"] == "too few to judge"
         assert loose([few]) == []
-        assert as_record(finished) == {}
+        assert as_record(finished, {}) == {}
 
     def test_a_limit_of_one_s_own_far_from_the_figure_is_named_unless_it_says_why(self):
         outcomes = [

@@ -19,7 +19,7 @@ class TestChoice:
             study("reference.tle", []),
             study("posat1", [], has_flights=True),
         )
-        return lambda *only, quick=False: [one.id for one in choose_studies(studies, only, quick)]
+        return lambda *only, quick=False: [one.id for one in choose_studies(studies, only, quick, {})]
 
     def test_all_by_default_and_first_words_by_only(self, ids):
         assert ids() == ["reference.igrf14", "reference.tle", "posat1"]
