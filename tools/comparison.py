@@ -204,6 +204,9 @@ def main(words: Sequence[str] | None = None) -> int:
     except HarnessError as error:
         print(f"comparison: {error}", file=sys.stderr)
         return error.exit_code
+    except KeyboardInterrupt:
+        print("comparison: interrupted; the satellites that have flown whole are kept", file=sys.stderr)
+        return 130
     print(arguments.out)
     return int(any(row["limits_ok"] is False for record in records.values() for row in record["rows"]))
 

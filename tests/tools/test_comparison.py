@@ -123,6 +123,21 @@ def test_broken_limits_are_exit_code_1_when_flown_and_ever_after(out, monkeypatc
     assert main(["microsat", "--out", str(out)]) == 1
 
 
+def test_ctrl_c_keeps_the_satellites_that_have_flown_whole(out, flown, monkeypatch, capsys):
+    def stopped(name, workers):
+        if flown:
+            raise KeyboardInterrupt
+        flown.append(name)
+        return record_of(name, BETTER)
+
+    monkeypatch.setattr(comparison, "fly", stopped)
+    assert main(["microsat", "spinner", "--out", str(out)]) == 130
+    assert list(json.loads(record_path(out).read_text())) == ["microsat"]
+    assert capsys.readouterr().err == (
+        "comparison: interrupted; the satellites that have flown whole are kept\n"
+    )
+
+
 def test_another_satellite_is_refused_by_name(flown, capsys):
     with pytest.raises(SystemExit) as ended:
         main(["micrsat"])
