@@ -2,7 +2,7 @@
 
 The common gains are searched over the span of ``torquer design``, in multiples of the body's natural ones,
 and only where the law uses them. A law's own gain is free, from a tenth to ten times its default, if that is
-positive and the gain is not an axis, a target, an angle or a horizon.
+positive and the gain is not an axis, a target, an angle, a horizon or a number of iterations.
 """
 
 from collections.abc import Sequence
@@ -17,8 +17,8 @@ from sim.scenario.schema import Scenario
 
 OWN_SPAN = (0.1, 10.0)
 """Limits of the search of a law's own gain, in multiples of its default."""
-MEANINGS = ("axis", "target", "pitch", "level", "rounds", "horizon")
-"""Own gains whose names begin so say what is wanted or how far ahead a law plans: they are not searched."""
+MEANINGS = ("axis", "target", "pitch", "level", "rounds", "horizon", "iterations")
+"""Own gains whose names begin so say what is wanted, or how much a law may compute: they are not searched."""
 
 
 class FreeGain(NamedTuple):

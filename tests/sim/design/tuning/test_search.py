@@ -130,6 +130,11 @@ class TestFreeGains:
         }
         assert own_gains("pd") == ()
 
+    def test_how_much_a_law_may_compute_is_not_searched(self):
+        assert {gain.key for gain in own_gains("nmpc_damping")} == {
+            f"gains.nmpc_damping.{name}" for name in ("weight", "effort", "gamma")
+        }
+
     @pytest.mark.parametrize("law", LAWS)
     def test_of_every_law_they_are_positive_and_have_room(self, law):
         for gain in own_gains(law):
