@@ -75,12 +75,12 @@ def validate(
         if given:
             _check_whole(option, folder, satellites)
     there_are = _studies(folder, flight_data, satellites)
-    known = {} if recorded is None else _recorded(recorded, there_are)
-    studies = choose_studies(there_are, only, quick, known)
     whole = folder is None and flight_data is None and not only and not quick and satellites is None
     results = _results(out, whole, record, there_are)
     written = {"--out": results.page, "the outcomes": results.figures, "--keep": keep, "--junit": junit}
-    check_results(written, _data_files(folder or flight_data))
+    check_results(written, {**_data_files(folder or flight_data), **_read_only(recorded, results.figures)})
+    known = {} if recorded is None else _recorded(recorded, there_are)
+    studies = choose_studies(there_are, only, quick, known)
     prepare_junit(junit)
     rows = FlightRows(keep) if keep is not None else None
     if rows is not None:
@@ -141,6 +141,12 @@ def _data_files(folder: Path | None) -> Files:
     """Tables and element sets in the user's folder, by name."""
     files = [] if folder is None or not folder.is_dir() else list(folder.iterdir())
     return {f"{file.name} of the data": file for file in files if file.suffix in DATA_SUFFIXES}
+
+
+def _read_only(recorded: Path | None, figures: Path | None) -> Files:
+    """The record, where the new one is not to take its place."""
+    replaced = recorded is None or (figures is not None and figures.resolve() == recorded.resolve())
+    return {} if replaced else {"--recorded": recorded}
 
 
 def _check_whole(option: str, folder: Path | None, satellites: int | None) -> None:

@@ -141,7 +141,9 @@ def read_record(path: Path) -> Record:
         return {}
     try:
         rows = _File.model_validate_json(read_regular(path, MOST_BYTES)).root
-    except (OSError, BoundsError) as error:
+    except OSError as error:
+        raise _no_record(path, error.strerror or str(error)) from None
+    except BoundsError as error:
         raise _no_record(path, str(error)) from None
     except ValidationError as error:
         raise _no_record(path, faults(_File, error)) from None

@@ -224,6 +224,7 @@ class TestCommand:
         [
             (("--recorded", "none.json"), "--recorded none.json: no such file; --record writes one"),
             (("--recorded", "notes.txt"), "notes.txt: no outcomes of torquer validate: "),
+            (("--recorded", "."), ".: no outcomes of torquer validate: Is a directory"),
             (("--recorded", "page.json", "--satellites", "2"), "--recorded is for outcomes of whole populat"),
             (("--recorded", "page.json", "--reference", DATA), "--recorded is for outcomes by the reference"),
         ],
@@ -234,6 +235,21 @@ class TestCommand:
         result = self.call("--quick", *words)
         assert (result.exit_code, result.stdout, result.stderr.count("\n")) == (2, "", 1)
         assert result.stderr.startswith(f"torquer: {why}")
+
+    @pytest.mark.parametrize("option", ["--out", "--keep", "--junit"])
+    def test_the_record_is_overwritten_by_no_other_result(self, recorded, option):
+        figures, flown = recorded
+        before = figures.read_bytes()
+        result = self.call("--only", "b", "--recorded", figures, option, figures)
+        assert (result.exit_code, result.stdout, result.stderr.count("\n")) == (2, "", 1)
+        assert f"{option} {figures} and --recorded {figures} are the same file" in result.stderr
+        assert (figures.read_bytes(), flown) == (before, [])
+
+    def test_a_record_may_be_brought_up_to_date_with_itself(self, recorded):
+        figures, flown = recorded
+        page = figures.with_suffix(".md")
+        assert self.call("--recorded", figures, "--record", "--out", page).exit_code == 0
+        assert (list(read_record(figures)), flown) == (["a", "b"], [])
 
     def test_a_kill_while_outcomes_are_written_leaves_those_before(self, tmp_path, monkeypatch, study):
         parts = [study("a", [1.0])]
