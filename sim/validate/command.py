@@ -81,6 +81,8 @@ def validate(
     check_results(written, {**_data_files(folder or flight_data), **_read_only(recorded, results.figures)})
     known = {} if recorded is None else _recorded(recorded, there_are)
     studies = choose_studies(there_are, only, quick, known)
+    if recorded is not None and quick:
+        _tell_left_out(choose_studies(there_are, only, False, known), studies)
     prepare_junit(junit)
     rows = FlightRows(keep) if keep is not None else None
     if rows is not None:
@@ -180,6 +182,13 @@ def _results(out: Path | None, whole: bool, record: bool, studies: Sequence[Stud
     claimed = {claim.id: claim for study in flown for claim in claims_of(study)}
     ids = frozenset(study.id for study in studies)
     return ResultFiles(page, figures, ids, judging_digests(), claimed, before)
+
+
+def _tell_left_out(meant: Sequence[Study], chosen: Sequence[Study]) -> None:
+    """Name the studies that ``--quick`` leaves out, although a record was to stand for their flights."""
+    there = {study.id for study in chosen}
+    if missing := [study.id for study in meant if study.id not in there]:
+        warn(f"left out by --quick, as this code has not flown or judged them: {', '.join(missing)}")
 
 
 def _keeper(rows: FlightRows | None) -> Callable[[object], None] | None:

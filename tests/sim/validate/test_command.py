@@ -203,12 +203,14 @@ class TestCommand:
         assert (result.exit_code, flown) == (0, [])
         assert "2 claims met, 0 failed" in result.stdout
         assert f"{figures}: 1 flight that this code has flown and judged, not flown again\n" in result.stderr
+        assert "left out" not in result.stderr
 
     def test_what_other_code_has_recorded_is_flown_again_and_left_out_by_quick(self, recorded, monkeypatch):
         figures, flown = recorded
         monkeypatch.setattr(command, "judging_digests", lambda: {"a": "by other"})
         quick = self.call("--recorded", figures, "--quick")
         assert ("1 claim met" in quick.stdout, flown) == (True, [])
+        assert "left out by --quick, as this code has not flown or judged them: a\n" in quick.stderr
         whole = self.call("--recorded", figures, "--out", figures.parent / "whole.md")
         assert ("2 claims met" in whole.stdout, flown) == (True, ["a"])
 
