@@ -1,7 +1,8 @@
 """validation.json: the outcomes of the claims as last computed, for what is written from them."""
 
+import hashlib
 import json
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -22,7 +23,7 @@ DIGITS = 6
 
 
 class Recorded(NamedTuple):
-    """An outcome, and the digests of the code that flew and of the code that judged; empty: no flights."""
+    """An outcome; where there are flights, the digest of the code that flew and the mark of what judged."""
 
     outcome: ClaimOutcome
     code: str
@@ -61,14 +62,22 @@ class _File(RootModel[dict[str, _Row]]):
 
 def as_record(finished: Sequence[StudyResult], judges: Judges) -> Record:
     """What the file is to hold of them; a claim that is not judged is left out."""
-    return {
-        outcome.claim.id: Recorded(outcome, code_digest(), judges.get(done.study.id, ""))
-        if done.study.has_flights
-        else Recorded(outcome, "")
-        for done in finished
-        for outcome in done.outcomes
-        if outcome.verdict not in (ClaimVerdict.ABSENT, ClaimVerdict.TOO_FEW)
-    }
+    return {name: one for done in finished for name, one in _rows_of(done, judges).items()}
+
+
+def _rows_of(done: StudyResult, judges: Judges) -> Record:
+    unjudged = (ClaimVerdict.ABSENT, ClaimVerdict.TOO_FEW)
+    outcomes = {one.claim.id: one for one in done.outcomes if one.verdict not in unjudged}
+    flown = done.study.has_flights
+    code, judge = (code_digest(), mark(judges, done.study.id, outcomes)) if flown else ("", "")
+    return {name: Recorded(outcome, code, judge) for name, outcome in outcomes.items()}
+
+
+def mark(judges: Judges, study: str, claims: Iterable[str]) -> str:
+    """Of the code that judges a study and all claims that it makes: with one missing it is another."""
+    if study not in judges:
+        return ""
+    return hashlib.sha256(" ".join([judges[study], *sorted(claims)]).encode()).hexdigest()[:16]
 
 
 def with_record(
@@ -105,12 +114,22 @@ def outdated(record: Record, made: Mapping[str, Claim], judges: Judges) -> set[s
         made: the claims as this code makes them, by their ids; one that is not there counts as unchanged.
         judges: digests of the code that judges flights.
     """
+    marks = _marks(record, judges)
     return {
         name
         for name, (outcome, code, judge) in record.items()
         if made.get(name, outcome.claim) != outcome.claim
-        or (code and (code, judge) != (code_digest(), judges.get(study_of(name, judges), "")))
+        or (code and (code, judge) != (code_digest(), marks[name]))
     }
+
+
+def _marks(record: Record, judges: Judges) -> dict[str, str]:
+    """By the id of each claim with flights: its mark, if this code has judged it."""
+    claims: dict[str, list[str]] = {}
+    for name, one in record.items():
+        if one.code:
+            claims.setdefault(study_of(name, judges), []).append(name)
+    return {name: mark(judges, study, names) for study, names in claims.items() for name in names}
 
 
 def as_figures(record: Record) -> dict[str, dict[str, str]]:

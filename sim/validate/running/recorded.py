@@ -35,7 +35,7 @@ def _of(study: str, record: Record, judges: Judges) -> Record:
 
 def _changed(study: Study, rows: Record, judges: Judges) -> bool:
     """Whether a claim has no row, or one that other code has made, or a row no claim."""
-    if not isinstance(study, FlightStudy):  # does not tell its claims beforehand: they are those of its code
+    if not isinstance(study, FlightStudy):  # it does not tell its claims beforehand: their mark does
         return bool(outdated(rows, {}, judges))
     made = {claim.id: claim for claim in claims_of(study)}
     return made.keys() != rows.keys() or bool(outdated(rows, made, judges))

@@ -15,6 +15,7 @@ from sim.validate.outcomes import (
     as_figures,
     as_record,
     as_text,
+    mark,
     outdated,
     read_record,
     with_record,
@@ -35,7 +36,7 @@ def test_a_claim_that_was_judged_is_recorded_with_the_code_that_flew_and_the_cod
     flown = StudyResult(study("a", [], has_flights=True), (CLAIM.judge(1.5), absent), (), 1.0)
     computed = StudyResult(study("d", []), (Claim("d", "", "", "1").judge(1.0),), (), 1.0)
     assert as_record([flown, computed], {"a": "by this", "d": "of no flight"}) == {
-        "a.b": Recorded(CLAIM.judge(1.5), code_digest(), "by this"),
+        "a.b": Recorded(CLAIM.judge(1.5), code_digest(), mark({"a": "by this"}, "a", ["a.b"])),
         "d": Recorded(Claim("d", "", "", "1").judge(1.0), ""),
     }
 
@@ -116,10 +117,18 @@ def test_flights_of_other_code_are_told_from_those_of_this_and_from_what_has_non
 
 
 def test_a_claim_that_other_code_has_judged_is_outdated():
-    ours, other = (ROW._replace(code=code_digest(), judge=judge) for judge in ("by this", "5eed"))
-    computed = ROW._replace(code="")
-    record = {"a.b": ours, "a.c": other, "a.part.d": ours, "d.e": computed, "gone.f": ours}
-    assert outdated(record, {}, {"a": "by this", "a.part": "by that"}) == {"a.c", "a.part.d", "gone.f"}
+    judges, others = {"a": "by this", "a.part": "by this"}, {"a": "by this", "a.part": "by that"}
+    row = ROW._replace(code=code_digest())
+    record = {
+        **{name: row._replace(judge=mark(judges, "a", ["a.b", "a.c"])) for name in ("a.b", "a.c")},
+        "a.part.d": row._replace(judge=mark(judges, "a.part", ["a.part.d"])),
+        "d.e": row._replace(code=""),
+        "gone.f": row,
+    }
+    assert outdated(record, {}, judges) == {"gone.f"}
+    assert outdated(record, {}, others) == {"a.part.d", "gone.f"}
+    del record["a.c"]
+    assert outdated(record, {}, judges) == {"a.b", "gone.f"}, "it was judged with another, which is missing"
 
 
 def test_a_claim_that_is_judged_by_another_limit_now_is_outdated():

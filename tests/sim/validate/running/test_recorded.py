@@ -8,7 +8,7 @@ from sim.campaign.claim import Claim, ClaimVerdict
 from sim.campaign.code_digest import code_digest
 from sim.campaign.flight import Order
 from sim.campaign.study import Figure, Group, campaign
-from sim.validate.outcomes import Recorded, read_record
+from sim.validate.outcomes import Recorded, mark, read_record
 from sim.validate.registry import all_studies, judging_digests
 from sim.validate.running.recorded import recorded_studies
 
@@ -29,8 +29,9 @@ def rows(study_id="a", figures=(1.5, 3.25)):
         Claim(f"{study_id}.{figure.id}", "Pointing", "Somebody", "deg", high=figure.high)
         for figure in FIGURES
     ]
+    judge = mark(JUDGES, study_id, [claim.id for claim in claims])
     return {
-        claim.id: Recorded(claim.judge(ours, "flight 7"), code_digest(), "by this")
+        claim.id: Recorded(claim.judge(ours, "flight 7"), code_digest(), judge)
         for claim, ours in zip(claims, figures, strict=True)
     }
 
@@ -81,14 +82,15 @@ def test_each_study_has_its_own_rows():
 
 
 def test_what_flies_nothing_is_always_computed(study):
-    record = {"a": Recorded(Claim("a", "", "", "1").judge(1.0), code_digest(), "by this")}
+    record = {"a": Recorded(Claim("a", "", "", "1").judge(1.0), code_digest(), mark(JUDGES, "a", ["a"]))}
     assert recorded_studies([study("a", [1.0])], record, JUDGES) == {}
 
 
-def test_one_that_does_not_tell_its_claims_beforehand_is_taken_by_its_code_alone(study):
+def test_one_that_does_not_tell_its_claims_beforehand_is_taken_by_their_mark(study):
     silent = study("a", [1.0], has_flights=True)
     assert recorded_studies([silent], rows(), JUDGES)["a"].tasks == ()
     assert recorded_studies([silent], {}, JUDGES) == {}
+    assert recorded_studies([silent], {"a.rms": rows()["a.rms"]}, JUDGES) == {}, "a row was cut out"
     assert recorded_studies([silent], rows(), {**JUDGES, "a": "by other"}) == {}
 
 
