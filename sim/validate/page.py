@@ -18,21 +18,22 @@ from sim.validate.reference.reference import FileResult
 
 _HEAD = """# Validation
 
-Written by `torquer validate`; do not edit. That command computes each row: a claim or a reference figure, its
-source, the figure of this code, and the tolerance. Of the rows of a reference file the one nearest to its
-tolerance counts.
+Written by `torquer validate`; do not edit. The command computes every row: a claim or a reference figure, its
+source, the figure of this code, and the tolerance. Of a reference file, the row nearest to its tolerance is
+shown.
 
-Whose the tolerance is, stands beside it. *paper*: as the source prints it. *reference file*: as its header
-says. *own prototype*: what an earlier computation of this project has found. *own choice*: set here near the
-figure, at most ten times off, or with the reason; of a part of a whole what it lacks counts. *fitted*: the
-paper's figure, to which a number of the scenario was fitted; that it is met shows nothing, so it does not
-count. A paper tells one flight; what all starts give stands in the column *all starts*: least, median and
-most, and how many meet the tolerance. Settled means from then on to the end, for 600 s at least.
+The column *whose* tells where a tolerance comes from. *paper*: as the source prints it. *reference file*: as
+its header states it. *own prototype*: the result of an earlier computation of this project. *own choice*: set
+here, close to the figure; where it is more than ten times off, the reason is given. (Of a fraction near one,
+the part that is missing counts.) *fitted*: the paper's figure, to which a number of the scenario was fitted;
+meeting it proves nothing, so it does not count as met. A paper reports one flight; the column *all starts*
+gives the least, the median and the greatest over all starts, and how many meet the tolerance. Settled means
+within the threshold from then on to the end, for at least 600 s.
 
-A star marks what other code has flown or judged. Code whose flights are the same, byte for byte
-(`make same-flights`), does not count as other code. Rows without a star of flights that take hours may be of
-an earlier run of the same code: `torquer validate --recorded docs/validation.json` judges the whole with them
-in a minute or two, and flies what is missing.
+A star marks what other code has flown or judged. Code that flies the same, byte for byte
+(`make same-flights`), is not other code. The flights take hours, so a row without a star may come from an
+earlier run of the same code: `torquer validate --recorded docs/validation.json` takes such rows as they are,
+computes and flies the rest, and judges the whole.
 """
 
 
