@@ -79,8 +79,9 @@ def as_table(scores: Sequence[Score], by: Controlled) -> Table:
 
 
 def error_text(error: float, unit: str) -> str:
-    """An error of what is judged: angles to a hundredth of a degree, rates to a ten thousandth of a deg/s."""
-    return f"{error:.2f}" if unit == "deg" else f"{error:.4f}"
+    """An error: angles to a hundredth of a degree, rates to 0.0001 deg/s, smaller ones to two digits."""
+    digits = 2 if unit == "deg" else 4
+    return f"{error:.{digits}f}" if error == 0.0 or error >= 10.0**-digits else f"{error:.2g}"
 
 
 def _columns(by: Controlled) -> list[tuple[str, str, str, Callable[[Any], str]]]:

@@ -10,7 +10,7 @@ import pytest
 from fsw.core.laws.entry import Aim
 from sim.compare.case import Driver
 from sim.compare.score import Score
-from sim.compare.table import as_csv, as_json, as_text, ranked
+from sim.compare.table import as_csv, as_json, as_text, error_text, ranked
 from sim.report.figures.controlled import Controlled
 
 
@@ -69,6 +69,22 @@ def test_where_the_rate_is_judged_it_ranks_and_has_its_unit():
     _, units, first, _ = as_text(ranked(spun, SPIN), SPIN).splitlines()
     assert units.split()[:3] == ["orbits", "deg/s", "deg/s"]
     assert first.split()[4] == "0.0031"
+
+
+@pytest.mark.parametrize(
+    ("error", "unit", "text"),
+    [
+        (12.346, "deg", "12.35"),
+        (0.01, "deg", "0.01"),
+        (0.0094, "deg", "0.0094"),
+        (0.000812, "deg", "0.00081"),
+        (0.0, "deg", "0.00"),
+        (0.01234, "deg/s", "0.0123"),
+        (0.0000123, "deg/s", "1.2e-05"),
+    ],
+)
+def test_a_small_error_is_not_told_as_none(error, unit, text):
+    assert error_text(error, unit) == text
 
 
 def test_columns_stand_under_their_headings():
