@@ -44,7 +44,8 @@ SATELLITES = {
     "posat1": "50 kg with a gravity gradient boom, that holds an axis to the vertical and tumbles at first",
     "pitch-wheel": "a wheel of constant speed along the pitch axis, the horizon for a sensor",
     "microsat-wheel": "the 50 kg satellite with a wheel that is driven",
-    "spinner": "spins about its axis 1",
+    "spinner": "spins about its axis 1. All are judged by that rate, which laws that only turn the axis or "
+    "damp nutation do not hold",
 }
 Record = dict[str, Any]
 
