@@ -10,7 +10,6 @@ from torquer.cli.options import JSON, JUNIT, examples, sentences
 EXAMPLES = examples(
     "torquer validate --quick",
     "torquer validate --only population --satellites 20",
-    "torquer validate --only review --record",
     "torquer validate --keep build/flights.jsonl --out validation.md",
     "torquer validate --recorded docs/validation.json --out validation.md",
 )
