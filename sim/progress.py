@@ -1,4 +1,4 @@
-"""What is shown on stderr while something runs: a bar on a terminal, a line in a notebook, and notes."""
+"""What stderr shows while something runs: a bar on a terminal, a line in a notebook or a log, and notes."""
 
 import sys
 import time
@@ -16,6 +16,8 @@ Watch = Callable[[int], None]
 _SHOWN = ContextVar("shown", default=True)
 LINE_EVERY_S = 0.5
 """Time between two states of the line in a notebook."""
+NOTE_EVERY_S = 60.0
+"""Time between two lines in a log; what is done before is not in it."""
 
 
 @contextmanager
@@ -46,7 +48,7 @@ def progress(what: str, total: int) -> Iterator[Watch]:
         with _line(what, total) as watch:
             yield watch
     else:
-        yield lambda done: None
+        yield _notes(what, total)
 
 
 def _in_notebook() -> bool:
@@ -81,8 +83,25 @@ def _line(what: str, total: int) -> Iterator[Watch]:
         nonlocal written_s
         if time.monotonic() - written_s >= LINE_EVERY_S:
             written_s = time.monotonic()
-            print(f"\r{what}: {100.0 * done / max(total, 1):3.0f} %", end="", file=sys.stderr, flush=True)
+            print(f"\r{what}: {_percent(done, total)}", end="", file=sys.stderr, flush=True)
 
     yield watch
     if written_s:
         print(f"\r{what}: done ", file=sys.stderr, flush=True)
+
+
+def _notes(what: str, total: int) -> Watch:
+    """A line now and then, for a run whose output goes to a file or to another program."""
+    noted_s = time.monotonic()
+
+    def watch(done: int) -> None:
+        nonlocal noted_s
+        if time.monotonic() - noted_s >= NOTE_EVERY_S:
+            noted_s = time.monotonic()
+            note(f"{what}: {_percent(done, total)}")
+
+    return watch
+
+
+def _percent(done: int, total: int) -> str:
+    return f"{100.0 * done / max(total, 1):3.0f} %"

@@ -31,6 +31,24 @@ def test_notes_are_written_everywhere_and_a_bar_on_a_terminal(monkeypatch):
     assert "flying" in written(monkeypatch, Terminal())
 
 
+def test_a_log_has_a_line_now_and_then_of_a_long_run_and_none_of_a_short_one(monkeypatch):
+    assert written(monkeypatch, StringIO()) == "a note\n"
+    monkeypatch.setattr(module, "NOTE_EVERY_S", 0.0)
+    shares = [f"flying: {share:3d} %\n" for share in (0, 25, 50, 75, 100)]
+    assert written(monkeypatch, StringIO()) == "a note\n" + "".join(shares)
+
+
+def test_the_lines_of_a_log_are_a_minute_apart(monkeypatch):
+    now_s = iter([0.0, 59.0, 61.0, 61.0, 120.0, 122.0, 122.0])
+    monkeypatch.setattr(module, "time", SimpleNamespace(monotonic=lambda: next(now_s)))
+    stream = StringIO()
+    monkeypatch.setattr(sys, "stderr", stream)
+    with progress("flying", 4) as watch:
+        for done in range(1, 5):
+            watch(done)
+    assert stream.getvalue() == "flying:  50 %\nflying: 100 %\n"
+
+
 @pytest.mark.parametrize("running", [True, False], ids=["a kernel", "a program that has loaded one"])
 def test_a_notebook_has_a_line_that_is_written_over(monkeypatch, running):
     kernel = SimpleNamespace(IPKernelApp=SimpleNamespace(initialized=lambda: running))
