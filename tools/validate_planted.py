@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from mutation_tests import copy_repository
 
 PACKAGES = ("fsw", "hil_stub", "sim", "torquer")
-PASSED, FAILED = 0, 1
+PASSED, FAILED, TOO_LONG = 0, 1, 124
 
 
 class Plant(NamedTuple):
@@ -183,28 +183,34 @@ NOTHING = Plant("nothing", "", "", "", "all of these")
 
 
 class Verdict(NamedTuple):
-    """The exit code, the claims that failed, and how long it took."""
+    """The exit code, the claims that failed, how long it took, and the last that it said on stderr."""
 
     code: int
     failed: list[str]
     seconds: float
+    error: str = ""
 
 
 def validate(folder: Path, only: list[str], timeout_s: float) -> Verdict:
     """Run these claims of the source in the folder."""
     words = [word for claims in only for word in ("--only", claims)]
     began = time.monotonic()
-    run = subprocess.run(
-        [sys.executable, "-m", "torquer", "validate", *words],
-        cwd=folder,
-        env=os.environ | {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1", "PYTHONSAFEPATH": "1"},
-        capture_output=True,
-        text=True,
-        timeout=timeout_s,
-        check=False,
-    )
+    try:
+        run = subprocess.run(
+            [sys.executable, "-m", "torquer", "validate", *words],
+            cwd=folder,
+            env=os.environ
+            | {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1", "PYTHONSAFEPATH": "1"},
+            capture_output=True,
+            text=True,
+            timeout=timeout_s,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return Verdict(TOO_LONG, [], timeout_s, f"not done after {timeout_s:g} s")
     failed = [line.split()[1].rstrip(":") for line in run.stdout.splitlines() if line.startswith("FAIL")]
-    return Verdict(run.returncode, failed, time.monotonic() - began)
+    error = run.stderr.strip().rpartition("\n")[2]
+    return Verdict(run.returncode, failed, time.monotonic() - began, error)
 
 
 def judge(folder: Path, plant: Plant, timeout_s: float) -> Verdict:
@@ -232,7 +238,7 @@ def found(verdict: Verdict) -> bool:
 def row(plant: Plant, verdict: Verdict) -> str:
     """A line of the table."""
     noticed = ", ".join(verdict.failed[:3]) + (", ..." if len(verdict.failed) > 3 else "")
-    text = noticed if found(verdict) else f"SURVIVES, exit code {verdict.code}"
+    text = noticed if found(verdict) else f"SURVIVES, exit code {verdict.code}: {verdict.error}".rstrip(": ")
     return f"{plant.name:52} {plant.only:32} {verdict.seconds:5.0f} s  {text}"
 
 
@@ -251,7 +257,7 @@ def run_all(plants: list[Plant], timeout_s: float) -> int:
             else f"{NOTHING.name:52} {NOTHING.only:32} {sound.seconds:5.0f} s"
         )
         if sound.code != PASSED:
-            print(f"FAIL: without a plant the exit code is {sound.code}")
+            print(f"FAIL: without a plant the exit code is {sound.code}: {sound.error}".rstrip(": "))
             return FAILED
         missed = 0
         for plant in plants:
@@ -270,9 +276,10 @@ def main() -> int:
     parser.add_argument("--list", action="store_true", help="name them, run nothing")
     parser.add_argument("--timeout", type=positive, default=1800.0, help="seconds for a run (1800)")
     options = parser.parse_args()
+    for name in options.names:
+        if not any(name in one.name for one in PLANTS):
+            parser.error(f"there is no plant with '{name}' in its name: --list names them")
     chosen = [one for one in PLANTS if not options.names or any(name in one.name for name in options.names)]
-    if not chosen:
-        parser.error("no plant has such a name")
     if options.list:
         print("\n".join(f"{one.name:52} {one.path}" for one in chosen))
         return PASSED

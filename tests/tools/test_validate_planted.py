@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 import validate_planted
 from mutation_tests import ROOT
-from validate_planted import PLANTS, Plant, Verdict, found, judge, misplaced, row, run_all
+from validate_planted import PLANTS, TOO_LONG, Plant, Verdict, found, judge, main, misplaced, row, run_all
 
 from sim.validate.registry import all_studies, choose_studies
 
@@ -66,3 +66,39 @@ def test_exit_code_1_if_one_survives_or_the_claims_fail_anyway(monkeypatch, caps
     monkeypatch.setattr(validate_planted, "judge", lambda folder, plant, timeout_s: planted)
     assert run_all(list(PLANTS[:2]), 1.0) == code
     assert ("2 of 2 are noticed" in capsys.readouterr().out) is (code == 0)
+
+
+@pytest.mark.parametrize("failing", ["sound", "planted"])
+def test_a_run_that_breaks_off_says_why(monkeypatch, capsys, failing):
+    broken, verdicts = Verdict(2, [], 1.0, "no module of that name"), {"sound": Verdict(0, [], 1.0)}
+    verdicts["planted"] = Verdict(1, ["a.b"], 1.0)
+    verdicts[failing] = broken
+    monkeypatch.setattr(validate_planted, "copy_repository", lambda folder, names: None)
+    monkeypatch.setattr(validate_planted, "misplaced", lambda folder, plants: [])
+    monkeypatch.setattr(validate_planted, "validate", lambda folder, only, timeout_s: verdicts["sound"])
+    monkeypatch.setattr(validate_planted, "judge", lambda folder, plant, timeout_s: verdicts["planted"])
+    assert run_all(list(PLANTS[:1]), 1.0) == 1
+    said = capsys.readouterr().out
+    assert (
+        "exit code 2: no module of that name\n" in said or "exit code is 2: no module of that name\n" in said
+    )
+
+
+def test_what_validate_says_last_and_a_run_that_hangs(tmp_path):
+    package = tmp_path / "torquer"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    (package / "__main__.py").write_text("import sys; sys.exit('no such claim')\n")
+    assert validate_planted.validate(tmp_path, ["a"], 60.0)[::3] == (1, "no such claim")
+    (package / "__main__.py").write_text("import time; time.sleep(60)\n")
+    hung = validate_planted.validate(tmp_path, ["a"], 0.2)
+    assert hung == Verdict(TOO_LONG, [], 0.2, "not done after 0.2 s")
+    assert not found(hung)
+
+
+def test_a_name_of_no_plant_is_refused_beside_one_that_is(monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["validate_planted.py", PLANTS[0].name, "nothing like it"])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    assert stop.value.code == 2
+    assert "there is no plant with 'nothing like it' in its name" in capsys.readouterr().err
