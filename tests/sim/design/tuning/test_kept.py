@@ -3,6 +3,7 @@
 import pytest
 
 from sim.design.tuning import command, kept
+from sim.design.tuning.applicable import is_suited, laws_for
 from sim.design.tuning.cost import Cost
 from sim.design.tuning.kept import (
     KeptGains,
@@ -96,6 +97,14 @@ def test_those_that_ship_are_for_the_scenario_as_it_is():
         scenario = load(path.stem)
         assert shipped_gains(scenario) == read_gains(path)
         assert shipped_gains(load(path.stem, {"initial": {"angle_deg": 12.0}})) is None
+
+
+def test_those_that_ship_are_of_every_law_that_suits_the_body_and_of_no_other():
+    for path in kept.FOLDER.glob("*.toml"):
+        scenario = load(path.stem)
+        for driver in command.DRIVERS:
+            suited = {law for law in laws_for(scenario) if is_suited(law, scenario, driver)}
+            assert set(read_gains(path).rows[driver]) == suited, (path.stem, driver)
 
 
 def test_those_that_ship_are_no_worse_in_a_whole_flight_than_the_scenarios_own():
