@@ -17,7 +17,7 @@ _SHOWN = ContextVar("shown", default=True)
 LINE_EVERY_S = 0.5
 """Time between two states of the line in a notebook."""
 NOTE_EVERY_S = 60.0
-"""Time between two lines in a log; what is done before is not in it."""
+"""Time between two lines in a log; a run that is done before has none."""
 
 
 @contextmanager

@@ -183,7 +183,7 @@ NOTHING = Plant("nothing", "", "", "", "all of these")
 
 
 class Verdict(NamedTuple):
-    """The exit code, the claims that failed, how long it took, and the last that it said on stderr."""
+    """The exit code, the claims that failed, how long it took, and why it broke off, if it did."""
 
     code: int
     failed: list[str]
@@ -209,7 +209,8 @@ def validate(folder: Path, only: list[str], timeout_s: float) -> Verdict:
     except subprocess.TimeoutExpired:
         return Verdict(TOO_LONG, [], timeout_s, f"not done after {timeout_s:g} s")
     failed = [line.split()[1].rstrip(":") for line in run.stdout.splitlines() if line.startswith("FAIL")]
-    error = run.stderr.strip().rpartition("\n")[2]
+    broken = run.returncode != PASSED and not failed
+    error = run.stderr.strip().rpartition("\n")[2] if broken else ""
     return Verdict(run.returncode, failed, time.monotonic() - began, error)
 
 
