@@ -37,8 +37,11 @@ def note(text: str) -> None:
 
 
 @contextmanager
-def progress(what: str, total: int) -> Iterator[Watch]:
-    """Yield a function to be called with the number of units done, of ``total``."""
+def progress(what: str, total: int, in_log: bool = True) -> Iterator[Watch]:
+    """Yield a function to be called with the number of units done, of ``total``.
+
+    Without ``in_log`` a log is left to the caller, who has more to say there.
+    """
     if not _is_shown():
         yield lambda done: None
     elif sys.stderr.isatty():
@@ -48,7 +51,7 @@ def progress(what: str, total: int) -> Iterator[Watch]:
         with _line(what, total) as watch:
             yield watch
     else:
-        yield _notes(what, total)
+        yield _notes(what, total) if in_log else lambda done: None
 
 
 def _in_notebook() -> bool:

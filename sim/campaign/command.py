@@ -178,7 +178,7 @@ def _watch(name: str, total: int) -> Iterator[Callable[[RunRow], None]]:
     """A bar on a terminal; elsewhere a line every ``LINE_EVERY_S``, with the time left."""
     began = said = time.monotonic()
     done = failed = 0
-    with progress(f"flying {name}", total) as bar:
+    with progress(f"flying {name}", total, in_log=False) as bar:
 
         def take(row: RunRow) -> None:
             nonlocal done, failed, said

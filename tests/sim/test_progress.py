@@ -49,6 +49,15 @@ def test_the_lines_of_a_log_are_a_minute_apart(monkeypatch):
     assert stream.getvalue() == "flying:  50 %\nflying: 100 %\n"
 
 
+def test_a_log_is_left_to_a_caller_who_writes_it(monkeypatch):
+    monkeypatch.setattr(module, "NOTE_EVERY_S", 0.0)
+    stream = StringIO()
+    monkeypatch.setattr(sys, "stderr", stream)
+    with progress("flying", 4, in_log=False) as watch:
+        watch(4)
+    assert stream.getvalue() == ""
+
+
 @pytest.mark.parametrize("running", [True, False], ids=["a kernel", "a program that has loaded one"])
 def test_a_notebook_has_a_line_that_is_written_over(monkeypatch, running):
     kernel = SimpleNamespace(IPKernelApp=SimpleNamespace(initialized=lambda: running))
