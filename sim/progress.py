@@ -3,7 +3,7 @@
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 
 from rich.console import Console
@@ -101,7 +101,8 @@ def _notes(what: str, total: int) -> Watch:
         nonlocal noted_s
         if time.monotonic() - noted_s >= NOTE_EVERY_S:
             noted_s = time.monotonic()
-            note(f"{what}: {_percent(done, total)}")
+            with suppress(BrokenPipeError):  # who read the log has gone; what runs is not theirs to end
+                note(f"{what}: {_percent(done, total)}")
 
     return watch
 

@@ -49,6 +49,20 @@ def test_the_lines_of_a_log_are_a_minute_apart(monkeypatch):
     assert stream.getvalue() == "flying:  50 %\nflying: 100 %\n"
 
 
+def test_a_reader_of_the_log_who_has_gone_does_not_end_the_run(monkeypatch):
+    def gone(text):
+        raise BrokenPipeError
+
+    monkeypatch.setattr(module, "NOTE_EVERY_S", 0.0)
+    stream = StringIO()
+    stream.write = gone
+    monkeypatch.setattr(sys, "stderr", stream)
+    with progress("flying", 4) as watch:
+        watch(4)
+    with pytest.raises(BrokenPipeError):
+        note("a warning, which the user must not miss")
+
+
 def test_a_log_is_left_to_a_caller_who_writes_it(monkeypatch):
     monkeypatch.setattr(module, "NOTE_EVERY_S", 0.0)
     stream = StringIO()
