@@ -158,6 +158,7 @@ def test_what_the_coils_cannot_give_is_not_remembered(bench, turned):
         assert np.cross(given_am2, demand.m_body_am2) / max(map(abs, demand.m_body_am2)) == pytest.approx(
             np.zeros(3), abs=1e-12
         )
+        assert np.sign(given_am2).tolist() == np.sign(demand.m_body_am2).tolist()
     assert np.linalg.norm(memory[4:7]) < 0.01
 
 
