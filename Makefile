@@ -27,7 +27,7 @@
 # make verdicts   all flights that miss a requirement for a known reason: is it told, and no wrong one: a minute
 # make planted    schedulers with planted faults, and correct ones, through sim.testing as a user would run it: some minutes
 # make validate-planted   errors planted in laws, models and filter: does validate end with exit code 1? some minutes
-# make mutation     change scheduler, interlock, auditor and codec one thing at a time: do the tests notice? an hour
+# make mutation     change scheduler, interlock, auditor and codec one thing, the methods one sign at a time: do the tests notice? two hours
 # make coverage     branch coverage of the same modules, which must be complete, into the same page: a minute
 
 PYTHON ?= python3

@@ -95,10 +95,17 @@ def _spans(source: str) -> Callable[[ast.AST], Span]:
 
 
 def _sign_changes(source: str) -> Iterator[tuple[Span, str]]:
-    """(place, replacement) of each change of a sign: of a sum, a minus, a product of matrices or vectors."""
+    """(place, replacement) of each change of a sign: of a sum, a minus, a product of matrices or vectors.
+
+    The number of an axis of an array is left: the minus of a last one counts from the end.
+    """
     span = _spans(source)
-    for node in _executable_nodes(ast.parse(source)):
+    tree = ast.parse(source)
+    axes = {id(number) for call in ast.walk(tree) for number in _axes_of(call)}
+    for node in _executable_nodes(tree):
         match node:
+            case ast.UnaryOp(operand=ast.Constant()) if id(node) in axes:
+                continue
             case ast.BinOp(op=ast.Add() | ast.Sub() as op):
                 operands_gap = (span(node.left)[1], span(node.right)[0])
                 yield _swap_operator(source, operands_gap, COMBINED[type(op)][1])
@@ -115,6 +122,16 @@ def _sign_changes(source: str) -> Iterator[tuple[Span, str]]:
                 place, negated = NEGATED[_named(node.func)]
                 begin, end = span(node.args[place])
                 yield (begin, end), negated.format(source[begin:end])
+
+
+def _axes_of(call: ast.AST) -> list[ast.expr]:
+    """What numbers the axes of an array in a call."""
+    match call:
+        case ast.Call() if _named(call.func) in ("moveaxis", "swapaxes"):
+            return call.args
+        case ast.Call():
+            return [keyword.value for keyword in call.keywords if keyword.arg == "axis"]
+    return []
 
 
 def _named(called: ast.expr) -> str:

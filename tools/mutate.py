@@ -89,11 +89,12 @@ class Measurement(NamedTuple):
 
     def measure_again(self, module: str, target: Target) -> None:
         """Judge again the unlisted survivors of an unchanged module: tests may have been added."""
-        result = stored(RESULTS)[module]
-        unexplained = [change for one, change in unlisted(stored(RESULTS)) if one == module]
+        results = stored(RESULTS)
+        unexplained = [change for one, change in unlisted(results) if one == module]
         made = [mutant for mutant in target.mutants_of(module) if mutant.change in unexplained]
-        if not made or module in outdated(stored(RESULTS)):
+        if not made or module in outdated(results):
             return
+        result = results[module]
         outcome = self.judge_all(module, target, made)
         survived = [one for one in result["survived"] if one not in unexplained or one in outcome["survived"]]
         timeouts = result["timeouts"] + outcome["timeouts"]

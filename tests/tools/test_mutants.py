@@ -11,6 +11,8 @@ import pytest
 from mutants import mutants
 from mutation_page import targets
 
+from sim.methods.table import METHODS
+
 ROOT = Path(__file__).parents[2]
 
 MODULES = {module: target for target in targets() for module in target.modules}
@@ -99,6 +101,9 @@ def test_operators_between_brackets_and_comments_are_found():
         ("np.dot(a, b)", {"np.dot([-part for part in a], b)"}),
         ("transform(a, b)", {"transform(a, [-part for part in b])"}),
         ("a < b and min(c, 2)", set()),
+        ("np.stack(-a, axis=-1)", {"np.stack(a, axis=-1)"}),
+        ("np.moveaxis(-a, -1, 0)", {"np.moveaxis(a, -1, 0)"}),
+        ("a.swapaxes(-1, -2)[-1]", {"a.swapaxes(-1, -2)[1]"}),
     ],
 )
 def test_of_a_sign_alone(line, after):
@@ -117,6 +122,14 @@ def test_the_laws_are_all_there_each_with_the_tests_that_mirror_it():
         ["tests/fsw/core/laws/spin"],
     ]
     assert laws.stages_of("fsw/core/laws/spin/relay_stages.py")[0] == ["tests/fsw/core/laws/spin"]
+
+
+def test_of_every_method_of_the_papers_the_signs_are_changed():
+    signed = {module for target in targets() if target.signs for module in target.modules}
+    named = {where.strip() for method in METHODS for where in method.where.split(",")}
+    modules = {where for where in named if where.endswith(".py")}
+    assert len(modules) > 80
+    assert modules <= signed
 
 
 @pytest.mark.long

@@ -140,6 +140,13 @@ def test_a_module_that_has_never_been_measured_is_a_failure(repository):
     assert repository.row == "| limits | `fsw/limit.py` | not measured | | | | |"
 
 
+def test_what_has_survived_of_a_module_that_was_never_measured_is_nothing_to_try_again(repository):
+    repository.write("tests/mutation/results.json", "{}")
+    done = repository.mutate("--again")
+    assert (done.returncode, done.stdout) == (1, "fsw/limit.py: not measured as it is now\n")
+    assert done.stderr == ""
+
+
 @pytest.mark.long
 def test_tests_that_fail_by_themselves_measure_nothing(repository):
     repository.write("fsw/limit.py", MODULE.replace("LIMIT = 3", "LIMIT = 4"))

@@ -33,6 +33,9 @@ def test_damping_alone_has_no_limit():
     assert float(degree_of_stability(monodromy(closed_loop(FIFTY, stiff)))) < 0.0
 
 
-def test_gains_that_are_not_stable_are_refused():
+@pytest.mark.parametrize("factor", [0.0, 10.0])
+def test_gains_that_are_not_stable_or_only_just_are_refused(factor):
+    """Without gains the gravity torque alone holds the body, which then swings for ever."""
+    k_w = BEST.k_w if factor else 0.0
     with pytest.raises(ValueError, match="stable"):
-        bifurcation(FIFTY, Gains(BEST.k_w, 10.0 * np.asarray(BEST.k_a)))
+        bifurcation(FIFTY, Gains(k_w, factor * np.asarray(BEST.k_a)))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.design.feedback.held import held_degree, longest_hold_s, weaker
+from sim.design.feedback.held import LEAST_HOLDS, held_degree, longest_hold_s, weaker
 from sim.design.theory.bodies import BODIES
 from sim.design.theory.floquet import degree_of_stability, monodromy
 from sim.design.theory.linear import Gains, closed_loop
@@ -24,6 +24,15 @@ def test_weaker_gains_withstand_a_longer_hold():
     longest = [longest_hold_s(FIFTY, weaker(best, e)) for e in (1.0, 0.3)]
     assert longest[0] == pytest.approx(465.6, abs=0.1)
     assert longest[1] > 1.8 * longest[0]
+
+
+def test_very_weak_gains_withstand_the_longest_hold_that_is_tried():
+    weak = weaker(Gains(6.2694e6, 1614.9), 0.02)
+    assert longest_hold_s(FIFTY, weak) == pytest.approx(2.0 * np.pi / FIFTY.rate_radps / LEAST_HOLDS)
+
+
+def test_a_body_without_gains_comes_to_rest_with_no_hold():
+    assert longest_hold_s(FIFTY, Gains(0.0, 0.0)) == 0.0
 
 
 def test_no_hold_saves_gains_that_drive_away():

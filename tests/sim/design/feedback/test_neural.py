@@ -58,6 +58,14 @@ def test_a_residual_dipole_acts_as_one_of_the_coils_does():
     assert np.abs(moved - free.rates(x, b_t, none))[0, 4:].min() > 1e-9
 
 
+def test_both_signs_of_a_quaternion_are_one_attitude():
+    loop = neural._Flights(BODY, PD_GAINS, np.array([WEIGHTS]), np.zeros((1, 3)), np.zeros((1, 3)))
+    x, b_t = np.array([[0.8, 0.36, -0.288, 0.384, 1e-3, -2e-3, 3e-3]]), np.array([2e-5, -1e-5, 3e-5])
+    other = np.concatenate([-x[:, :4], x[:, 4:]], axis=1)
+    for seen, expected in zip(loop.dipole(other, b_t, None), loop.dipole(x, b_t, None), strict=True):
+        assert seen == pytest.approx(expected, rel=1e-12)
+
+
 @pytest.mark.long
 def test_a_residual_dipole_turns_the_satellite():
     flown = replace(trials(2, 5), dipole_am2=np.array([[3e-3, -2e-3, 4e-3], [-2e-3, 3e-3, 1e-3]]))
@@ -80,6 +88,29 @@ def test_trials_are_those_of_their_seed():
 
 def test_the_cost_is_the_mean_logarithm():
     assert cost(np.array([[[1.0, np.e], [np.e, np.e**2]]])) == pytest.approx([1.0])
+
+
+def test_the_search_keeps_to_its_bounds_and_begins_at_constant_gains(monkeypatch):
+    """Level and slopes of s at the middle of what a unit sees; the lag between its shortest and longest."""
+    tried = []
+
+    def flights(body, gains, weights, flown, most_am2):
+        tried.append(weights)
+        return 1.0 + np.abs(weights).sum(axis=1)[:, None, None]
+
+    monkeypatch.setattr(neural, "orbit_rms_deg", flights)
+    monkeypatch.setattr(neural, "LAGS_ORBITS", (0.02, 0.5))
+    train(BODY, PD_GAINS, trials(1, 1), MOST_AM2, 3, 2)
+    weights, bounds = np.concatenate(tried), [neural.LEVEL, neural.SLOPE, neural.SLOPE]
+    assert weights[0] == pytest.approx([0.0] * 6 + [np.sqrt(np.prod(neural.LAGS_ORBITS))])
+    for unit in (weights[:, :3].copy(), weights[:, 3:6].copy()):
+        unit[:, 0] += neural.MIDDLE * (unit[:, 1] + unit[:, 2])
+        most, least = unit.max(axis=0) / bounds, unit.min(axis=0) / bounds
+        assert ((most > 0.8) & (most <= 1.0 + 1e-9)).all()
+        assert ((least < -0.8) & (least >= -1.0 - 1e-9)).all()
+    lags = weights[:, 6]
+    assert neural.LAGS_ORBITS[0] <= lags.min() < 1.5 * neural.LAGS_ORBITS[0]
+    assert neural.LAGS_ORBITS[1] / 1.5 < lags.max() <= neural.LAGS_ORBITS[1]
 
 
 @pytest.mark.long

@@ -78,6 +78,33 @@ def test_the_end_is_met_within_the_limits(found):
     assert np.abs(plan.dipoles_am2).max() == pytest.approx(2.0, rel=3e-3)
 
 
+def test_both_signs_of_a_quaternion_are_one_attitude(found):
+    case, plan = found
+    other = replace(case, steps=12, q0_body_from_orbit=tuple(-part for part in case.q0_body_from_orbit))
+    again = best(other, 500.0)
+    assert again.seconds == pytest.approx(plan.seconds)
+    assert again.dipoles_am2 == pytest.approx(plan.dipoles_am2)
+
+
+def forty_degrees(across, along):
+    half = np.radians(20.0)
+    turn = np.sin(half) * np.array([0.0, across, along]) / np.hypot(across, along)
+    return Slew(BODY, (np.cos(half), *turn.tolist()), (0.0,) * 3, 2.0, steps=12)
+
+
+@pytest.mark.parametrize("sides", [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)])
+def test_it_is_found_whichever_way_the_body_is_turned(sides):
+    plan = best(forty_degrees(*sides), 500.0)
+    assert plan.error_deg < 0.01
+    assert np.abs(plan.dipoles_am2).max() == pytest.approx(2.0, rel=3e-3)
+
+
+def test_from_a_time_too_short_for_the_coils_the_same_one_is_found():
+    """The first plans do not meet the end: what they miss is paid for."""
+    case = forty_degrees(1.0, 1.0)
+    assert best(case, 300.0).seconds == pytest.approx(best(case, 500.0).seconds, rel=3e-3)
+
+
 def test_a_shorter_time_needs_more_than_the_limit_and_a_longer_one_less(found):
     case, plan = found[0], found[1]
     short, long = (

@@ -39,6 +39,13 @@ def test_the_least_bound_is_met_and_less_than_what_lqg_leaves(case, lqg):
     assert 0.95 * gamma < norm(case, found, 5) <= gamma < 0.9 * plain
 
 
+def test_below_a_bound_that_its_controller_meets_exactly_there_is_none(case, lqg):
+    """Of all controllers the norm is at least that: what is refused is what cannot be."""
+    gamma, _ = least(case, 0.3 * norm(case, lqg, 5), norm(case, lqg, 5))
+    closest, found = least(case, 0.98 * gamma, gamma)
+    assert 0.999 * closest < norm(case, found, 5) <= closest
+
+
 def test_a_large_gamma_leaves_lqg(case, lqg):
     for found, expected in zip(central(case, 1e5), lqg, strict=True):
         assert found == pytest.approx(expected, rel=1e-5, abs=1e-6 * np.abs(expected).max())

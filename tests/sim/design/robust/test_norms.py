@@ -49,6 +49,23 @@ def test_white_torque_leaves_the_h2_norm(case, loops):
     assert np.sqrt(np.mean(np.sum(found**2, axis=1))) == pytest.approx(expected, rel=0.1)
 
 
+def test_the_h2_norm_of_a_loop_that_hardly_decays_is_that_of_its_settled_covariance(case, loops):
+    """Which has come to itself after some hundred orbits only."""
+    problem, field = case
+    gains = 0.03 * loops["lqr"]
+    free, g = problem.free[:, :6], UNIT_NM * problem.free[:, 6:]
+    closed, covariance, means = free - problem.free[:, 6:] @ skews(field) @ gains, np.zeros((6, 6)), []
+    for _ in range(600):
+        left = 0.0
+        for step, gain in zip(closed, gains, strict=True):
+            weight = np.diag(problem.cost) + problem.effort * gain.T @ gain
+            left += float(np.trace(weight @ covariance)) / len(gains)
+            covariance = step @ covariance @ step.T + g @ g.T
+        means.append(left)
+    assert means[9] < 0.9 * means[-1]
+    assert norms(*case, gains, UNIT_NM).h2 == pytest.approx(np.sqrt(means[-1]), rel=1e-6)
+
+
 def test_no_torque_leaves_more_than_the_h_infinity_norm_and_some_nearly_as_much(case, loops):
     """Power iteration on the motion: each torque that of the errors of the one before, backwards in time."""
     problem, field = case

@@ -37,6 +37,11 @@ def test_multipliers_are_those_of_the_reference(row, reference_body):
     assert degree_of_stability(whole) == pytest.approx(row["degree_of_stability"], abs=REFERENCE_TOLERANCE)
 
 
+def test_multipliers_come_by_their_size_and_of_a_pair_the_one_above_the_axis_first():
+    turning = np.array([[0.3, -0.4, 0.0], [0.4, 0.3, 0.0], [0.0, 0.0, -2.0]])
+    assert multipliers(turning) == pytest.approx([-2.0, 0.3 + 0.4j, 0.3 - 0.4j])
+
+
 def test_the_orbit_of_the_reference(row, reference_body):
     assert reference_body.rate_radps == pytest.approx(row["w0_rad_s"], rel=1e-13)
     assert reference_body.field_t == pytest.approx(row["B0_T"], rel=1e-13)

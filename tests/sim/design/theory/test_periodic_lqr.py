@@ -10,7 +10,14 @@ from sim.design.theory import periodic_lqr
 from sim.design.theory.bodies import BODIES, UNSTABLE_BODIES, Body, diagonal
 from sim.design.theory.floquet import degree_of_stability, monodromy, product, transitions
 from sim.design.theory.linear import dipole_field, free_motion, skew
-from sim.design.theory.periodic_lqr import Augmented, NotConvergedError, Weights, best_effort, design
+from sim.design.theory.periodic_lqr import (
+    Augmented,
+    NotConvergedError,
+    PeriodicLaw,
+    Weights,
+    best_effort,
+    design,
+)
 
 MICROSAT = BODIES[2]
 WEIGHTS = Weights(rate=0.7, attitude=1.3, integral=0.2, effort=0.5)
@@ -99,6 +106,18 @@ def test_a_known_torque_turns_the_body_less():
     unknown = mean_attitude(MICROSAT, law, torque_nm, knows=False)
     assert unknown > 0.01
     assert mean_attitude(MICROSAT, law, torque_nm, knows=True) < 0.5 * unknown
+
+
+@pytest.mark.parametrize("nodes", [8, 9])
+def test_between_its_nodes_a_gain_is_drawn_through_them(skewed, nodes):
+    """Whatever it is there."""
+    u = 2.0 * pi * np.arange(nodes) / nodes
+    gain = np.random.default_rng(4).standard_normal((nodes, 3, 6))
+    w0 = skewed.rate_radps
+    given = skewed.field_t / w0**2 * gain @ np.diag(np.repeat([w0, 1.0], 3))
+    expected = [free_motion(skewed) + actuation(at, skewed) @ k for at, k in zip(u, given, strict=True)]
+    loop = periodic_lqr.closed_loop(skewed, PeriodicLaw(u, gain, Augmented.NOTHING))
+    assert loop(u) == pytest.approx(np.array(expected), rel=1e-9, abs=1e-9)
 
 
 def test_it_stabilises_what_the_gravity_gradient_drives_away():

@@ -9,6 +9,7 @@ from sim.design.theory.linear import Gains, closed_loop
 from sim.design.theory.robustness import (
     ERRORS,
     PAIRS,
+    SCAN,
     TILTS_DEG,
     degrees,
     inertia_maps,
@@ -73,6 +74,33 @@ def test_maps_show_the_gains_on_the_body_they_speak_of():
         )
     middle = len(TILTS_DEG) // 2
     assert maps.tilted[:, middle] == pytest.approx([degree(MICROSAT, GAINS)] * 3, abs=1e-9)
+
+
+def test_the_maps_reach_to_half_and_half_again_and_have_the_own_body_in_the_middle():
+    maps = inertia_maps(MICROSAT, GAINS)
+    middle = len(ERRORS) // 2
+    assert (maps.errors[0], maps.errors[middle], maps.errors[-1]) == pytest.approx((-0.5, 0.0, 0.5))
+    assert maps.degree[:, middle, middle] == pytest.approx([degree(MICROSAT, GAINS)] * 3, abs=1e-9)
+
+
+def test_margins_lie_where_the_degree_rises_to_its_level_on_both_sides_of_one():
+    """Of a landscape of straight slopes over the logarithms, whose margins reach to the ends of the scan."""
+
+    def slopes(gains):
+        w, a = np.log(gains.k_w / GAINS.k_w), np.log(gains.k_a / GAINS.k_a)
+        return np.max([np.log(0.0102) - w, w - np.log(99.0), np.log(0.3) - a, a - np.log(5.0)], axis=0)
+
+    found = margins(MICROSAT, GAINS, slopes)
+    assert found.k_w == pytest.approx((0.0102, 99.0))
+    assert found.k_a == found.both == pytest.approx((0.3, 5.0))
+    assert found.half == pytest.approx((0.3**0.5, 5.0 * 0.3**0.5))
+
+
+def test_a_body_that_only_swings_has_no_margin():
+    """Without gains the gravity torque alone holds it, and nothing brings it to rest."""
+    found = margins(MICROSAT, Gains(0.0, 0.0), continuous(MICROSAT, ROUGH_STEPS))
+    assert found.k_w == found.k_a == found.both == found.half == (1.0, 1.0)
+    assert (found.moments, found.spreads, found.tilt_deg) == (SCAN[0], SCAN[0], 0.0)
 
 
 @pytest.fixture(scope="module")

@@ -10,6 +10,10 @@ from sim.design.theory.search import (
     GRID,
     MARGIN,
     SEARCH_STEPS,
+    SPAN_I,
+    Candidate,
+    Search,
+    _apart,
     best_integral,
     candidate,
     continuous,
@@ -18,7 +22,7 @@ from sim.design.theory.search import (
     search,
 )
 
-MICROSAT = BODIES[2]
+MICROSAT, GAINS = BODIES[2], Gains(6.0e6, 1300.0)
 
 
 PLACE_W, PLACE_A = 3.0, 0.5
@@ -92,6 +96,32 @@ def test_it_finds_the_same_again_and_tells_how_far_it_is():
     assert (progress[0], progress[-1]) == (1, SEARCH_STEPS)
 
 
+def test_with_as_many_basins_as_are_searched_it_never_goes_back():
+    natural, progress = natural_gains(MICROSAT), []
+
+    def pitted(gains):
+        w, a = np.log(gains.k_w / natural.k_w), np.log(gains.k_a / natural.k_a)
+        return np.min([np.hypot(w - x, a - y) for x in (-1.0, 2.0) for y in (-2.0, 2.0)], axis=0)
+
+    search(MICROSAT, pitted, pitted, progress.append)
+    assert progress == sorted(progress)
+    assert progress[-1] == SEARCH_STEPS
+
+
+def test_gains_that_stabilise_only_just_are_none():
+    """At a degree of zero the body swings for ever."""
+    swinging = Candidate(Gains(1.0, 1.0), 0.0, 0.0)
+    assert not Search(None, swinging, swinging).stabilised
+
+
+@pytest.mark.parametrize("sides", [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)])
+def test_both_gains_may_be_off_to_either_side(sides):
+    found = candidate(
+        lambda gains: sides[0] * np.log(gains.k_w) + sides[1] * np.log(gains.k_a), Gains(1.0, 1.0)
+    )
+    assert found.worst_degree == pytest.approx(2.0 * MARGIN)
+
+
 def test_gains_stay_within_what_was_searched():
     found = search(MICROSAT, *[lambda gains: -np.log(gains.k_w) - np.log(gains.k_a)] * 2)
     assert found.best.gains.k_w <= found.map.k_w[-1] * (1.0 + 1e-9)
@@ -118,13 +148,24 @@ def test_a_map_has_its_gains_where_it_says():
 
 
 def test_the_best_integral_gain_is_best_and_too_much_of_it_diverges():
-    gains, degree = Gains(6.0e6, 1300.0), continuous(MICROSAT, ROUGH_STEPS)
-    best = best_integral(MICROSAT, gains, degree)
-    assert (best.k_w, best.k_a) == gains[:2]
+    degree = continuous(MICROSAT, ROUGH_STEPS)
+    best = best_integral(MICROSAT, GAINS, degree)
+    assert (best.k_w, best.k_a) == GAINS[:2]
     at = [float(degree(best._replace(k_i=factor * best.k_i))) for factor in (0.5, 0.9, 1.0, 1.1, 8.0)]
     assert at[2] < -0.1
     assert at[2] <= min(at[1], at[3]) + 1e-3
     assert at[2] < at[0] < 0.0 < at[4]
+
+
+@pytest.mark.parametrize(("side", "end"), [(1.0, SPAN_I[0]), (-1.0, SPAN_I[1])])
+def test_an_integral_gain_at_the_end_of_its_span_stays_there(side, end):
+    best = best_integral(MICROSAT, GAINS, lambda gains: side * np.log(gains.k_i))
+    assert best.k_i == pytest.approx(end * natural_gains(MICROSAT).k_i)
+
+
+def test_a_minimum_that_was_found_twice_is_taken_once():
+    once, near, other = np.array([15.0, 7.0]), np.array([15.05, 6.95]), np.array([15.0, 7.2])
+    assert _apart([once, near, other]) == [once, other]
 
 
 def test_natural_gains_scale_with_the_inertia():

@@ -26,6 +26,7 @@ def test_all_are_stable_and_faster_with_more_measured(compared):
 
 def test_a_spring_of_either_sign_helps_alike(compared):
     plain = compared["roll and yaw"]
+    assert LAWS["roll and yaw, springs reversed"].k5 < 0.0 < LAWS["roll and yaw, springs"].k5
     for name in ("roll and yaw, springs", "roll and yaw, springs reversed"):
         assert compared[name] / plain == pytest.approx(10.0 / 9.0, rel=0.02)
 

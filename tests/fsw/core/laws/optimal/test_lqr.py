@@ -8,9 +8,12 @@ import pytest
 
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.feedback.pd import pd, pd_far
+from fsw.core.laws.interface import Wheel
 from fsw.core.laws.optimal.lqr import (
     STEPS,
     LqrGains,
+    exact_torque,
+    expected_torque,
     latitude_argument,
     lqr,
     node,
@@ -136,6 +139,21 @@ def test_what_rests_on_an_oblique_body_is_reckoned_with(bench, settings, inputs)
     assert np.linalg.norm(rest) > 1e-8
     assert lqr(cancelled, (), point, given) == lqr(inputs, (), point, without)
     assert lqr(inputs, (), point, given) != lqr(inputs, (), point, without)
+
+
+def test_the_torque_of_a_driven_wheel_at_rest_is_what_turns_its_momentum_about_the_orbit_normal(
+    bench, settings, inputs
+):
+    """d/dt of a vector at rest in axes that turn at w is w x h; the body bears the opposite."""
+    axis, momentum_nms = (0.48, -0.6, 0.64), -0.03
+    wheel = Wheel(axis, 2e-4, 2e-3, 0.12, 0.0, 0.0, tick_s=10.0, stale_ticks=10)
+    driven, table = replace(settings, wheel=wheel), settings.schedules["lqr"]
+    turned = inputs._replace(wheel_nms=momentum_nms, torque_body_nm=(3e-6, -2e-6, 5e-6))
+    rate = np.array([0.0, 0.0, bench.Orbit().rate_radps])
+    known = np.array(expected_torque(turned, table))
+    seen = exact_torque(turned, turned.reference, table, driven)
+    assert seen - known == pytest.approx(-np.cross(rate, momentum_nms * np.array(axis)), rel=1e-9, abs=1e-15)
+    assert exact_torque(turned._replace(wheel_nms=None), turned.reference, table, driven) == tuple(known)
 
 
 @pytest.mark.parametrize("t_s", [0.0, 700.0, 2500.0, 4000.0, 5900.0])
