@@ -95,27 +95,25 @@ def _spans(source: str) -> Callable[[ast.AST], Span]:
 
 
 def _sign_changes(source: str) -> Iterator[tuple[Span, str]]:
-    """(place, replacement) of each change of a sign: of a sum, a minus, a product of matrices or vectors.
+    """(place, replacement) of each change of a sign: of a sum, a minus, a product of numbers or vectors.
 
     The number of an axis of an array is left: the minus of a last one counts from the end.
     """
     span = _spans(source)
     tree = ast.parse(source)
-    axes = {id(number) for call in ast.walk(tree) for number in _axes_of(call)}
+    left = {id(part) for node in ast.walk(tree) for part in _signed_elsewhere(node)}
     for node in _executable_nodes(tree):
         match node:
-            case ast.UnaryOp(operand=ast.Constant()) if id(node) in axes:
-                continue
             case ast.BinOp(op=ast.Add() | ast.Sub() as op):
                 operands_gap = (span(node.left)[1], span(node.right)[0])
                 yield _swap_operator(source, operands_gap, COMBINED[type(op)][1])
             case ast.AugAssign(op=ast.Add() | ast.Sub() as op):
                 operands_gap = (span(node.target)[1], span(node.value)[0])
                 yield _swap_operator(source, operands_gap, COMBINED[type(op)][1] + "=")
-            case ast.UnaryOp(op=ast.USub()):
+            case ast.UnaryOp(op=ast.USub()) if id(node) not in left:
                 begin = span(node)[0]
                 yield (begin, begin + 1), ""
-            case ast.BinOp(op=ast.MatMult()):
+            case ast.BinOp(op=ast.MatMult() | ast.Mult() | ast.Div()) if id(node) not in left:
                 begin = span(node)[0]
                 yield (begin, begin), "-"
             case ast.Call(args=[_, _]) if _named(node.func) in NEGATED:
@@ -124,14 +122,27 @@ def _sign_changes(source: str) -> Iterator[tuple[Span, str]]:
                 yield (begin, end), negated.format(source[begin:end])
 
 
-def _axes_of(call: ast.AST) -> list[ast.expr]:
-    """What numbers the axes of an array in a call."""
-    match call:
-        case ast.Call() if _named(call.func) in ("moveaxis", "swapaxes"):
-            return call.args
+def _signed_elsewhere(node: ast.AST) -> list[ast.expr]:
+    """The products in a node whose sign is that of another one or changed with it, and numbers of axes."""
+    match node:
+        case ast.BinOp(op=ast.MatMult() | ast.Mult() | ast.Div()):
+            return [node.left, node.right]
+        case ast.BinOp(op=ast.Add() | ast.Sub(), right=right) if not isinstance(right, ast.UnaryOp):
+            return [right]
+        case ast.UnaryOp(op=ast.USub()):
+            return [node.operand]
+        case ast.Call(args=[_, _]) if _named(node.func) in NEGATED:
+            return [node.args[NEGATED[_named(node.func)][0]]]
         case ast.Call():
-            return [keyword.value for keyword in call.keywords if keyword.arg == "axis"]
+            return _numbers_of_axes(node)
     return []
+
+
+def _numbers_of_axes(call: ast.Call) -> list[ast.expr]:
+    """Those that are negative."""
+    by_name = [keyword.value for keyword in call.keywords if keyword.arg == "axis"]
+    numbers = call.args if _named(call.func) in ("moveaxis", "swapaxes") else by_name
+    return [one for one in numbers if isinstance(one, ast.UnaryOp) and isinstance(one.operand, ast.Constant)]
 
 
 def _named(called: ast.expr) -> str:

@@ -10,18 +10,36 @@ from fsw.core.laws.feedback.neural import NeuralGains
 from sim.design.feedback import neural
 from sim.design.feedback.neural import MOST_AM2, PD_GAINS, Trials, cost, orbit_rms_deg, train, trials
 from sim.design.theory.bodies import BODIES
-from sim.validate.review.law_flight import ConstantTorque, LawFlight, fly
+from sim.validate.review.law_flight import LawFlight, fly
 
 BODY = BODIES[2]
 WEIGHTS = (0.3, -0.25, 0.3, 0.9, -0.05, -0.4, 0.05)
 
 
-def test_its_flights_are_those_of_the_law():
+def disturbed(torque, dipole):
+    """A constant torque and that of a residual dipole, on the direct dipole's field of a circular orbit.
+
+    It is told the velocity at the beginning of a step: the field is that of its middle.
+    """
+    i, turned = radians(BODY.inclination_deg), 0.5 * neural.STEP_S * BODY.rate_radps
+    normal, pole = np.array([0.0, -np.sin(i), np.cos(i)]), np.array([0.0, 0.0, 1.0])
+
+    def extra(c_body_from_eci, velocity_eci_mps):
+        ahead = np.array(velocity_eci_mps) / np.linalg.norm(velocity_eci_mps)
+        along = np.cos(turned) * np.cross(ahead, normal) + np.sin(turned) * ahead
+        b_body = np.array(c_body_from_eci) @ (BODY.field_t * (pole - 3.0 * along[2] * along))
+        return tuple((torque + np.cross(dipole, b_body)).tolist())
+
+    return extra
+
+
+@pytest.mark.parametrize("dipole", [(0.0, 0.0, 0.0), (8e-3, -6e-3, 9e-3)], ids=["torque", "and dipole"])
+def test_its_flights_are_those_of_the_law(dipole):
     turn = radians(40.0) * np.array([1.0, -2.0, 3.0]) / np.sqrt(14.0)
     half = 0.5 * radians(40.0)
     q = np.concatenate([[np.cos(half)], np.sin(half) * turn / radians(40.0)])
     torque = (1e-7, -0.5e-7, 0.8e-7)
-    flown = Trials(q[None], np.array([torque]), np.zeros((1, 3)))
+    flown = Trials(q[None], np.array([torque]), np.array([dipole]))
     ours = orbit_rms_deg(BODY, PD_GAINS, np.array([WEIGHTS]), flown, MOST_AM2, orbits=2)[0, 0]
     history = fly(
         LawFlight(
@@ -35,7 +53,7 @@ def test_its_flights_are_those_of_the_law():
             orbits=2.0,
             step_s=neural.STEP_S,
             most_am2=MOST_AM2,
-            extra=ConstantTorque(torque),
+            extra=disturbed(torque, dipole),
         )
     )
     theirs = [

@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from sim.design.one_axis.field_tracking import best_tracking, tracking_degree, tracking_loop
+from sim.design.one_axis.field_tracking import (
+    RATES,
+    STIFFNESSES,
+    best_tracking,
+    tracking_degree,
+    tracking_loop,
+)
 from sim.design.theory.bodies import Body, diagonal
 from sim.design.theory.floquet import monodromy
 from sim.design.theory.linear import Gains, closed_loop
@@ -46,6 +52,15 @@ def test_a_boom_is_stabilised_and_a_body_without_one_hardly():
     """Hardly: by a factor e in more than 25 orbits."""
     assert best_tracking(BOOM).degree < -0.2
     assert best_tracking(MICROSAT).degree > -0.0063
+
+
+def test_the_best_gains_are_those_of_a_positive_grid():
+    found, w0 = best_tracking(BOOM), BOOM.rate_radps
+    unit = (0.3 + 2.0 + 2.2) / 3.0 * w0 / BOOM.field_t**2
+    degrees = tracking_degree(BOOM, Gains(unit * RATES[:, None], unit * w0 * STIFFNESSES))
+    i, j = np.unravel_index(degrees.argmin(), degrees.shape)
+    assert found.degree == pytest.approx(degrees[i, j])
+    assert found.gains[:2] == pytest.approx((unit * RATES[i], unit * w0 * STIFFNESSES[j]))
 
 
 def test_gains_found_for_pd_drive_the_body_away():

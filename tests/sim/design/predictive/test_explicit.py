@@ -44,12 +44,15 @@ def test_a_state_of_no_piece_is_told():
     assert evaluate(only, h, g, 1e-6 * far, MOST) is not None
 
 
-def test_a_state_at_the_edge_of_a_piece_belongs_to_it():
+def test_a_state_at_the_edge_of_two_pieces_belongs_to_both():
     h, g = linear_programme(1)
     inside = piece(h, g, (0, 0, 0), MOST)
     x = states(1)[0]
     x *= MOST / np.abs(inside.gain @ x).max()
     assert evaluate({(0, 0, 0): inside}, h, g, x, MOST) == pytest.approx(inside.gain @ x)
+    held = held_of(inside.gain @ x, MOST)
+    assert sum(map(abs, held)) == 1
+    assert evaluate({held: piece(h, g, held, MOST)}, h, g, x, MOST) == pytest.approx(inside.gain @ x)
     assert evaluate({(0, 0, 0): inside}, h, g, 1.001 * x, MOST) is None
 
 

@@ -198,3 +198,8 @@ def test_the_exponents_are_those_of_the_nonlinear_plant(k_w, k_a):
     gains = Gains(k_w, k_a)
     expected = float(degree_of_stability(monodromy(closed_loop(body, gains))))
     assert flown_degree(NonlinearPlant(body, gains)) == pytest.approx(expected, abs=1e-3)
+
+
+def test_gains_are_scaled_alike():
+    assert Gains(2.0, 3.0, 4.0).scaled(1.5) == (3.0, 4.5, 6.0)
+    assert Gains(2.0, 3.0).scaled(1.5) == (3.0, 4.5, None)

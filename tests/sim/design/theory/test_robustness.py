@@ -60,6 +60,7 @@ def test_a_turn_keeps_the_moments_and_quarter_turns_swap_them():
     turned = tilted(MICROSAT, 2, np.array([90.0, 30.0]))
     assert np.diag(turned[0]) == pytest.approx([1.85, 1.02, 1.95])
     assert np.linalg.eigvalsh(turned[1]) == pytest.approx([1.02, 1.85, 1.95])
+    assert turned[1][0, 1] == pytest.approx((1.02 - 1.85) * np.sqrt(3.0) / 4.0)
 
 
 def test_maps_show_the_gains_on_the_body_they_speak_of():

@@ -53,7 +53,11 @@ SLOW = replace(
 """What energy it has comes of the dipoles, in a field that changes within a step."""
 
 
-@pytest.mark.parametrize("case", [CASE, SLOW], ids=["tumbling", "slow"])
+FAST = replace(CASE, omega_body_radps=10.0 * CASE.omega_body_radps)
+"""More than a turn a step."""
+
+
+@pytest.mark.parametrize("case", [CASE, SLOW, FAST], ids=["tumbling", "slow", "fast"])
 def test_the_cost_is_that_of_the_motion(case):
     energies = flown_energies(case, PLAN)
     expected = energies[-1] + np.mean(0.7 * energies + 1e-6 * np.sum(PLAN**2, axis=1))

@@ -35,6 +35,7 @@ def config_of(**sections):
 CONFIG = config_of()
 BALANCED = config_of(body={"inertia_kgm2": [1.02, 1.85, 1.95]})
 """Without products of inertia no torque is on the nominal attitude."""
+FAR_SIGHTED = config_of(control={"gains": {"pulse_mpc": {"horizon_orbits": 0.3}}})
 PER_COIL = config_of(coils={"levels_am2": [0.5, 2.0, 8.0], "backoff": "per_coil"})
 
 
@@ -177,33 +178,33 @@ class TestAhead:
             return NO_PULSE
 
         def costs(problem, ahead, dipole_am2, last):
-            seen.setdefault("end", (len(ahead.b_orbit_t), last))
+            seen.setdefault("end", (ahead.b_orbit_t, last))
             return _costs(problem, ahead, dipole_am2, last)
 
         monkeypatch.setattr("fsw.core.laws.predictive.pulse_mpc.first_pulse", search)
         monkeypatch.setattr("fsw.core.laws.predictive.pulse_mpc._costs", costs)
-        ask(inputs_at(self.TICK, TURNED, dipole_am2=dipole))
+        ask(inputs_at(self.TICK, TURNED, config=FAR_SIGHTED, dipole_am2=dipole), config=FAR_SIGHTED)
         return seen
 
     @property
     def middle_unix_s(self):
         """Of the pulse that would be fired now."""
-        return CONFIG.ephemeris.epoch_unix_s + self.TICK + 0.5 * CONFIG.control.horizon_s
+        return FAR_SIGHTED.ephemeris.epoch_unix_s + self.TICK + 0.5 * FAR_SIGHTED.control.horizon_s
 
     def orbit_at(self, steps):
-        step_s = CONFIG.control.pulse_model.problem.step_s
+        step_s = FAR_SIGHTED.control.pulse_model.problem.step_s
         times = self.middle_unix_s + step_s * np.asarray(steps)
-        return orbit_ahead(CONFIG.ephemeris, times.tolist())
+        return orbit_ahead(FAR_SIGHTED.ephemeris, times.tolist())
 
     def test_a_pulse_acts_in_the_field_of_its_middle(self, told):
-        pulses, ahead = CONFIG.control.pulse_model, told["ahead"]
+        pulses, ahead = FAR_SIGHTED.control.pulse_model, told["ahead"]
         expected = kicks(pulses, self.orbit_at(np.arange(len(ahead))).b_orbit_t)
         for k in range(1, len(ahead)):
             assert ahead[k].kicks == pytest.approx(expected[k], abs=4e-3 * np.abs(expected).max())
 
     def test_between_two_the_residual_dipole_and_the_changing_rate_move_it(self, told, dipole):
         """G (m_r x b) - (w0' h, w0' h^2 / 2) e3."""
-        ahead, problem = told["ahead"], CONFIG.control.pulse_model.problem
+        ahead, problem = told["ahead"], FAR_SIGHTED.control.pulse_model.problem
         middles, h = np.arange(len(ahead)) + 0.5, problem.step_s
         before, after = (self.orbit_at(middles + by).rate_radps for by in (-0.5, 0.5))
         rate_changes = (after - before) / h
@@ -216,13 +217,25 @@ class TestAhead:
             assert found.drift == pytest.approx(wanted, rel=0.02, abs=1e-3 * h * np.abs(rate_changes).max())
         assert np.abs(h * rate_changes).max() > 1e-8
 
+    def test_after_those_searched_the_field_is_looked_at_step_by_step_to_the_horizon(self, told):
+        """In the middle of each step of the regulator, which begins where the last one searched ends."""
+        later_t, table = told["end"][0], FAR_SIGHTED.control.schedules["pulse_mpc"]
+        pulses, control = FAR_SIGHTED.control.pulse_model, FAR_SIGHTED.control
+        count = round(STEPS * control.gains["pulse_mpc"].horizon_orbits)
+        begin_s = pulses.searched * pulses.problem.step_s - 0.5 * control.horizon_s
+        middles_s = begin_s + table.problem.step_s * (np.arange(count) + 0.5)
+        expected = self.orbit_at(middles_s / pulses.problem.step_s).b_orbit_t
+        assert later_t == pytest.approx(expected, abs=0.01 * np.abs(expected).max())
+
     def test_at_the_end_stands_what_the_regulator_of_a_whole_orbit_has_there(self, told):
-        count, last = told["end"]
-        table, pulses = CONFIG.control.schedules["pulse_mpc"], CONFIG.control.pulse_model
-        later_s = pulses.searched * pulses.problem.step_s + count * table.problem.step_s
+        later_t, last = told["end"]
+        table, pulses = FAR_SIGHTED.control.schedules["pulse_mpc"], FAR_SIGHTED.control.pulse_model
+        later_s = pulses.searched * pulses.problem.step_s + len(later_t) * table.problem.step_s
         tick = self.TICK + round(later_s)
         end = node(
-            latitude_argument(reference_at(advance(None, tick, CONFIG.ephemeris), tick, CONFIG.ephemeris))
+            latitude_argument(
+                reference_at(advance(None, tick, FAR_SIGHTED.ephemeris), tick, FAR_SIGHTED.ephemeris)
+            )
         )
         near = [table.costs[(end + by) % STEPS] for by in (-1, 0, 1)]
         assert any(np.array_equal(last[:, :9], cost) for cost in near)

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from fsw.core.laws.interface import Wheel
 from fsw.core.laws.wheel.allocation import (
+    FLOORS,
     AllocationGains,
     affordable,
     least_effort,
@@ -113,6 +114,28 @@ def test_what_costs_too_much_is_given_up_along_the_field_first():
     assert np.linalg.norm(np.cross(given - across, along)) < 0.4 * np.linalg.norm(across)
     assert np.dot(given, across) > 0.6 * np.dot(across, across)
     assert abs(np.dot(given, along)) < abs(np.dot(T, along))
+
+
+def test_what_is_given_up_is_by_the_least_floor_with_the_wheels_own_limit():
+    """Of the effort, as ``least_effort`` weighs it: the first of the floors that the coils can pay."""
+    along = np.array(B) / np.linalg.norm(B)
+    normal = np.cross(along, (1.0, 0.0, 0.0))
+    axis = normal / np.linalg.norm(normal) + 0.01 * along
+    axis, weak_nm = tuple(axis / np.linalg.norm(axis)), 0.2 * MOST_AM2 * float(np.linalg.norm(B))
+    unit_nm = MOST_AM2 * float(np.linalg.norm(B))
+    torque = tuple(0.05 * unit_nm * (0.6 * along + 0.8 * normal / np.linalg.norm(normal)))
+    tried = [
+        least_effort(torque, B, (axis,), MOST_AM2, (weak_nm,), floor * unit_nm) for floor in (0.0, *FLOORS)
+    ]
+    paid = [
+        shares
+        for shares in tried
+        if np.linalg.norm(shares.m_body_am2) <= MOST_AM2 and abs(shares.wheel_torques_nm[0]) <= weak_nm
+    ]
+    effort = affordable(torque, B, axis, MOST_AM2, weak_nm)
+    assert 0 < len(paid) < len(tried)
+    assert effort.m_body_am2 == pytest.approx(paid[0].m_body_am2, rel=1e-9)
+    assert effort.wheel_torque_nm == pytest.approx(paid[0].wheel_torques_nm[0], rel=1e-9)
 
 
 class TestInFlight:
