@@ -68,6 +68,17 @@ class TestFlaps:
         expected = np.cross([0.0, 2.0, 0.0], 0.6 * force) + np.cross([0.0, -2.0, 0.0], 0.64 * force)
         np.testing.assert_allclose(flaps.torque_body_nm(MOMENT), expected, rtol=1e-12)
 
+    @pytest.mark.parametrize("turns", [(30.0, 100.0), (-20.0, 65.0), (150.0, -110.0)])
+    def test_a_flap_is_turned_from_axis_1_towards_axis_3(self, turns):
+        """Black: P A |cos| along the light, its normal (cos, 0, sin) of the turn."""
+        flaps = SolarFlaps(area_m2=0.1, arm_m=2.0, plus_deg=turns[0], minus_deg=turns[1])
+        push = -SUNLIGHT_PA * 0.1 * np.array(MOMENT.sun_body)
+        plus, minus = (
+            abs(np.cos(np.radians(turn)) * 0.6 + np.sin(np.radians(turn)) * 0.64) * push for turn in turns
+        )
+        expected = np.cross((0.0, 2.0, 0.0), plus - minus)
+        np.testing.assert_allclose(flaps.torque_body_nm(MOMENT), expected, rtol=1e-12)
+
     def test_flaps_alike_and_the_dark_give_none(self):
         assert SolarFlaps(plus_deg=30.0, minus_deg=30.0).torque_body_nm(MOMENT) == pytest.approx((0.0,) * 3)
         assert SolarFlaps().torque_body_nm(MOMENT._replace(lit=0.0)) == (0.0, 0.0, 0.0)

@@ -33,3 +33,7 @@ def test_fewer_functions_leave_what_they_have_not(count, left):
 def test_a_third_harmonic_is_left():
     u = orbit()
     assert fit(u, np.cos(3.0 * u)[:, None]).left == pytest.approx(1.0)
+
+
+def test_an_orbit_begins_at_the_node_and_goes_on_ahead():
+    assert orbit(4) == pytest.approx([0.0, np.pi / 2.0, np.pi, 3.0 * np.pi / 2.0])
