@@ -18,10 +18,10 @@ TEXT = """# Mutation testing
 Each mutant is a module with one small change, and the tests of the module are run: one must fail. The changes
 replace operators, comparisons, constants, conditions and loops, and omit statements, assignments to state,
 keyword arguments and return values; in the laws, the methods on the ground and the models of field and
-torques a sign alone is changed, of a sum, a minus or a product. `make mutation`
-measures and writes this page; the tests of each module are in `tests/mutation/targets.toml`, the reasons for
-survivors in `tests/mutation/survivors.toml`. Tests that run too long count as failed. A module that has
-changed since its measurement is marked as such, and `make mutation` measures it again.
+torques a sign alone is changed, of a sum, a minus or a product. `make mutation` measures and writes this
+page; the tests of each module are in `tests/mutation/targets.toml`, the reasons for survivors in
+`tests/mutation/survivors.toml`. Tests that run too long count as failed. A module that has changed since its
+measurement is marked as such, and `make mutation` measures it again.
 
 | part | module | mutants | noticed | too long | survived, listed | survived, not listed |
 |---|---|---|---|---|---|---|

@@ -99,6 +99,7 @@ def test_it_is_found_whichever_way_the_body_is_turned(sides):
     assert np.abs(plan.dipoles_am2).max() == pytest.approx(2.0, rel=3e-3)
 
 
+@pytest.mark.long
 def test_from_a_time_too_short_for_the_coils_the_same_one_is_found():
     """The first plans do not meet the end: what they miss is paid for."""
     case = forty_degrees(1.0, 1.0)
