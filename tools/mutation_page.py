@@ -2,7 +2,9 @@
 
 import hashlib
 import json
+import sys
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -63,8 +65,17 @@ class Target(NamedTuple):
         return [[test.format(**places) for test in stage] for stage in (self.quick, self.slow)]
 
 
+def _read(path: Path, parse: Callable[[str], dict[str, Any]]) -> dict[str, Any]:
+    """Its content; one that cannot be read ends the command with exit code 2."""
+    try:
+        return parse(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        print(f"{path.relative_to(ROOT)} cannot be read: {error}", file=sys.stderr)
+        raise SystemExit(2) from None
+
+
 def targets() -> list[Target]:
-    tables = tomllib.loads((HERE / "targets.toml").read_text(encoding="utf-8"))
+    tables = _read(HERE / "targets.toml", tomllib.loads)
     return [
         Target(name, _modules(table["modules"]), table["quick"], table["slow"], table.get("signs", False))
         for name, table in tables.items()
@@ -81,12 +92,12 @@ def _modules(patterns: list[str]) -> list[str]:
 
 def survivors() -> dict[tuple[str, str], str]:
     """The reason for each listed (module, change)."""
-    listed = tomllib.loads((HERE / "survivors.toml").read_text(encoding="utf-8"))
+    listed = _read(HERE / "survivors.toml", tomllib.loads)
     return {(one["module"], one["change"]): one["reason"] for one in listed.get("survivor", [])}
 
 
 def stored(path: Path) -> dict[str, Any]:
-    return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    return _read(path, json.loads) if path.exists() else {}
 
 
 def store(path: Path, results: dict[str, Any]) -> None:

@@ -134,6 +134,16 @@ def test_a_name_that_is_of_nothing_is_told_and_is_no_success(repository, option)
     assert "there is no target or module fsw/limit in" in done.stderr
 
 
+@pytest.mark.parametrize("name", ["results.json", "targets.toml", "survivors.toml"])
+def test_a_file_that_is_cut_short_is_told_in_a_sentence_and_left(repository, name):
+    repository.write(f"tests/mutation/{name}", '[limits\nx = "')
+    done = repository.mutate("--page")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(f"tests/mutation/{name} cannot be read: ")
+    assert done.stderr.count("\n") == 1
+    assert (repository.root / "tests/mutation" / name).read_text() == '[limits\nx = "'
+
+
 def test_a_module_that_has_never_been_measured_is_a_failure(repository):
     repository.write("tests/mutation/results.json", "{}")
     assert repository.mutate("--page").returncode == 1

@@ -63,8 +63,12 @@ def test_a_turn_keeps_the_moments_and_quarter_turns_swap_them():
     assert turned[1][0, 1] == pytest.approx((1.02 - 1.85) * np.sqrt(3.0) / 4.0)
 
 
-def test_maps_show_the_gains_on_the_body_they_speak_of():
-    maps = inertia_maps(MICROSAT, GAINS)
+@pytest.fixture(scope="module")
+def maps():
+    return inertia_maps(MICROSAT, GAINS)
+
+
+def test_maps_show_the_gains_on_the_body_they_speak_of(maps):
     i, j = 4, 15
     for place, (one, other) in enumerate(PAIRS):
         errors = np.zeros(3)
@@ -77,8 +81,7 @@ def test_maps_show_the_gains_on_the_body_they_speak_of():
     assert maps.tilted[:, middle] == pytest.approx([degree(MICROSAT, GAINS)] * 3, abs=1e-9)
 
 
-def test_the_maps_reach_to_half_and_half_again_and_have_the_own_body_in_the_middle():
-    maps = inertia_maps(MICROSAT, GAINS)
+def test_the_maps_reach_to_half_and_half_again_and_have_the_own_body_in_the_middle(maps):
     middle = len(ERRORS) // 2
     assert (maps.errors[0], maps.errors[middle], maps.errors[-1]) == pytest.approx((-0.5, 0.0, 0.5))
     assert maps.degree[:, middle, middle] == pytest.approx([degree(MICROSAT, GAINS)] * 3, abs=1e-9)

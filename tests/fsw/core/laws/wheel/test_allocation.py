@@ -102,12 +102,18 @@ def test_a_strong_wheel_is_used_up_to_its_own_limit():
     assert effort.wheel_torque_nm == pytest.approx(-0.04, rel=1e-6)
 
 
-def test_what_costs_too_much_is_given_up_along_the_field_first():
-    """The wheel nearly normal to the field: across it the torque is still almost all there."""
+def nearly_normal_wheel():
+    """Directions along the field and normal to it, and a wheel's axis that leans from the second by 0.01."""
     along = np.array(B) / np.linalg.norm(B)
     normal = np.cross(along, (1.0, 0.0, 0.0))
-    axis = normal / np.linalg.norm(normal) + 0.01 * along
-    axis = tuple(axis / np.linalg.norm(axis))
+    normal /= np.linalg.norm(normal)
+    axis = normal + 0.01 * along
+    return along, normal, tuple(axis / np.linalg.norm(axis))
+
+
+def test_what_costs_too_much_is_given_up_along_the_field_first():
+    """The wheel nearly normal to the field: across it the torque is still almost all there."""
+    along, _, axis = nearly_normal_wheel()
     effort = affordable(T, B, axis, MOST_AM2, MOST_NM[0])
     given = np.cross(effort.m_body_am2, B) - effort.wheel_torque_nm * np.array(axis)
     across = np.array(T) - np.dot(T, along) * along
@@ -118,12 +124,9 @@ def test_what_costs_too_much_is_given_up_along_the_field_first():
 
 def test_what_is_given_up_is_by_the_least_floor_with_the_wheels_own_limit():
     """Of the effort, as ``least_effort`` weighs it: the first of the floors that the coils can pay."""
-    along = np.array(B) / np.linalg.norm(B)
-    normal = np.cross(along, (1.0, 0.0, 0.0))
-    axis = normal / np.linalg.norm(normal) + 0.01 * along
-    axis, weak_nm = tuple(axis / np.linalg.norm(axis)), 0.2 * MOST_AM2 * float(np.linalg.norm(B))
+    along, normal, axis = nearly_normal_wheel()
     unit_nm = MOST_AM2 * float(np.linalg.norm(B))
-    torque = tuple(0.05 * unit_nm * (0.6 * along + 0.8 * normal / np.linalg.norm(normal)))
+    weak_nm, torque = 0.2 * unit_nm, tuple(0.05 * unit_nm * (0.6 * along + 0.8 * normal))
     tried = [
         least_effort(torque, B, (axis,), MOST_AM2, (weak_nm,), floor * unit_nm) for floor in (0.0, *FLOORS)
     ]
