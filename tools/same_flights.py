@@ -1,11 +1,15 @@
 """Are the flights of this code those of an earlier commit, byte for byte?
 
-    python tools/same_flights.py COMMIT [--orbits N] [--carry-over]
+    python tools/same_flights.py COMMIT [--orbits N] [--but-state-crc | --carry-over]
 
 For a change that means to alter no flight, such as one of a sentence. Both versions fly every shipped
 scenario and inject every fault once, but for those that kill processes; log, truth and summary, and what each
 fault did, must be equal. Exit code 1 if one is not. With --carry-over, and if all are, what docs/ has
 recorded by the commit counts as recorded by this code: the digests there are replaced.
+
+With --but-state-crc the CRC of the flight state in each TICK_DONE is left out, for a change that lays out the
+state in another way; and so is the fault that flips bits of the state, since it draws their places from the
+layout.
 """
 
 import argparse
@@ -23,6 +27,7 @@ from typing import Any
 
 from argument_types import count, positive
 
+from fsw.wire.messages import TickDone
 from sim.console import counted
 from sim.errors import HarnessError
 from sim.record.run_dir import replace_file
@@ -38,6 +43,10 @@ from sim.campaign.code_digest import code_digest
 from sim.fault_table.campaign import FAULT_CODE
 print(code_digest(), code_digest(FAULT_CODE))
 """
+OF_LAYOUT = ("bit-flip",)
+"""Faults whose places are drawn from the layout of the flight state."""
+STATE_CRC_FROM = 8
+"""Hex digits of a TICK_DONE before those of its state_crc and CRC: the tick."""
 RECORDS = ("validation.json", "comparison.json", "faults.json.gz")
 """In docs/; those that are there hold digests."""
 
@@ -60,16 +69,27 @@ def run(tree: Path, *words: str) -> str:
     return done.stdout
 
 
-def flown(tree: Path, scenario: str, orbits: float) -> str:
-    """The digest of log, truth and summary of a flight."""
+def flown(tree: Path, scenario: str, orbits: float, state_crc: bool = True) -> str:
+    """The digest of log, truth and summary of a flight; ``state_crc``: with that of each TICK_DONE."""
     with TemporaryDirectory() as folder:
         out = Path(folder, "run")
         words = ("sil", scenario, "--bus", "virtual", "--orbits", str(orbits), "--out", str(out), "--quiet")
         run(tree, "-m", "torquer", *words)
         summary = figures(json.loads((out / "summary.json").read_text()))
-        files = [_sha256((out / name).read_bytes()) for name in ("bus.log", "truth.h5")]
-        parts = [json.dumps(summary), *files]
+        log = (out / "bus.log").read_bytes()
+        files = [log if state_crc else without_state_crc(log), (out / "truth.h5").read_bytes()]
+        parts = [json.dumps(summary), *map(_sha256, files)]
         return _sha256("\n".join(parts).encode())
+
+
+def without_state_crc(log: bytes) -> bytes:
+    """A candump log whose TICK_DONE end after the tick."""
+    done = b" %03X#" % TickDone.ID
+    lines = []
+    for line in log.splitlines():
+        before, found, data = line.partition(done)
+        lines.append(before + found + data[:STATE_CRC_FROM] if found else line)
+    return b"\n".join(lines)
 
 
 def faults(tree: Path, rows: Sequence[str] = ()) -> dict[str, str]:
@@ -96,13 +116,15 @@ def scenarios(tree: Path) -> list[str]:
     return sorted(path.stem for path in (tree / SCENARIOS).glob("*.toml"))
 
 
-def flights(tree: Path, orbits: float, workers: int) -> Digests:
-    """The digests of all flights of a tree."""
+def flights(tree: Path, orbits: float, workers: int, state_crc: bool = True) -> Digests:
+    """The digests of all flights of a tree; without ``state_crc`` those that do not depend on the layout."""
     names = scenarios(tree)
     with ThreadPoolExecutor(workers) as pool:
-        digests = dict(zip(names, pool.map(lambda name: flown(tree, name, orbits), names), strict=True))
+        found = pool.map(lambda name: flown(tree, name, orbits, state_crc), names)
+        digests = dict(zip(names, found, strict=True))
     print(f"{len(digests)} scenarios flown; faults now", file=sys.stderr, flush=True)
-    return digests | faults(tree)
+    left_out = set() if state_crc else {f"fault {row}" for row in OF_LAYOUT}
+    return digests | {name: digest for name, digest in faults(tree).items() if name not in left_out}
 
 
 def different(before: Digests, now: Digests) -> list[str]:
@@ -149,13 +171,16 @@ def main(words: Sequence[str] | None = None, fly: Callable[..., Digests] = fligh
     parser.add_argument("commit", help="the earlier one")
     parser.add_argument("--orbits", type=positive, default=1.0, help="of each flight of a scenario")
     parser.add_argument("--workers", type=count, default=os.cpu_count() or 1, help="flights at once")
-    parser.add_argument("--carry-over", action="store_true", help="write the digests of this code in docs/")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--but-state-crc", action="store_true", help="the layout of the state may differ")
+    kind.add_argument("--carry-over", action="store_true", help="write the digests of this code in docs/")
     arguments = parser.parse_args(words)
     try:
         with TemporaryDirectory() as folder:
             exported(arguments.commit, Path(folder))
             trees = (Path(folder), ROOT)
-            before, now = (fly(tree, arguments.orbits, arguments.workers) for tree in trees)
+            how = (arguments.orbits, arguments.workers, not arguments.but_state_crc)
+            before, now = (fly(tree, *how) for tree in trees)
             codes = [run(tree, "-c", DIGESTS).split() for tree in trees]
     except HarnessError as error:
         print(f"same_flights: {error}", file=sys.stderr)
@@ -166,7 +191,8 @@ def main(words: Sequence[str] | None = None, fly: Callable[..., Digests] = fligh
             "\n".join([*(f"differs: {name}" for name in apart), f"{len(apart)} of {len(now)} flights differ"])
         )
         return 1
-    print(f"{counted(len(now), 'flight')} the same byte for byte as by {arguments.commit}")
+    extent = ", but for the CRC of the state" if arguments.but_state_crc else ""
+    print(f"{counted(len(now), 'flight')} the same byte for byte as by {arguments.commit}{extent}")
     if arguments.carry_over:
         print("\n".join(carry_over(ROOT / "docs", dict(zip(*codes, strict=True)))))
     return 0

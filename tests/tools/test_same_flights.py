@@ -5,8 +5,9 @@ import json
 
 import pytest
 import same_flights
-from same_flights import carry_over, different, main, scenarios
+from same_flights import carry_over, different, main, scenarios, without_state_crc
 
+from fsw.wire.messages import TickDone
 from sim.campaign.code_digest import code_digest
 
 OLD, NEW = "0123456789abcdef", "fedcba9876543210"
@@ -28,7 +29,7 @@ def records(tmp_path, monkeypatch):
 
 def flights_of(before, now):
     digests = iter((before, now))
-    return lambda tree, orbits, workers: next(digests)
+    return lambda tree, orbits, workers, state_crc: next(digests)
 
 
 @pytest.mark.parametrize(
@@ -70,6 +71,29 @@ def test_the_same_flights_are_carried_over_on_request(records, capsys):
     assert main(["HEAD", "--carry-over"], flights_of({"microsat": "1"}, {"microsat": "1"})) == 0
     assert NEW in (records / "validation.json").read_text()
     assert "1 flight the same byte for byte as by HEAD" in capsys.readouterr().out
+
+
+def test_without_the_crc_of_the_state_logs_differ_by_every_other_frame():
+    log = b"(1.000000) virtual 100#AABB\n(1.000000) virtual %03X#01000000DEADBEEF\n" % TickDone.ID
+    assert without_state_crc(log) == without_state_crc(log.replace(b"DEADBEEF", b"00000000"))
+    assert without_state_crc(log) != without_state_crc(log.replace(b"#01", b"#02"))
+    assert without_state_crc(log) != without_state_crc(log.replace(b"AABB", b"AABC"))
+
+
+def test_the_fault_that_flips_bits_of_the_state_is_left_out_with_its_layout(monkeypatch):
+    monkeypatch.setattr(same_flights, "flown", lambda tree, name, orbits, state_crc: "1")
+    monkeypatch.setattr(same_flights, "faults", lambda tree: {"fault bit-flip": "2", "fault open-coil": "3"})
+    tree = same_flights.ROOT
+    assert "fault bit-flip" in same_flights.flights(tree, 1.0, 1)
+    found = same_flights.flights(tree, 1.0, 1, state_crc=False)
+    assert "fault bit-flip" not in found
+    assert found["fault open-coil"] == "3"
+
+
+def test_a_layout_of_another_kind_carries_nothing_over(capsys):
+    with pytest.raises(SystemExit):
+        main(["HEAD", "--but-state-crc", "--carry-over"])
+    assert "not allowed with" in capsys.readouterr().err
 
 
 def test_the_digests_are_read_from_a_tree(monkeypatch):
