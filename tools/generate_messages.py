@@ -6,33 +6,40 @@ unit is a quantity and saturates at its range.
 
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import cantools
 from cantools.database.can import Message, Signal
 
-WIRE = Path(__file__).resolve().parent.parent / "fsw" / "wire"
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))  # the tree in which this stands, not the one that is installed
+
+from fsw.wire.frame import id_register
+
+WIRE = ROOT / "fsw" / "wire"
 TARGET = WIRE / "messages.py"
 WHOLE_UNITS = (None, "", "ms", "s", "mA")
 ENUM_SIGNALS = ("mode", "severity", "reason", "result", "gain", "element", "component")
+WIDEST = 110
+"""Characters of a line."""
 NAMED_BY_MESSAGE = ("reason", "result")
 """Signals whose enum bears the name of the message too."""
 
 MODULE = '''"""Messages of the bus: generated from torquer.dbc by tools/generate_messages.py. Do not edit.
 
-Each message is a named tuple of physical values. ``encode`` saturates quantities at the range of their
+Each message is a value of physical quantities. ``encode`` saturates quantities at the range of their
 signal, takes codes modulo their width, and seals the frame with its CRC. ``decode`` only unpacks: length
 and CRC are judged by ``intact``.
 """
 
 from enum import IntEnum
-from typing import Final, NamedTuple
+from typing import Final, Self, final
 
-from fsw.wire.frame import Frame, crc8, id_register, raw, seal
+from fsw.wire.frame import Frame, crc8, raw, seal
+from fsw.wire.value import Value
 
 {enums}
-
-{registers}
 
 {messages}
 
@@ -49,7 +56,8 @@ NAMES: dict[int, str] = {{{names}}}
 SENDERS: dict[int, str] = {{{senders}}}
 """Node that sends each message."""
 
-_SHAPES: dict[int, tuple[int, int | None]] = {{{shapes}}}
+_SHAPES: dict[int, tuple[int, int]] = {{{shapes}}}
+"""Length of each message, and the CRC register after its identifier; -1: it has no CRC."""
 
 
 def intact(frame: Frame) -> bool:
@@ -61,7 +69,7 @@ def intact(frame: Frame) -> bool:
     data = frame.data
     if len(data) != length:
         return False
-    return register is None or crc8(data[:-1], register) == data[-1]
+    return register < 0 or crc8(data[:-1], register) == data[-1]
 '''
 
 ENUM = '''
@@ -72,30 +80,60 @@ class {name}(IntEnum):
 '''
 
 MESSAGE = '''
-class _{name}(NamedTuple):
-{fields}
-
-
-class {name}(_{name}):
+@final
+class {name}(Value):
     """{comment}"""
 
-    __slots__ = ()
+{constants}
+    FIELDS = {fields}
+    __slots__ = FIELDS
 
-    ID: Final = {can_id:#05x}
-    LENGTH: Final = {length}
+    def __init__(self, {parameters}) -> None:
+{assignments}
 
     def encode(self) -> Frame:
         """The frame on the bus."""
-        word = (
-            {word}
-        )
+        word = {word}
         return {frame}
 
+    @staticmethod
+    def decode(data: bytes) -> "{name}":
+        """The values in the data bytes, unjudged."""
+        word = int.from_bytes(data, "little")
+        return {name}({values})
+'''
+
+LAYOUT = '''
+class _{name}(Value):
+    FIELDS = {fields}
+    __slots__ = FIELDS
+
+    def __init__(self, {parameters}) -> None:
+{assignments}
+
+    def word(self) -> int:
+        """The bits of the frame, but for its CRC."""
+        return {word}
+
     @classmethod
-    def decode(cls, data: bytes) -> "{name}":
+    def decode(cls, data: bytes) -> Self:
         """The values in the data bytes, unjudged."""
         word = int.from_bytes(data, "little")
         return cls({values})
+'''
+"""What messages of several nodes share."""
+
+OF_LAYOUT = '''
+@final
+class {name}(_{layout}):
+    """{comment}"""
+
+{constants}
+    __slots__ = ()
+
+    def encode(self) -> Frame:
+        """The frame on the bus."""
+        return {frame}
 '''
 
 
@@ -117,12 +155,17 @@ def fields_of(message: Message) -> list[Signal]:
     return sorted(fields, key=lambda signal: (signal.name == "counter", signal.start))
 
 
-def field_line(signal: Signal) -> str:
-    if signal.name == "counter":
-        return "    counter: int = 0"
+def parameter(signal: Signal) -> str:
+    return f"{signal.name}: {python_type(signal)}" + (" = 0" if signal.name == "counter" else "")
+
+
+def assignment(signal: Signal) -> str:
     notes = [f"[{signal.unit}]"] if signal.unit else []
     notes += [signal.comment] if signal.comment else []
-    return f"    {signal.name}: {python_type(signal)}" + (f"  # {'; '.join(notes)}" if notes else "")
+    line, note = f"        self.{signal.name} = {signal.name}", f"# {'; '.join(notes)}"
+    if not notes or signal.name == "counter":
+        return line
+    return f"{line}  {note}" if len(line) + len(note) < WIDEST - 1 else f"        {note}\n{line}"
 
 
 def encode_term(signal: Signal) -> str:
@@ -148,21 +191,54 @@ def decode_term(signal: Signal) -> str:
     return bits if signal.scale == 1 else f"{bits} * {signal.scale!r}"
 
 
-def message_text(message: Message) -> str:
-    fields, name, can_id = fields_of(message), camel(message.name), message.frame_id
+def register(message: Message) -> int:
+    """The CRC register after the identifier; -1 if the message has no CRC."""
+    return id_register(message.frame_id) if is_sealed(message) else -1
+
+
+def layout(message: Message) -> str:
+    """The form of a message, without its identifier: what is the same for messages of several nodes."""
+    return LAYOUT.format(name=camel(message.name.split("_")[-1]), **parts(message))
+
+
+def parts(message: Message) -> dict[str, str]:
+    fields = fields_of(message)
     by_start = sorted(fields, key=lambda signal: signal.start)
-    sealed = f"seal({can_id:#05x}, word, {message.length}, _{message.name})"
-    plain = f'Frame({can_id:#05x}, word.to_bytes({message.length}, "little"))'
-    return MESSAGE.format(
-        name=name,
-        fields="\n".join(map(field_line, fields)),
+    names = ", ".join(f'"{signal.name}"' for signal in fields)
+    return {
+        "fields": f"({names},)" if len(fields) == 1 else f"({names})",
+        "parameters": ", ".join(map(parameter, fields)),
+        "assignments": "\n".join(map(assignment, fields)),
+        "word": "(" + " | ".join(map(encode_term, by_start)) + ")",
+        "values": decode_term(fields[0])[1:-1] if len(fields) == 1 else ", ".join(map(decode_term, fields)),
+    }
+
+
+def message_text(message: Message, shared: bool) -> str:
+    can_id, length = message.frame_id, message.length
+    word = "self.word()" if shared else "word"
+    plain = f'Frame({can_id:#05x}, {word}.to_bytes({length}, "little"))'
+    sealed = f"seal({can_id:#05x}, {word}, {length}, {register(message):#04x})"
+    return (OF_LAYOUT if shared else MESSAGE).format(
+        name=camel(message.name),
+        layout=camel(message.name.split("_")[-1]),
         comment=message.comment,
-        can_id=can_id,
-        length=message.length,
-        word="\n            | ".join(map(encode_term, by_start)),
+        constants=f"    ID: Final = {can_id:#05x}\n    LENGTH: Final = {length}",
         frame=sealed if is_sealed(message) else plain,
-        values=", ".join(map(decode_term, fields)) + ",",
+        **parts(message),
     )
+
+
+def message_texts(messages: list[Message]) -> list[str]:
+    """The classes: the layouts that several messages share come before the first of these."""
+    counts = Counter(map(layout, messages))
+    texts: dict[str, None] = {}
+    for message in messages:
+        form = layout(message)
+        if counts[form] > 1:
+            texts[form] = None
+        texts[message_text(message, counts[form] > 1)] = None
+    return list(texts)
 
 
 def enum_texts(messages: list[Message]) -> list[str]:
@@ -189,7 +265,7 @@ def table(messages: list[Message], cell: str) -> str:
             name=message.name,
             sender=message.senders[0],
             length=message.length,
-            register=f"_{message.name}" if is_sealed(message) else None,
+            register=f"{register(message):#04x}" if is_sealed(message) else -1,
         )
         for message in messages
     )
@@ -203,8 +279,7 @@ def module_text() -> str:
     unsealed = [message for message in messages if not is_sealed(message)]
     return MODULE.format(
         enums="\n".join(enum_texts(messages)),
-        registers="\n".join(f"_{m.name} = id_register({m.frame_id:#05x})" for m in sealed),
-        messages="\n".join(map(message_text, messages)),
+        messages="\n".join(message_texts(messages)),
         counted=" | ".join(camel(m.name) for m in sealed),
         uncounted=" | ".join(camel(m.name) for m in unsealed),
         classes=table(messages, "{id}: {cls}"),

@@ -18,7 +18,7 @@ def pack(frame: Frame) -> bytes:
     Raises:
         ValueError: more than 8 data bytes.
     """
-    can_id, data = frame
+    can_id, data = frame.can_id, frame.data
     if len(data) > MAX_DATA:
         raise ValueError(f"a classic CAN frame holds at most {MAX_DATA} data bytes, not {len(data)}")
     return _RECORD.pack(can_id, len(data), data)

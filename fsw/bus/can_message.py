@@ -9,7 +9,7 @@ _FLAGS = EXTENDED_FLAG | REMOTE_FLAG | ERROR_FLAG
 
 def message_of(frame: Frame, timestamp_s: float = 0.0, channel: str | None = None) -> can.Message:
     """The frame as python-can's message."""
-    can_id, data = frame
+    can_id, data = frame.can_id, frame.data
     remote = bool(can_id & REMOTE_FLAG)
     return can.Message(
         timestamp=timestamp_s,

@@ -233,7 +233,7 @@ def number(messages: list[CountedMessage], sent: tuple[int, ...]) -> tuple[list[
     frames = []
     for message in messages:
         slot = _SLOT[message.ID]
-        values = (*message[:-1], counters[slot])  # the counter is the last of every message
-        frames.append(type(message)._make(values).encode())
+        message.counter = counters[slot]
+        frames.append(message.encode())
         counters[slot] = (counters[slot] + 1) & 0xF
     return frames, tuple(counters)

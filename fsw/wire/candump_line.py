@@ -79,7 +79,7 @@ def format_line(timestamp: str, channel: str, frame: Frame) -> str:
         channel: name of the bus, without spaces.
         frame: any classic frame; of a remote frame the length is lost.
     """
-    can_id, data = frame
+    can_id, data = frame.can_id, frame.data
     if can_id < 0x800:
         return f"({timestamp}) {channel} {can_id:03X}#{data.hex().upper()}\n"
     payload = "R" if can_id & REMOTE_FLAG else data.hex().upper()

@@ -1,6 +1,8 @@
 """A CAN frame as plain data, and the CRC-8 that seals it."""
 
-from typing import NamedTuple
+from typing import final
+
+from fsw.wire.value import Value
 
 EXTENDED_FLAG = 0x8000_0000
 REMOTE_FLAG = 0x4000_0000
@@ -8,11 +10,22 @@ ERROR_FLAG = 0x2000_0000
 """Flags above the identifier, as in SocketCAN's ``can_id``. A frame that carries one is never ours."""
 
 
-class Frame(NamedTuple):
+@final
+class Frame(Value):
     """One classic CAN frame: identifier (with SocketCAN's flags) and at most 8 data bytes."""
 
-    can_id: int
-    data: bytes
+    FIELDS = ("can_id", "data")
+    __slots__ = FIELDS
+
+    def __init__(self, can_id: int, data: bytes) -> None:
+        self.can_id = can_id
+        self.data = data
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Frame) and self.can_id == other.can_id and self.data == other.data
+
+    def __hash__(self) -> int:
+        return hash((self.can_id, self.data))
 
 
 def _crc8_table(polynomial: int) -> tuple[int, ...]:

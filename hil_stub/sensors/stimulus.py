@@ -57,7 +57,7 @@ def recorded(lines: Iterable[bytes], message: SensorMessage, scale: float) -> St
         if logged is None or not intact(frame := logged[2]):
             continue
         if frame.can_id == message.ID:
-            valid, *values, _ = message.decode(frame.data)
+            valid, *values, _ = message.decode(frame.data).values()
             latest = Reading(scaled(tuple(values), scale), bool(valid))
         elif frame.can_id == Sync.ID:
             if latest is not NOTHING:

@@ -127,7 +127,8 @@ class _Auditor:
             tick = None if self._tick is None else self._tick + 1
             self._add(ViolationKind.SYNC, (tick or 0) * MICRO, tick, line, f"SYNC of {len(frame.data)} bytes")
             return
-        tick, unix_time_s = Sync.decode(frame.data)
+        sync = Sync.decode(frame.data)
+        tick, unix_time_s = sync.tick, sync.unix_time_s
         if tick == self._tick:  # sent again: no time has passed
             self._check_unix_time(line, tick, unix_time_s)
             return

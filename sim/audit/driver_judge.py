@@ -33,7 +33,8 @@ class DriverJudge:
         if not intact(entry.frame):
             self._broken += 1
             return False
-        fractions = CoilDipoleStatus.decode(entry.frame.data)[:3]
+        status = CoilDipoleStatus.decode(entry.frame.data)
+        fractions = (status.m_x, status.m_y, status.m_z)
         self._statuses += 1
         self._any += any(fractions)
         for coil in COILS:

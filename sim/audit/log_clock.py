@@ -88,7 +88,8 @@ def read_clock(entries: Iterator[LogEntry], tick_hz: int | None) -> tuple[LogClo
         if entry.frame.can_id != Sync.ID or len(entry.frame.data) != Sync.LENGTH:
             continue
         first = first or entry
-        tick, unix = Sync.decode(entry.frame.data)
+        sync = Sync.decode(entry.frame.data)
+        tick, unix = sync.tick, sync.unix_time_s
         is_new = unix not in seconds
         seconds[unix] = (tick if is_new else seconds[unix][0], tick)
         if len(seconds) > 1 and is_new:
@@ -126,7 +127,8 @@ def _tick_clock(first: LogEntry, rates: list[int] | None, tick_hz: int | None) -
     hz = tick_hz if not rates or tick_hz in rates else min(rates)
     if hz is None:
         return None
-    tick, unix = Sync.decode(first.frame.data)
+    sync = Sync.decode(first.frame.data)
+    tick, unix = sync.tick, sync.unix_time_s
     epoch_s = unix - tick // hz
     simulated = _instant(first.timestamp_us, hz) == (epoch_s * hz + tick) * MICRO
     return LogClock(hz, MICRO, epoch_s, epoch_s * MICRO, simulated, contradictory=False)

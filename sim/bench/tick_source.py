@@ -167,8 +167,7 @@ class PlantTicks:
             if SENDERS[frame.can_id] == "PLANT":
                 self._own += [frame] if frame.can_id != PlantBoot.ID else []  # all have booted by now
             elif write := self._lines.get(SENSORS.get(frame.can_id, "")):
-                sample = CLASSES[frame.can_id].decode(frame.data)
-                valid, values = sample[0], sample[1:-1]
+                valid, *values, _ = CLASSES[frame.can_id].decode(frame.data).values()
                 write(f"{tick} {' '.join(map(repr, values))} {valid}\n".encode())
 
 

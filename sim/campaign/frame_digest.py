@@ -23,10 +23,10 @@ class FrameDigest:
 
     def take(self, frames: Sequence[Frame]) -> None:
         """Add the frames of a tick."""
-        self._all.update(b"".join([data for _, data in frames]))
-        for can_id, data in frames:
-            if can_id in COMMANDS:
-                self._commands.update(data)
+        self._all.update(b"".join([frame.data for frame in frames]))
+        for frame in frames:
+            if frame.can_id in COMMANDS:
+                self._commands.update(frame.data)
 
     @property
     def frames(self) -> str:

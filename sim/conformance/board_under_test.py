@@ -39,15 +39,15 @@ class BoardUnderTest:
         """A proper request that answers this tick, except for ``changes``."""
         self._seq = self._seq + 1 & 0xFF
         self._sent += 1
-        request = CoilFire(
-            level=-2,
-            coil=1,
-            seq=self._seq,
-            tick=self.link.tick & 0xFF,
-            duration_ms=self.limits.pulse_ms,
-            counter=self._sent,
-        )
-        return request._replace(**changes)
+        proper = {
+            "level": -2,
+            "coil": 1,
+            "seq": self._seq,
+            "tick": self.link.tick & 0xFF,
+            "duration_ms": self.limits.pulse_ms,
+            "counter": self._sent,
+        }
+        return CoilFire(**proper | changes)
 
     def send(self, request: CoilFire) -> TickReply:
         """A tick with one request in it."""

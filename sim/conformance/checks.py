@@ -262,7 +262,7 @@ def _check_counters(messages: list[AnyMessage], kind: BoardKind) -> None:
     for message in messages:
         if isinstance(message, kind.boot):
             following, booted = {}, True
-        counter = message[-1]
+        counter = message.values()[-1]
         due = following.get(type(message), 0 if booted else counter)
         if counter != due:
             raise NonconformanceError(f"counter of {type(message).__name__} is {counter}, not {due}")

@@ -121,7 +121,7 @@ class TimeJumps(Fault):
     def sync(self, tick: int, frame: Frame) -> list[Frame]:
         """A SYNC with a wrong time."""
         true = Sync.decode(frame.data)
-        return [true._replace(unix_time_s=true.unix_time_s + round(self.parameters["seconds"])).encode()]
+        return [Sync(true.tick, true.unix_time_s + round(self.parameters["seconds"])).encode()]
 
 
 class BitFlip(Fault):

@@ -176,17 +176,18 @@ def _difference(frame: Frame, expected: deque[tuple[int, Frame]], tick: int) -> 
         return True, Difference(
             tick, f"{NAMES[frame.can_id]} as a whole", frame.data.hex(), replayed.data.hex()
         )
-    logged_values, replayed_values = message.decode(frame.data), message.decode(replayed.data)
+    logged_values = message.decode(frame.data).values()
+    replayed_values = message.decode(replayed.data).values()
     differing = [
         index
         for index, pair in enumerate(zip(logged_values, replayed_values, strict=True))
         if pair[0] != pair[1]
     ]
     first = differing[0]
-    signal = f"{NAMES[frame.can_id]}.{message._fields[first]}"
+    signal = f"{NAMES[frame.can_id]}.{message.FIELDS[first]}"
     difference = Difference(tick, signal, logged_values[first], replayed_values[first])
     if frame.can_id in (TickDone.ID, FswBoot.ID):
-        return message._fields[first] == "tick", difference
+        return message.FIELDS[first] == "tick", difference
     units = UNITS.get(frame.can_id, ())
     tolerated = all(
         index < len(units) and abs(logged_values[index] - replayed_values[index]) <= 1.001 * units[index]

@@ -201,9 +201,9 @@ def _without_forged_sync(entries: Iterable[LogEntry], scenario: Scenario) -> Ite
     def is_own(entry: LogEntry) -> bool:
         if entry.frame.can_id != Sync.ID or not intact(entry.frame):
             return True
-        tick, unix_time_s = Sync.decode(entry.frame.data)
-        at_us = epoch_s * 1_000_000 + tick * 1_000_000 // hz
-        return (entry.timestamp_us, unix_time_s) == (at_us, epoch_s + tick // hz)
+        sync = Sync.decode(entry.frame.data)
+        at_us = epoch_s * 1_000_000 + sync.tick * 1_000_000 // hz
+        return (entry.timestamp_us, sync.unix_time_s) == (at_us, epoch_s + sync.tick // hz)
 
     return filter(is_own, entries)
 

@@ -41,7 +41,7 @@ class BusTally:
 
     def _take_event(self, entry: LogEntry) -> None:
         can_id = entry.frame.can_id
-        values = CLASSES[can_id].decode(entry.frame.data)._asdict()
+        values = CLASSES[can_id].decode(entry.frame.data).by_name()
         seconds = (entry.timestamp_us - self.epoch_us) / 1e6
         if can_id == FswEvent.ID:
             self._take_isolation(values["event"], values["argument"], seconds)

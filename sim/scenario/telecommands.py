@@ -197,7 +197,8 @@ def uplink(telecommands: Sequence[TelecommandSection], tick_hz: int) -> Uplink:
     for telecommand in sorted(telecommands, key=lambda telecommand: telecommand.at_s):
         tick = first_tick(telecommand, tick_hz)
         for message in telecommand.messages():
-            frames.setdefault(tick, []).append(message._replace(counter=counters[message.ID] & 0xF).encode())
+            message.counter = counters[message.ID] & 0xF
+            frames.setdefault(tick, []).append(message.encode())
             counters[message.ID] += 1
     return lambda tick: frames.get(tick, [])
 

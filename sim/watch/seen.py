@@ -126,7 +126,7 @@ class FlightView:
 
     def take(self, frame: Frame, now_s: float) -> None:
         """Take one frame that came at ``now_s``."""
-        can_id, data = frame
+        can_id, data = frame.can_id, frame.data
         self._count(can_id)
         self.load.take(frame, now_s)
         if can_id not in NAMES:
@@ -138,7 +138,7 @@ class FlightView:
         if take is not None:
             take(data)
         elif NAMES[can_id].endswith("_EVENT"):
-            values = CLASSES[can_id].decode(data)._asdict()
+            values = CLASSES[can_id].decode(data).by_name()
             self._happens(*event_words(can_id, values["severity"], values["event"], values["argument"]))
         elif can_id in _BOOTS:
             self._happens(Weight.INFO, f"{SENDERS[can_id].lower()}: started")

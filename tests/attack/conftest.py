@@ -161,11 +161,11 @@ class Attacker:
         if random.random() < 0.1:
             asked = random.choice(
                 (
-                    asked._replace(level=random.choice((0, 4, -4, -8, 7))),
-                    asked._replace(coil=3),
-                    asked._replace(duration_ms=random.choice((0, limit_ms + 1, 65_535))),
-                    asked._replace(tick=asked.tick + random.choice((-1, 1, 7)) & 0xFF),
-                    asked._replace(seq=asked.seq - 1 & 0xFF),
+                    asked.replace(level=random.choice((0, 4, -4, -8, 7))),
+                    asked.replace(coil=3),
+                    asked.replace(duration_ms=random.choice((0, limit_ms + 1, 65_535))),
+                    asked.replace(tick=asked.tick + random.choice((-1, 1, 7)) & 0xFF),
+                    asked.replace(seq=asked.seq - 1 & 0xFF),
                 )
             )
         self.target.send(asked.encode())

@@ -70,7 +70,7 @@ def test_what_came_before_one_sync_is_not_seen_at_the_next(node, config):
     assert node.state.tick == 1
 
 
-@pytest.mark.parametrize("change", [lambda f: f._replace(data=f.data[:-1]), lambda f: f._replace(data=b"")])
+@pytest.mark.parametrize("change", [lambda f: f.replace(data=f.data[:-1]), lambda f: f.replace(data=b"")])
 def test_a_sync_of_the_wrong_length_is_no_sync(node, config, change):
     assert node.receive(change(sync(config, 0))) == ()
     node.receive(sync(config, 0))
@@ -79,7 +79,7 @@ def test_a_sync_of_the_wrong_length_is_no_sync(node, config, change):
 
 def test_an_extended_frame_under_sync_s_number_is_no_sync(node, config):
     frame = sync(config, 0)
-    assert node.receive(frame._replace(can_id=frame.can_id | EXTENDED_FLAG)) == ()
+    assert node.receive(frame.replace(can_id=frame.can_id | EXTENDED_FLAG)) == ()
 
 
 def test_a_sync_that_repeats_its_tick_is_answered_with_nothing(node, config):
@@ -108,7 +108,7 @@ class TestEnd:
 
     def test_is_heard_when_it_is_intact(self, run):
         end = PlantEnd(7).encode()
-        run.receive(end._replace(data=bytes((end.data[0] ^ 1,)) + end.data[1:]))
+        run.receive(end.replace(data=bytes((end.data[0] ^ 1,)) + end.data[1:]))
         assert run.end is End.NO
         run.receive(end)
         assert run.ended
@@ -143,7 +143,7 @@ def test_a_plant_that_starts_is_heard_before_the_first_tick_alone(node, config):
     start = PlantBoot(0, 1, 2).encode()
     assert node.is_boot_request(start)
     assert not node.is_boot_request(FIELD)
-    assert not node.is_boot_request(start._replace(data=start.data[:-1] + b"\0"))
+    assert not node.is_boot_request(start.replace(data=start.data[:-1] + b"\0"))
     node.receive(sync(config, 0))
     assert not node.is_boot_request(start)
 

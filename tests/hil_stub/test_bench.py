@@ -66,7 +66,7 @@ class TestLockstep:
         bench.receive(CoilFire(3, 0, 1, 0, 3000).encode())
         (sample,) = read(fly(bench, range(50)))
         assert isinstance(sample, kind)
-        assert sample[:4] == (1, *shown)
+        assert sample.values()[:4] == (1, *shown)
 
     @pytest.mark.parametrize("reports", [0, 3, 10, 2**24 - 1])
     def test_an_end_that_the_plant_tells_of_is_nothing_to_it(self, bench, read, reports):
@@ -176,7 +176,7 @@ def test_a_continuous_driver_tells_the_dipole_of_the_tick_that_has_ended(read):
         if asked is not None:
             bench.receive(CoilDipole(asked, 0.0, -asked).encode())
         _, status = read(bench.receive(TickDone(tick, 0).encode()))
-        reports.append(status[:3])
+        reports.append(status.values()[:3])
     assert reports == [
         (0.25, 0.0, -0.25),
         (0.5, 0.0, -0.5),

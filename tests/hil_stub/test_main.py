@@ -85,11 +85,11 @@ def test_it_follows_the_bus_whatever_end_a_plant_tells_of(bus, start, arguments,
         (message,) = hear(bus, 1)
         assert (type(message), message.counter) == (sample, (tick + 1) % 16)
     if sample is MagField:
-        assert message[:4] == (1, 100.0, -200.0, 300.0)
+        assert message.values()[:4] == (1, 100.0, -200.0, 300.0)
     if sample is SunVector:
-        assert message[:4] == (1, 0.0, 0.0, -1.0)
+        assert message.values()[:4] == (1, 0.0, 0.0, -1.0)
     if sample is SunCells:
-        assert message[:7] == (1, 0.5, 0.0, 1.0, 0.25, 255.0 / 128.0, 0.0)
+        assert message.values()[:7] == (1, 0.5, 0.0, 1.0, 0.25, 255.0 / 128.0, 0.0)
     assert process.poll() is None
 
 
@@ -132,14 +132,14 @@ def test_a_sensor_shows_a_recorded_run_and_a_script(bus, start, tmp_path):
     log = [format_line(format_time(0), "vcan0", frame) for frame in recorded_frames()]
     (tmp_path / "bus.log").write_text("".join(log))
     process = start("magnetometer", "--stimulus", str(tmp_path))
-    assert hear(bus, 2)[1][:4] == (1, 0.0, 100.0, -200.0)
-    assert exchange(bus, 0)[:4] == (1, 2.0, 100.0, -200.0)
+    assert hear(bus, 2)[1].values()[:4] == (1, 0.0, 100.0, -200.0)
+    assert exchange(bus, 0).values()[:4] == (1, 2.0, 100.0, -200.0)
     process.kill()
     script = tmp_path / "script.toml"
     script.write_text("[[step]]\nt_s = 0.0\nsun = [0, -2, 0]\n[[step]]\nt_s = 0.1\nsun = false\n")
     start("sun", "--tick-hz", "10", "--stimulus", str(script))
-    assert hear(bus, 2)[1][:4] == (1, 0.0, -1.0, 0.0)
-    assert exchange(bus, 0)[:4] == (0, 0.0, 0.0, 0.0)
+    assert hear(bus, 2)[1].values()[:4] == (1, 0.0, -1.0, 0.0)
+    assert exchange(bus, 0).values()[:4] == (0, 0.0, 0.0, 0.0)
 
 
 def recorded_frames():

@@ -184,7 +184,7 @@ class Copy:
         return [
             index
             for index, (_, _, frame) in enumerate(self.entries)
-            if frame.can_id == message.ID and values.items() <= message.decode(frame.data)._asdict().items()
+            if frame.can_id == message.ID and values.items() <= message.decode(frame.data).by_name().items()
         ]
 
     def in_tick(self, tick, message):
@@ -195,7 +195,7 @@ class Copy:
     def change(self, index, **values):
         """Give a message other values, sealed anew."""
         message = CLASSES[self.entries[index][2].can_id]
-        self.entries[index][2] = message.decode(self.entries[index][2].data)._replace(**values).encode()
+        self.entries[index][2] = message.decode(self.entries[index][2].data).replace(**values).encode()
 
 
 @pytest.fixture

@@ -103,7 +103,7 @@ def test_a_gap_of_99_9_s(at_10hz, torquer):
     begins_s = time_s(at_10hz, last) + 99.9
     sooner = round(10.0 * (time_s(at_10hz, first) - 0.1 - begins_s))
     driven = places[places.index(first) : places.index(end) + 1]
-    values = [CoilStatus.decode(at_10hz.entries[index][2].data)._asdict() for index in driven]
+    values = [CoilStatus.decode(at_10hz.entries[index][2].data).by_name() for index in driven]
     for index in driven[-sooner:]:
         at_10hz.change(index, level=0)
     for index, status in zip(driven, values, strict=True):
@@ -148,7 +148,7 @@ def test_a_status_that_fails_its_crc(flight, copy_of, torquer):
     copy = copy_of(flight[0])
     index = pulses(copy)[0][2]
     frame = copy.entries[index][2]
-    copy.entries[index][2] = frame._replace(data=bytes((frame.data[0] ^ 0x10,)) + frame.data[1:])
+    copy.entries[index][2] = frame.replace(data=bytes((frame.data[0] ^ 0x10,)) + frame.data[1:])
     done = torquer("check", copy.write())
     assert done.code == 1
     assert "CRC" in done.out

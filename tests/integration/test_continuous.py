@@ -43,13 +43,13 @@ def test_what_is_asked_in_a_tick_is_told_at_the_next_and_has_flowed(flight, copy
     requested, reported, ticks, last = [], [], 0, None
     for _, _, frame in log.entries:
         if frame.can_id == CoilDipoleStatus.ID:
-            reported.append(CoilDipoleStatus.decode(frame.data)[:3])
+            reported.append(CoilDipoleStatus.decode(frame.data).values()[:3])
         elif frame.can_id == Sync.ID:
             requested.append(last)
             last, ticks = None, ticks + 1
         elif frame.can_id == CoilDipole.ID:
             assert last is None
-            last = CoilDipole.decode(frame.data)[:3]
+            last = CoilDipole.decode(frame.data).values()[:3]
     assert len(reported) == ticks == len(log.where(CoilStatus))
     requested = [m or (0.0, 0.0, 0.0) for m in requested]
     assert reported == requested
@@ -69,7 +69,7 @@ def test_the_audit_judges_what_the_dipole_status_reports(flight, torquer, copy_o
     lines = done.out.splitlines()
     assert lines[-1] == "OK: continuous driver within full scale"
     dipoles = [frame for _, _, frame in copy_of(flight).entries if frame.can_id == CoilDipoleStatus.ID]
-    driven = sum(any(CoilDipoleStatus.decode(frame.data)[:3]) for frame in dipoles)
+    driven = sum(any(CoilDipoleStatus.decode(frame.data).values()[:3]) for frame in dipoles)
     assert f"driven in {driven} of 483 ticks, duty {100 * 0.8 * driven / 483:.2f} %" in lines[1]
     assert "one coil at a time" not in done.out
 

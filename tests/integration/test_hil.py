@@ -150,11 +150,13 @@ def test_not_armed_nothing_is_asked_and_a_script_is_shown(benches):
     frames = [line.split()[2].partition("#") for line in (run / "bus.log").read_text().splitlines()]
     assert not any(can_id == "080" for can_id, _, _ in frames)
     sun = [SunVector.decode(bytes.fromhex(data)) for can_id, _, data in frames if can_id == "118"]
-    lit = [sample[:4] for sample in sun if sample.valid]
+    lit = [sample.values()[:4] for sample in sun if sample.valid]
     assert set(lit) == {(1, 0.0, 1.0, 0.0)}
     assert 8 <= len(lit) <= 11
     assert len(sun) >= 25
-    fields = {MagField.decode(bytes.fromhex(data))[:4] for can_id, _, data in frames if can_id == "110"}
+    fields = {
+        MagField.decode(bytes.fromhex(data)).values()[:4] for can_id, _, data in frames if can_id == "110"
+    }
     assert fields == {(1, 20_000.0, 0.0, -30_000.0)}
 
 

@@ -80,7 +80,7 @@ SYNC = Sync(AT, EPOCH + AT)
         PlantEnd(AT),
         MagField(1, 20000.0, 0.0, -30000.0),
     ],
-    ids=lambda message: f"{type(message).__name__}-{message[0]}",
+    ids=lambda message: f"{type(message).__name__}-{message.values()[0]}",
 )
 def test_one_frame_in_flight_fails_the_run_and_is_named(forged, port, torquer, tmp_path):
     run = tmp_path / "run"

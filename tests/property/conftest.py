@@ -100,7 +100,7 @@ class Flight:
         if request is None:
             return []
         self.sent += 1
-        return [request._replace(counter=self.sent & 0xF).encode()]
+        return [request.replace(counter=self.sent & 0xF).encode()]
 
 
 class Bench:

@@ -49,4 +49,4 @@ def admitted(*messages, state=None):
 
 
 def broken(frame):
-    return frame._replace(data=bytes((frame.data[0] ^ 0x20,)) + frame.data[1:])
+    return frame.replace(data=bytes((frame.data[0] ^ 0x20,)) + frame.data[1:])

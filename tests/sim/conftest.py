@@ -110,7 +110,7 @@ class BusLog:
     def change(self, tick: int, **values: int) -> None:
         """The tick's status with other values, sealed anew."""
         status = CoilStatus.decode(self.statuses[tick][0].data)
-        self.statuses[tick][0] = status._replace(**values).encode()
+        self.statuses[tick][0] = status.replace(**values).encode()
 
     def frames(self, tick: int) -> list[Frame]:
         """All frames of a tick, in their order."""

@@ -12,6 +12,7 @@ from fsw.core.actuation.pulses import dipole_am2
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, scale, transform
 from fsw.core.gate.readings import Readings
 from fsw.core.laws.plan.pulse_model import AXES
+from fsw.wire.messages import MagField
 
 SOUND = (0.7, 1.3)
 """Fractions of its nominal current between which a driven coil has about its nominal field."""
@@ -74,5 +75,5 @@ def _corrected(readings: Readings, m_am2: Vec3, config: OwnField) -> Readings:
     if field is None or m_am2 == ZERO:
         return readings._replace(settled=True)
     x, y, z = transform(config.field_nt_per_am2, m_am2)
-    field = field._replace(b_x=field.b_x - x, b_y=field.b_y - y, b_z=field.b_z - z)
+    field = MagField(field.valid, field.b_x - x, field.b_y - y, field.b_z - z, field.counter)
     return readings._replace(field=field, settled=True)

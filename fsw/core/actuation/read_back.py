@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.gate.readings import Readings
+from fsw.wire.messages import CoilStatus
 
 
 class ReadBackConfig(NamedTuple):
@@ -29,4 +30,5 @@ def without_offset(readings: Readings, view: CoilView, tick: int, config: ReadBa
         return readings
     if view.driven_level or (view.fired_tick >= 0 and tick < view.fired_tick + config.died_away_ticks):
         return readings
-    return readings._replace(coil=coil._replace(current_ma=0))
+    coil = CoilStatus(coil.level, coil.coil, coil.remaining_ms, 0, coil.lockout_ms, coil.seq, coil.counter)
+    return readings._replace(coil=coil)

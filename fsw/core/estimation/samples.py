@@ -43,10 +43,11 @@ def usable_cells(readings: Readings, cells: CellSet | None) -> tuple[float | Non
     sample = readings.cells
     if cells is None or sample is None or not sample.valid:
         return ()
+    currents = (sample.cell_1, sample.cell_2, sample.cell_3, sample.cell_4, sample.cell_5, sample.cell_6)
     return tuple(
         [
             None if cell in readings.unusable_cells else current / full
-            for cell, (current, full) in enumerate(zip(sample[1:7], cells.full_sun, strict=False))
+            for cell, (current, full) in enumerate(zip(currents, cells.full_sun, strict=False))
         ]
     )
 

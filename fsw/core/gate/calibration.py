@@ -12,7 +12,15 @@ from typing import NamedTuple
 
 from fsw.core.algebra.vector import Mat3, Vec3, sub, transform, transpose
 from fsw.core.gate.readings import Readings
-from fsw.wire.messages import CoilDipole, CoilFire, MagField, SunVector
+from fsw.wire.messages import (
+    CoilDipole,
+    CoilDipoleStatus,
+    CoilFire,
+    CoilRefused,
+    CoilStatus,
+    MagField,
+    SunVector,
+)
 
 
 class MagnetometerCalibration(NamedTuple):
@@ -63,7 +71,7 @@ def calibrated(readings: Readings, calibration: Calibration) -> Readings:
 
 def _body_field(sample: MagField, calibration: MagnetometerCalibration) -> MagField:
     x, y, z = transform(calibration.matrix, sub((sample.b_x, sample.b_y, sample.b_z), calibration.offset_nt))
-    return sample._replace(b_x=x, b_y=y, b_z=z)
+    return MagField(sample.valid, x, y, z, sample.counter)
 
 
 def _saturated(sample: MagField, calibration: MagnetometerCalibration) -> tuple[Vec3, ...]:
@@ -74,7 +82,7 @@ def _saturated(sample: MagField, calibration: MagnetometerCalibration) -> tuple[
 
 def _body_sun(sample: SunVector, body_from_sensor: Mat3) -> SunVector:
     x, y, z = transform(body_from_sensor, (sample.s_x, sample.s_y, sample.s_z))
-    return sample._replace(s_x=x, s_y=y, s_z=z)
+    return SunVector(sample.valid, x, y, z, sample.counter)
 
 
 def _by_axis(readings: Readings, outputs: Outputs) -> Readings:
@@ -82,13 +90,22 @@ def _by_axis(readings: Readings, outputs: Outputs) -> Readings:
     if coil is not None:
         sign = outputs.sign[coil.coil]
         current_ma = sign * coil.current_ma if coil.level else coil.current_ma
-        coil = coil._replace(coil=outputs.axis[coil.coil], level=sign * coil.level, current_ma=current_ma)
+        coil = CoilStatus(
+            level=sign * coil.level,
+            coil=outputs.axis[coil.coil],
+            remaining_ms=coil.remaining_ms,
+            current_ma=current_ma,
+            lockout_ms=coil.lockout_ms,
+            seq=coil.seq,
+            counter=coil.counter,
+        )
     if refused is not None and refused.coil < len(outputs.axis):
-        refused = refused._replace(coil=outputs.axis[refused.coil])
+        coil_axis = outputs.axis[refused.coil]
+        refused = CoilRefused(coil_axis, refused.seq, refused.reason, refused.tick, refused.counter)
     if dipole is not None:
         driven = (dipole.m_x, dipole.m_y, dipole.m_z)
         x, y, z = (outputs.sign[o] * driven[o] for o in map(outputs.of_axis, range(3)))
-        dipole = dipole._replace(m_x=x, m_y=y, m_z=z)
+        dipole = CoilDipoleStatus(x, y, z, dipole.counter)
     return readings._replace(coil=coil, refused=refused, dipole=dipole)
 
 
@@ -99,7 +116,8 @@ def for_outputs(request: CoilFire | CoilDipole, calibration: Calibration) -> Coi
         return request
     if isinstance(request, CoilFire):
         output = outputs.of_axis(request.coil)
-        return request._replace(coil=output, level=outputs.sign[output] * request.level)
+        level = outputs.sign[output] * request.level
+        return CoilFire(level, output, request.seq, request.tick, request.duration_ms, request.counter)
     wanted = (request.m_x, request.m_y, request.m_z)
     x, y, z = (sign * wanted[axis] for axis, sign in zip(*outputs, strict=True))
-    return request._replace(m_x=x, m_y=y, m_z=z)
+    return CoilDipole(x, y, z, request.counter)

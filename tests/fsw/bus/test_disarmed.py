@@ -26,7 +26,7 @@ def test_requests_stay_off_the_bus_and_nothing_else_does():
     done = TickDone(1, 2).encode()
     bus.send([CoilFire(3, 0, 1, 0, 3000).encode(), done, CoilDipole(0.5, 0.5, 0.5).encode()])
     assert wire.sent == [done]
-    bus.send([done._replace(can_id=can_id) for can_id in NAMES])
+    bus.send([done.replace(can_id=can_id) for can_id in NAMES])
     assert {NAMES[can_id] for can_id in NAMES} - {NAMES[frame.can_id] for frame in wire.sent} == {
         "COIL_FIRE",
         "COIL_DIPOLE",

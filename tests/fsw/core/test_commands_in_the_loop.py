@@ -61,7 +61,7 @@ class TestInTheLoop:
     def test_a_broken_one_has_no_answer_and_no_effect(self, make_world):
         world, other = make_world(), make_world()
         frame = TcMode(Mode.SAFE).encode()
-        broken = frame._replace(data=bytes((frame.data[0] ^ 0x20,)) + frame.data[1:])
+        broken = frame.replace(data=bytes((frame.data[0] ^ 0x20,)) + frame.data[1:])
         replies = world.step(lambda inbox: inbox._replace(frames=(broken, *inbox.frames)))
         assert of(TcAck, replies) == []
         other.step()
@@ -217,7 +217,7 @@ class TestFrozenParameters:
 def random_telecommand(random, counter, digits):
     """Intact, its values anything; now and then the sensible ones."""
     kind = random.choice([*TELECOMMANDS.values()])
-    message = kind.decode(random.randbytes(kind.LENGTH))._replace(counter=counter)
+    message = kind.decode(random.randbytes(kind.LENGTH)).replace(counter=counter)
     if kind is TcOrbitElement and random.random() < 0.7:
         element = random.choice([*Element])
         mantissa, exponent = digits[element]
@@ -251,7 +251,7 @@ def test_whatever_the_ground_sends_the_limits_are_kept(make_world, digits, seed,
         for _ in range(random.choice([0, 0, 1, 2, 12])):
             message = random_telecommand(random, 0, digits)
             counters[message.ID] += 1
-            sent.append(message._replace(counter=counters[message.ID] & 0xF))
+            sent.append(message.replace(counter=counters[message.ID] & 0xF))
 
         def reports(inbox, sent=sent):
             nonlocal refusals

@@ -149,8 +149,8 @@ class TestOutbox:
         for state, outbox in zip(states[1:], outboxes, strict=True):
             messages = [CLASSES[frame.can_id].decode(frame.data) for frame in outbox]
             (nav,), (rate,) = of(NavAttitude, messages), of(NavRate, messages)
-            assert nav[1:4] == pytest.approx(state.attitude.q_body_from_orbit[1:], abs=2**-16)
-            assert rate[1:4] == pytest.approx(state.attitude.omega_body_orbit_radps, abs=2**-19)
+            assert nav.values()[1:4] == pytest.approx(state.attitude.q_body_from_orbit[1:], abs=2**-16)
+            assert rate.values()[1:4] == pytest.approx(state.attitude.omega_body_orbit_radps, abs=2**-19)
             assert bool(nav.valid) is bool(rate.valid) is state.attitude.valid
 
 

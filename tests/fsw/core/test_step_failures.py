@@ -129,7 +129,7 @@ class TestSilence:
 
         def drive(inbox):
             frames = [f for f in inbox.frames if f.can_id != CoilStatus.ID]
-            frames.append(rogue._replace(counter=inbox.tick & 0xF).encode())
+            frames.append(rogue.replace(counter=inbox.tick & 0xF).encode())
             return inbox._replace(frames=tuple(frames))
 
         world.step(drive)

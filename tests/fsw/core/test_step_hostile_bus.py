@@ -55,8 +55,8 @@ def lie(random, message, counter):
     """An intact frame whose payload is random bits, and whose counter moves."""
     payload = message.decode(random.randbytes(message.LENGTH))
     if message is CoilStatus and random.random() < 0.7:
-        payload = payload._replace(level=0, current_ma=0, lockout_ms=random.choice([0, 10, 100000]))
-    return payload._replace(counter=counter).encode()
+        payload = payload.replace(level=0, current_ma=0, lockout_ms=random.choice([0, 10, 100000]))
+    return payload.replace(counter=counter).encode()
 
 
 def sabotage(random, frames):
@@ -69,7 +69,7 @@ def sabotage(random, frames):
         if fate < 0.10:
             broken = bytearray(frame.data)
             broken[random.randrange(len(broken))] ^= 1 << random.randrange(8)
-            out.append(frame._replace(data=bytes(broken)))
+            out.append(frame.replace(data=bytes(broken)))
             continue
         out.append(frame)
         if fate < 0.15:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, crc8, id_register, raw, seal
+from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame, crc8, id_register, raw, seal
 
 
 def crc8_by_bits(data: bytes) -> int:
@@ -55,7 +55,7 @@ class TestCrc:
 
 def test_seal_puts_the_word_little_endian_before_the_crc():
     frame = seal(0x123, 0x0A0B0C, 4, id_register(0x123))
-    assert frame == (0x123, bytes((0x0C, 0x0B, 0x0A, crc8_by_bits(bytes.fromhex("01230C0B0A")))))
+    assert frame == Frame(0x123, bytes((0x0C, 0x0B, 0x0A, crc8_by_bits(bytes.fromhex("01230C0B0A")))))
 
 
 def test_seal_refuses_a_word_that_would_overwrite_the_crc():

@@ -69,14 +69,14 @@ class TestDrive:
         step(CoilDipole(*ASKED))
         replies = [step() for _ in range(20)]
         assert [drive.dipole for _, drive in replies] == [NONE] * 20
-        shown = [of(CoilDipoleStatus, messages)[0][:3] for messages, _ in replies]
+        shown = [of(CoilDipoleStatus, messages)[0].values()[:3] for messages, _ in replies]
         assert shown == [ASKED] + [NONE] * 19
 
     def test_requests_follow_each_other_tick_by_tick(self, step):
         asked = [(0.5 - k * STEP, k * STEP, -0.25) for k in range(50)]
         reports = [step(CoilDipole(*m, counter=k)) for k, m in enumerate(asked)]
         assert [drive.dipole for _, drive in reports] == asked
-        assert [of(CoilDipoleStatus, replies)[0][:3] for replies, _ in reports[1:]] == asked[:-1]
+        assert [of(CoilDipoleStatus, replies)[0].values()[:3] for replies, _ in reports[1:]] == asked[:-1]
         counters = [of(CoilDipoleStatus, replies)[0].counter for replies, _ in reports]
         assert counters == [k % 16 for k in range(50)]
 
@@ -104,13 +104,13 @@ class TestDrive:
         assert board.drive().dipole == NONE
         replies = read(board.begin_tick(1, 0.0))
         assert reasons(replies) == [(8, Reason.WRONG_TICK)]
-        assert of(CoilDipoleStatus, replies)[0][:3] == NONE
+        assert of(CoilDipoleStatus, replies)[0].values()[:3] == NONE
 
     def test_over_skipped_ticks_nothing_was_driven_in_the_last(self, board, read):
         board.begin_tick(0, 0.0)
         board.receive(CoilDipole(*ASKED).encode())
         board.drive()
-        assert of(CoilDipoleStatus, read(board.begin_tick(2, 0.0)))[0][:3] == NONE
+        assert of(CoilDipoleStatus, read(board.begin_tick(2, 0.0)))[0].values()[:3] == NONE
         assert board.drive().dipole == NONE
 
     def test_a_tick_that_does_not_rise_ends_no_drive_and_says_nothing(self, board):
@@ -182,7 +182,7 @@ class TestRefusals:
     @pytest.mark.parametrize("length", range(7))
     def test_a_pulse_cut_short_is_named_if_coil_and_number_are_left_of_it(self, step, length):
         fire = CoilFire(-3, 2, 200, 0, 3000).encode()
-        step(fire._replace(data=fire.data[:length]))
+        step(fire.replace(data=fire.data[:length]))
         told = [(m.coil, m.seq, m.reason) for m in of(CoilRefused, step()[0])]
         assert told == ([(2, 200, Reason.MALFORMED)] if length >= 3 else [])
 
@@ -250,10 +250,12 @@ def test_whatever_comes_only_the_first_intact_dipole_of_a_tick_is_driven(ticks):
         replies = board.begin_tick(tick, 0.0)
         assert all(intact(frame) for frame in replies)
         (status,) = [CLASSES[f.can_id].decode(f.data) for f in replies if f.can_id == CoilDipoleStatus.ID]
-        assert status[:3] == reports
+        assert status.values()[:3] == reports
         for frame in frames:
             board.receive(frame)
-        dipoles = [CoilDipole.decode(f.data)[:3] for f in frames if f.can_id == CoilDipole.ID and intact(f)]
+        dipoles = [
+            CoilDipole.decode(f.data).values()[:3] for f in frames if f.can_id == CoilDipole.ID and intact(f)
+        ]
         reports = dipoles[0] if dipoles else NONE
         assert board.drive().dipole == reports
         assert all(isfinite(part) and -1.0 <= part <= 1.0 for part in reports)

@@ -185,7 +185,7 @@ class CoilDriverMachine(RuleBasedStateMachine):
         for _ in range(before + 3):
             self.seq = self.seq + 1 & 0xFF
             request = CoilFire(-3, coil, self.seq, self.tick + 1 & 0xFF, duration_ms)
-            self.go(1, request._replace(seq=self.model.seq or 0), request)
+            self.go(1, request.replace(seq=self.model.seq or 0), request)
 
     @rule(ticks=st.one_of(st.integers(1, 12), st.integers(1, 6000)))
     def jump(self, ticks):

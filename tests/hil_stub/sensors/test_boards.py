@@ -88,7 +88,7 @@ class TestMagnetometer:
     def test_in_range_it_is_right_within_half_a_step(self, b_nt):
         (_, frame) = Magnetometer(1).begin_tick(0, tuple(b * 1e-9 for b in b_nt), True)
         field = MagField.decode(frame.data)
-        assert all(abs(ours - b) <= 1.0 + 1e-9 for ours, b in zip(field[1:4], b_nt, strict=True))
+        assert all(abs(ours - b) <= 1.0 + 1e-9 for ours, b in zip(field.values()[1:4], b_nt, strict=True))
 
     @pytest.mark.parametrize(
         ("b_nt", "valid", "shown"),
@@ -107,7 +107,7 @@ class TestMagnetometer:
         b_body_t[axis] = b_nt * 1e-9
         (_, field) = read(Magnetometer(1).begin_tick(0, tuple(b_body_t), True))
         assert field.valid == valid
-        assert field[1 + axis] == shown
+        assert field.values()[1 + axis] == shown
 
     def test_a_failed_self_test_makes_it_invalid(self, read):
         assert read(Magnetometer(1).begin_tick(0, FIELD_T, False))[-1].valid == 0
@@ -123,7 +123,7 @@ class TestSunSensor:
     @pytest.mark.parametrize("sign", [-1.0, 1.0])
     def test_along_an_axis_it_is_exact(self, read, axis, sign):
         along = tuple(sign if other == axis else 0.0 for other in range(3))
-        assert read(SunSensor(1).begin_tick(0, along, True))[-1][:4] == (1, *along)
+        assert read(SunSensor(1).begin_tick(0, along, True))[-1].values()[:4] == (1, *along)
 
     @pytest.mark.parametrize(
         ("component", "valid"), [(-2.0, 1), (-2.0001, 0), (2.0 - 2.0**-14, 1), (2.0, 0), (-2.1, 0), (2.1, 0)]
@@ -134,7 +134,7 @@ class TestSunSensor:
         sun_body[axis] = component
         (_, sun) = read(SunSensor(1).begin_tick(0, tuple(sun_body), True))
         assert sun.valid == valid
-        assert sun[1 + axis] == (component if valid else 0.0)
+        assert sun.values()[1 + axis] == (component if valid else 0.0)
 
     def test_in_the_dark_no_direction_is_on_the_bus(self, read):
         assert read(SunSensor(1).begin_tick(0, DIAGONAL, False))[-1] == SunVector(0, 0.0, 0.0, 0.0)

@@ -41,7 +41,7 @@ def test_beyond_the_range_it_sends_the_end():
 @pytest.mark.parametrize(("currents", "valid"), [((0.5, nan), True), ((0.5, 0.6), False)])
 def test_what_is_not_sound_has_no_currents(currents, valid):
     read = sample(sent(SunCellBoard(1), 0, currents, valid))
-    assert read[:7] == (0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    assert read.values()[:7] == (0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def test_a_tick_that_does_not_rise_is_ignored():

@@ -62,7 +62,7 @@ def test_a_torque_is_driven_in_the_tick_it_answers_and_no_longer():
     assert rig.ask(TORQUE_NM) == (TORQUE_NM, WheelStatusResult.DRIVEN)
     frames, driven_nm = rig.step()
     assert driven_nm == 0.0
-    assert status_of(frames)[1:4:2] == (WheelStatusResult.NONE, 0.0)
+    assert status_of(frames).values()[1:4:2] == (WheelStatusResult.NONE, 0.0)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -124,7 +124,7 @@ def test_a_broken_request_is_refused_and_counted(byte):
     good = WheelTorque(TORQUE_NM, 0).encode()
     data = bytearray(good.data)
     data[byte] ^= 0x10
-    _, driven_nm = rig.step(good._replace(data=bytes(data)))
+    _, driven_nm = rig.step(good.replace(data=bytes(data)))
     assert (driven_nm, rig.board.rejects) == (0.0, 1)
     assert status_of(rig.step()[0]).result == WheelStatusResult.MALFORMED
 

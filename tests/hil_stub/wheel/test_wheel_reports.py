@@ -38,7 +38,7 @@ def tell(board, read):
 
 def spoilt(message):
     frame = message.encode()
-    return frame._replace(data=frame.data[:-1] + bytes([frame.data[-1] ^ 1]))
+    return frame.replace(data=frame.data[:-1] + bytes([frame.data[-1] ^ 1]))
 
 
 def test_the_boot_names_the_table(tell):

@@ -78,7 +78,7 @@ class Line:
 
     def judge_drive(self, asked, fate):
         """Each request is driven once at most, in the tick in which it comes."""
-        new = [asked._replace(counter=self.sent & 0xF).encode()] if asked is not None else []
+        new = [asked.replace(counter=self.sent & 0xF).encode()] if asked is not None else []
         come = self.late + (new if fate == "comes" else [])
         self.late = new if fate == "late" else []
         if self.board is None:

@@ -262,7 +262,7 @@ def test_a_scheduler_that_does_not_hear_of_the_restart_is_refused(search, small,
     assert search(with_restarts_of_the_board(small[shared], deaf)).refused
 
 
-PULSE_A_TICK_LONG = requesting(lambda asked, view: asked._replace(duration_ms=asked.duration_ms + 1000))
+PULSE_A_TICK_LONG = requesting(lambda asked, view: asked.replace(duration_ms=asked.duration_ms + 1000))
 BACKOFF_A_TICK_SHORT = firing(again_at=lambda tick, config: end_of_backoff(tick, config) - 1)
 
 
@@ -354,8 +354,8 @@ INEXACT = {
         firing(busy_until=lambda tick, config: end_of_pulse(tick, config) + 1),
         BOTH,
     ),
-    "seq repeated": (requesting(lambda asked, view: asked._replace(seq=view.seq)), BOTH),
-    "another tick answered": (requesting(lambda asked, view: asked._replace(tick=asked.tick - 1)), BOTH),
+    "seq repeated": (requesting(lambda asked, view: asked.replace(seq=view.seq)), BOTH),
+    "another tick answered": (requesting(lambda asked, view: asked.replace(tick=asked.tick - 1)), BOTH),
     "a coil left out": (
         around(
             pulses,

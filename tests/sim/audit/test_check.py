@@ -181,7 +181,7 @@ BOOTS = [message for message in CLASSES.values() if message.__name__.endswith("B
 @pytest.mark.parametrize("boot", BOOTS, ids=lambda boot: boot.__name__)
 def test_a_log_of_another_bus_contract(run, bus_log, boot):
     log = bus_log(ticks=20)
-    values = dict.fromkeys(boot._fields, 0) | {"version": CONTRACT_VERSION + 1}
+    values = dict.fromkeys(boot.FIELDS, 0) | {"version": CONTRACT_VERSION + 1}
     log.statuses[7].insert(0, boot(**values).encode())
     with pytest.raises(HarnessError, match="line 22 is of version 2 of the bus contract, and only version 1"):
         check(run(log), None)
@@ -190,7 +190,7 @@ def test_a_log_of_another_bus_contract(run, bus_log, boot):
 @pytest.mark.parametrize("boot", BOOTS, ids=lambda boot: boot.__name__)
 def test_a_stray_boot_message_of_another_contract_is_a_note(run, bus_log, boot):
     log = bus_log(ticks=200, boots=[0])
-    values = dict.fromkeys(boot._fields, 0) | {"version": 65}
+    values = dict.fromkeys(boot.FIELDS, 0) | {"version": 65}
     log.statuses[7].insert(0, boot(**values).encode())
     report = check(run(log), None)
     assert report.ok
@@ -204,7 +204,7 @@ def test_a_coil_driver_of_another_contract_is_refused_whatever_the_others_are(ru
     log = bus_log(ticks=20)
     for number, boot in enumerate(BOOTS):
         version = CONTRACT_VERSION + (boot is CoilBoot)
-        log.statuses[number].insert(0, boot(**dict.fromkeys(boot._fields, 0) | {"version": version}).encode())
+        log.statuses[number].insert(0, boot(**dict.fromkeys(boot.FIELDS, 0) | {"version": version}).encode())
     with pytest.raises(HarnessError, match="is of version 2 of the bus contract, and only version 1"):
         check(run(log), None)
 

@@ -258,7 +258,7 @@ def test_what_comes_after_the_last_sync_is_judged(bus_log, fired, level):
 def test_a_unix_time_that_contradicts_its_tick_is_named_once(bus_log, last):
     entries = with_sync(
         bus_log(10, 200),
-        lambda sync: sync._replace(unix_time_s=sync.unix_time_s + (150 <= sync.tick <= last)).encode(),
+        lambda sync: sync.replace(unix_time_s=sync.unix_time_s + (150 <= sync.tick <= last)).encode(),
     )
     report = audit(entries, AuditLimits())
     assert found(report) == [(ViolationKind.SYNC, 15, 150, None)]
@@ -295,7 +295,7 @@ def test_a_sync_that_is_sent_again_with_another_time_is_a_violation(bus_log):
     last = next(e for e in entries if e.frame.can_id == Sync.ID and Sync.decode(e.frame.data).tick == 40)
     sync = Sync.decode(last.frame.data)
     entries.insert(
-        entries.index(last) + 1, last._replace(frame=sync._replace(unix_time_s=sync.unix_time_s + 9).encode())
+        entries.index(last) + 1, last._replace(frame=sync.replace(unix_time_s=sync.unix_time_s + 9).encode())
     )
     assert (ViolationKind.SYNC, 40, 40, None) in found(audit(entries, AuditLimits()))
 

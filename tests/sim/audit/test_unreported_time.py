@@ -132,7 +132,7 @@ def test_a_status_with_a_wrong_crc_reports_nothing(judge, bus_log):
     log = bus_log(ticks=100)
     for tick in range(40, 50):
         frame = log.statuses[tick][0]
-        log.statuses[tick] = [frame._replace(data=bytes(CoilStatus.LENGTH))]
+        log.statuses[tick] = [frame.replace(data=bytes(CoilStatus.LENGTH))]
     assert judge(log).unreported_s == 10
 
 

@@ -54,7 +54,7 @@ def test_signals_have_the_values_of_the_wire(flight, recording):
         frames = [entry.frame for entry in flight.entries if entry.frame.can_id == can_id]
         values = recording.values(f"/can/{name}") if frames else []
         for frame, found in zip(frames, values, strict=True):
-            for field, value in CLASSES[can_id].decode(frame.data)._asdict().items():
+            for field, value in CLASSES[can_id].decode(frame.data).by_name().items():
                 (named,) = (
                     key
                     for key in found
@@ -144,7 +144,7 @@ def test_the_file_says_which_flight_it_is_of(recording):
 def test_frames_that_are_no_message_are_kept_as_they_are(flight, tmp_path):
     whole = next(entry.frame for entry in flight.entries if NAMES[entry.frame.can_id] == "MAG_FIELD")
     broken = bytes([whole.data[0] ^ 0x10]) + whole.data[1:]
-    assert not intact(whole._replace(data=broken))
+    assert not intact(whole.replace(data=broken))
     log = tmp_path / "any.log"
     log.write_text(
         f"(1.000000) x 7AB#0102\n(2.000000) x 110#{broken.hex()}\n(3.000000) x 110#{whole.data.hex()}\n"

@@ -127,13 +127,13 @@ def test_frames_of_a_flight_are_decoded_as_on_the_wire(flight, decoder):
 def test_every_message_is_decoded_as_on_the_wire(decoder, can_id, filling):
     data = bytes((filling + 37 * index) & 0xFF for index in range(CLASSES[can_id].LENGTH))
     frame = Frame(can_id, data)
-    check(decoder, frame._replace(data=CLASSES[can_id].decode(data).encode().data))
+    check(decoder, frame.replace(data=CLASSES[can_id].decode(data).encode().data))
 
 
 def check(decoder, frame):
     name, values = decoder.decode(packet_of(frame))
     assert name == NAMES[frame.can_id]
-    expected = CLASSES[frame.can_id].decode(frame.data)._asdict()
+    expected = CLASSES[frame.can_id].decode(frame.data).by_name()
     crc = values.pop("crc", None)
     assert decoder.crc_holds(decoder.containers[frame.can_id], packet_of(frame)) in (True, None)
     assert crc in (None, frame.data[-1])

@@ -114,7 +114,7 @@ def test_extreme_codes_are_of_the_named_sensor_and_of_either_sign_on_each_axis(s
         kept.append(frames[1 - round(sun)])
         assert (wrong.valid, wrong.counter) == (1, changed.counter)
         for axis in range(3):
-            signs[axis].add(wrong[1 + axis] > 0.0)
-            assert abs(wrong[1 + axis]) == pytest.approx((65534.0, 1.9999)[round(sun)], rel=1e-4)
+            signs[axis].add(wrong.values()[1 + axis] > 0.0)
+            assert abs(wrong.values()[1 + axis]) == pytest.approx((65534.0, 1.9999)[round(sun)], rel=1e-4)
     assert signs == [{True, False}] * 3
     assert set(kept) == {(direction, field)[round(sun)].encode()}

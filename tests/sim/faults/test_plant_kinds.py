@@ -129,7 +129,7 @@ def test_extreme_codes_of_cells_are_whole_frames_too():
     frame = SunCells(1, 0.5, 0.25, 0.0, 1.0, 0.125, 1.5, 7).encode()
     extreme = fault("extreme_codes", sun=1.0)
     found = [SunCells.decode(extreme.from_boards(tick, [frame])[0].data) for tick in range(20)]
-    assert {current for one in found for current in one[1:7]} == {0.0, 255.0 / 128.0}
+    assert {current for one in found for current in one.values()[1:7]} == {0.0, 255.0 / 128.0}
     assert {(one.valid, one.counter) for one in found} == {(1, 7)}
     assert fault("extreme_codes").from_boards(0, [frame]) == [frame], "of the magnetometer alone"
 

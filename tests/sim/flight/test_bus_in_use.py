@@ -57,7 +57,7 @@ def test_who_waits_in_silence_is_asked(boot, bus_of):
 def test_noise_and_the_ground_take_no_bus(bus_of):
     noise = [
         Frame(0x7FF, b"\1"),
-        FIELD._replace(data=b"\0" * 8),
+        FIELD.replace(data=b"\0" * 8),
         Frame(CoilStatus.ID, b""),
         TcClear().encode(),
     ]

@@ -138,7 +138,7 @@ class TestLockstep:
 
         def answer(tick):
             stale = [done(tick - 1)] if tick else []
-            return [*stale, done(tick + 1), done(tick)._replace(data=b"\x01"), done(tick)]
+            return [*stale, done(tick + 1), done(tick).replace(data=b"\x01"), done(tick)]
 
         result, entries, *_ = flown(scripted(answer), 5)
         assert result.ticks == 5
@@ -175,7 +175,7 @@ class TestLockstep:
 
 class TestBoot:
     def test_waits_for_an_intact_fsw_boot_and_drops_what_comes_before(self, flown, scripted):
-        broken = BOOT._replace(data=BOOT.data[:-1] + b"\0")
+        broken = BOOT.replace(data=BOOT.data[:-1] + b"\0")
         bus = scripted(lambda tick: [done(tick)], first=(done(9), broken, BOOT))
         _, entries, *_ = flown(bus, 3)
         assert entries[0].frame == BOOT

@@ -136,4 +136,4 @@ class TestSilence:
 
 def test_an_answer_names_its_tick_and_is_whole():
     assert has_answer([NOISE, done(3)], 3)
-    assert not has_answer([done(2), done(3)._replace(data=b"\3"), PlantEnd(3).encode()], 3)
+    assert not has_answer([done(2), done(3).replace(data=b"\3"), PlantEnd(3).encode()], 3)

@@ -116,7 +116,7 @@ class TestInBothPaces:
             TcMode(3).encode(),
             Frame(0x7FF, b"\xde\xad"),
             Frame(MagField.ID, b""),
-            FIELD._replace(data=FIELD.data[:-1] + b"\0"),
+            FIELD.replace(data=FIELD.data[:-1] + b"\0"),
             Frame(CoilStatus.ID | REMOTE_FLAG, b""),
             Frame(0x12345678 | EXTENDED_FLAG, b"\1\2"),
             Frame(CoilFire.ID, bytes(8)),

@@ -62,8 +62,12 @@ def test_the_board_tells_what_flowed(fly):
     history = fly(41, lambda tick: asked[tick] if tick < 40 else None)
     for said, truth in history[1:]:
         (told,) = of(CoilDipoleStatus, said)
-        assert truth.m_body_am2 == pytest.approx(9.6 * np.array(told[:3]) * SCALE, rel=1e-8, abs=1e-7)
-    assert [of(CoilDipoleStatus, said)[0][:3] for said, _ in history[1:]] == [tuple(m) for m in asked]
+        assert truth.m_body_am2 == pytest.approx(
+            9.6 * np.array(told.values()[:3]) * SCALE, rel=1e-8, abs=1e-7
+        )
+    assert [of(CoilDipoleStatus, said)[0].values()[:3] for said, _ in history[1:]] == [
+        tuple(m) for m in asked
+    ]
 
 
 def test_the_torque_of_a_tick_is_that_dipole_s(fly, make_config):
@@ -82,7 +86,7 @@ def test_coils_are_off_and_without_current_when_the_sensors_sample(fly):
     history = fly(30, lambda tick: ASKED * (-1) ** tick, magnetometer=sensor)
     for tick, (said, truth) in enumerate(history):
         (status,), (field,) = of(CoilStatus, said), of(MagField, said)
-        assert status[:6] == CoilStatus(0, tick % 3, 0, 0, 0, 0)[:6]
+        assert status == CoilStatus(0, tick % 3, 0, 0, 0, 0, counter=status.counter)
         read_nt = np.array([field.b_x, field.b_y, field.b_z])
         assert read_nt == pytest.approx(1e9 * np.array(truth.b_body_t), abs=1.01)
 
@@ -92,7 +96,7 @@ def test_driven_to_the_end_of_a_tick_they_are_felt_and_read_back(fly):
     sensor = MagnetometerConfig(coil_coupling_t_per_am2=COUPLING)
     history = fly(6, lambda tick: ASKED, magnetometer=sensor, coils=to_the_end)
     said, truth = history[4]
-    own_nt = np.array(of(MagField, said)[0][1:4]) - 1e9 * np.array(truth.b_body_t)
+    own_nt = np.array(of(MagField, said)[0].values()[1:4]) - 1e9 * np.array(truth.b_body_t)
     assert own_nt == pytest.approx(2000.0 * 12.0 * ASKED * SCALE, abs=1.1)
     assert of(CoilStatus, said)[0].current_ma == round(1e3 * 12.0 * ASKED.sum() / 11.0)
 

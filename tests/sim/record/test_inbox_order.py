@@ -25,7 +25,7 @@ def test_one_without_an_answer_was_not():
 
 @pytest.mark.parametrize(
     "other",
-    [ack(TcSpin, tick=TICK - 1), ack(TcSpin, counter=4), ack(TcClear), ack(TcSpin)._replace(data=bytes(8))],
+    [ack(TcSpin, tick=TICK - 1), ack(TcSpin, counter=4), ack(TcClear), ack(TcSpin).replace(data=bytes(8))],
 )
 def test_nor_one_whose_answer_is_another_s(other):
     assert split_at_sync([], [SPIN, other, DONE], TICK) == ([], [SPIN, other, DONE])
@@ -39,7 +39,7 @@ def test_an_answer_to_one_that_was_known_is_that_one_s():
 
 
 def test_several_keep_their_order_and_what_is_broken_stays():
-    broken = SPIN._replace(data=b"\0\0\0\0")
+    broken = SPIN.replace(data=b"\0\0\0\0")
     after = [CLEAR, broken, SPIN, ack(TcClear), ack(TcSpin), DONE, SPIN]
     assert split_at_sync([], after, TICK) == ([CLEAR, SPIN], [broken, *after[3:]])
 

@@ -73,7 +73,7 @@ def flip(byte, bit=0):
     def change(frame):
         data = bytearray(frame.data)
         data[byte] ^= 1 << bit
-        return frame._replace(data=bytes(data))
+        return frame.replace(data=bytes(data))
 
     return change
 
@@ -151,7 +151,7 @@ class TestChangedByte:
     def test_a_forged_sample_with_a_right_crc_is_found(self, replay_entries, entries):
         index = index_of(entries, MagField, 140)
         field = MagField.decode(entries[index].frame.data)
-        forged = changed(entries, index, lambda _: field._replace(b_x=field.b_x + 2.0).encode())
+        forged = changed(entries, index, lambda _: field.replace(b_x=field.b_x + 2.0).encode())
         result = replay_entries(forged)
         assert result.first_bit_difference.tick == 140
 
@@ -168,7 +168,7 @@ class TestChangedAnswer:
         index = next(i for i, e in enumerate(entries) if e.frame.can_id == CoilFire.ID)
         fire = CoilFire.decode(entries[index].frame.data)
         other = -fire.level
-        result = replay_entries(changed(entries, index, lambda _: fire._replace(level=other).encode()))
+        result = replay_entries(changed(entries, index, lambda _: fire.replace(level=other).encode()))
         difference = result.first_command_difference
         assert (difference.signal, difference.logged, difference.replayed) == (
             "COIL_FIRE.level",
@@ -193,7 +193,7 @@ class TestChangedAnswer:
     ):
         index = index_of(entries, kind, tick)
         message = kind.decode(entries[index].frame.data)
-        moved = message._replace(**{signal: getattr(message, signal) + units * unit})
+        moved = message.replace(**{signal: getattr(message, signal) + units * unit})
         result = replay_entries(changed(entries, index, lambda _: moved.encode()))
         assert not result.bit_exact
         assert result.command_exact is commands
@@ -204,7 +204,7 @@ class TestChangedAnswer:
         index = index_of(entries, NavAttitude, 133)
         message = NavAttitude.decode(entries[index].frame.data)
         result = replay_entries(
-            changed(entries, index, lambda _: message._replace(valid=1 - message.valid).encode())
+            changed(entries, index, lambda _: message.replace(valid=1 - message.valid).encode())
         )
         assert result.first_command_difference.signal == "NAV_ATTITUDE.valid"
 
@@ -228,7 +228,7 @@ class TestChangedAnswer:
 
     def test_a_shortened_frame_is_too(self, replay_entries, entries):
         result = replay_entries(
-            changed(entries, index_of(entries, TickDone, 88), lambda f: f._replace(data=f.data[:4]))
+            changed(entries, index_of(entries, TickDone, 88), lambda f: f.replace(data=f.data[:4]))
         )
         assert result.first_command_difference.signal == "TICK_DONE as a whole"
 

@@ -122,7 +122,7 @@ def test_the_order_that_is_found_explains_an_altered_frame_no_more_than_the_logg
     events = [i for i, e in enumerate(entries) if e.frame.can_id == FswEvent.ID]
     for index in (events[3], events[-1]):
         event = FswEvent.decode(entries[index].frame.data)
-        altered = entries[index]._replace(frame=event._replace(argument=event.argument ^ 4).encode())
+        altered = entries[index]._replace(frame=event.replace(argument=event.argument ^ 4).encode())
         lines = [*entries[:index], altered, *entries[index + 1 :]]
         log = tmp_path / "altered.log"
         log.write_text("".join(format_line(format_time(e.timestamp_us), e.channel, e.frame) for e in lines))

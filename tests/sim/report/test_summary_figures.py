@@ -321,13 +321,13 @@ class TestTally:
         for seq in range(3):
             tally.take(self.entry(CoilRefused(1, seq, 8, 0).encode()))
         broken = CoilRefused(1, 4, 8, 0).encode()
-        tally.take(self.entry(broken._replace(data=broken.data[:-1] + b"\0")))
+        tally.take(self.entry(broken.replace(data=broken.data[:-1] + b"\0")))
         assert (tally.refused, tally.events) == (3, [])
 
     def test_a_broken_event_is_none(self):
         tally = BusTally(self.EPOCH_US)
         frame = FswEvent(2, 4, 17, -5).encode()
-        tally.take(self.entry(frame._replace(data=frame.data[:-1] + b"\0")))
+        tally.take(self.entry(frame.replace(data=frame.data[:-1] + b"\0")))
         assert tally.events == []
 
     def test_isolated_units_are_named_once_in_the_order_of_their_isolation(self, audit):

@@ -290,7 +290,7 @@ class TestOnboardTable:
 
     def test_the_steps_of_the_bus_are_those_of_its_messages(self):
         field, sun = MagField(1, 0.9, 2.9, 0.0, counter=0), SunVector(1, 0.0, 1.9 / 2**14, 0.0, counter=0)
-        assert MagField.decode(field.encode().data)[1:3] == (0.0, BUS_STEP_NT)
+        assert MagField.decode(field.encode().data).values()[1:3] == (0.0, BUS_STEP_NT)
         assert SunVector.decode(sun.encode().data).s_y == 2.0 * BUS_STEP_SUN
         assert 100.0 * QUANTUM == BUS_STEP_PERCENT
 

@@ -127,7 +127,7 @@ class TestSensors:
             take(seen, status)
             assert (seen.field_off_deg() is not None) is known
         assert "field" in seen.arrows()
-        take(seen, self.measured(2.0)._replace(valid=0))
+        take(seen, self.measured(2.0).replace(valid=0))
         assert seen.field_off_deg() is None
         assert "field" not in seen.arrows()
 

@@ -223,7 +223,7 @@ def test_a_request_that_is_reported_as_driven_was_not_refused(seq, reason):
 @pytest.mark.parametrize("reason", OF_ANY_FRAME)
 def test_a_broken_frame_without_a_status_may_be_any(reason):
     state, view, _ = run()
-    lost = NOTHING._replace(refused=refusal(TICK)._replace(reason=reason))
+    lost = NOTHING._replace(refused=refusal(TICK).replace(reason=reason))
     assert run(state, view, readings=lost, tick=TICK + 1)[1].fired == view.fired
     off = lost._replace(coil=BOARD_IS_THERE.coil)
     assert run(state, view, readings=off, tick=TICK + 1)[1].fired == NO_PULSE
@@ -231,7 +231,7 @@ def test_a_broken_frame_without_a_status_may_be_any(reason):
 
 def test_a_refusal_of_another_coil_is_not_of_this_request():
     state, view, _ = run()
-    readings = BOARD_IS_THERE._replace(refused=refusal(TICK)._replace(coil=1))
+    readings = BOARD_IS_THERE._replace(refused=refusal(TICK).replace(coil=1))
     assert run(state, view, readings=readings, tick=TICK + 1)[1].fired == view.fired
 
 
@@ -345,7 +345,7 @@ def test_only_how_long_the_timers_still_run_matters(ready_in, busy_in, lockout_m
         view = CoilView(lockout_ms=lockout_ms)
         after, _, request = run(state, view, tick=tick, config=config)
         timers = [max(0, t - tick) for t in (*after.ready_tick, after.busy_until)]
-        return timers, after.owed_impulse_body_nms, request and request._replace(tick=0)
+        return timers, after.owed_impulse_body_nms, request and request.replace(tick=0)
 
     once = answer(TICK, ready_in, busy_in, lockout_ms)
     event("fired" if once[2] else "waited")

@@ -59,7 +59,7 @@ def test_a_request_that_is_broken_itself_is_asked_for_again(world):
 
     receive = world.plant.receive
     world.plant.receive = lambda frame: receive(
-        frame._replace(data=bytes([frame.data[0] ^ 0x10]) + frame.data[1:])
+        frame.replace(data=bytes([frame.data[0] ^ 0x10]) + frame.data[1:])
         if frame.can_id == CoilFire.ID
         else frame
     )

@@ -159,8 +159,8 @@ class TestIdleTicks:
         [
             status(0, level=1),
             status(2, level=-3),
-            status(1)._replace(current_ma=1),
-            status(1)._replace(current_ma=-1),
+            status(1).replace(current_ma=1),
+            status(1).replace(current_ma=-1),
             None,
         ],
         ids=["driven", "driven backwards", "current", "current backwards", "no report"],

@@ -58,7 +58,7 @@ class TestPlannedPulses:
 
     def test_that_are_refused_are_not_owed(self):
         _, view, _ = run(ready(ZERO), demand=Demand(pulse=Pulse(1, 2)))
-        readings = BOARD_IS_THERE._replace(refused=refusal(TICK)._replace(coil=1))
+        readings = BOARD_IS_THERE._replace(refused=refusal(TICK).replace(coil=1))
         after, view, _ = run(ready(ZERO), view, Demand(pulse=NO_PULSE), readings, TICK + 1)
         assert after.owed_impulse_body_nms == ZERO
         assert view.fired == NO_PULSE

@@ -55,4 +55,4 @@ def with_offset(frame):
     if frame.can_id != CoilStatus.ID:
         return frame
     status = CoilStatus.decode(frame.data)
-    return status._replace(current_ma=status.current_ma + 1).encode()
+    return status.replace(current_ma=status.current_ma + 1).encode()

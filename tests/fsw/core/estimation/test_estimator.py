@@ -59,11 +59,11 @@ class TestStart:
             {"field": None},
             {"sun": None},
             {"field": None, "sun": None},
-            {"field": seen_from().field._replace(valid=0)},
-            {"sun": seen_from().sun._replace(valid=0)},
+            {"field": seen_from().field.replace(valid=0)},
+            {"sun": seen_from().sun.replace(valid=0)},
             {"coil": None},
-            {"coil": IDLE._replace(level=2)},
-            {"coil": IDLE._replace(current_ma=17)},
+            {"coil": IDLE.replace(level=2)},
+            {"coil": IDLE.replace(current_ma=17)},
             {"quiet": False},
             {"field": field_message(scale(1.1, rotate(Q_BODY_FROM_ECI, REFERENCE.b_eci_t)))},
             {"sun": OFF_SUN},
@@ -106,7 +106,7 @@ class TestStart:
             assert (state.estimate is not None) is starts
 
     def test_says_when_it_was_blanked_while_waiting(self):
-        _, used = step(EstimatorState(), seen_from(coil=IDLE._replace(level=1)))
+        _, used = step(EstimatorState(), seen_from(coil=IDLE.replace(level=1)))
         assert used == Used(False, False, True)
 
 
@@ -122,8 +122,8 @@ class TestRunning:
             ({}, Used(True, True, False)),
             ({"sun": None}, Used(True, False, False)),
             ({"field": None}, Used(False, True, False)),
-            ({"coil": IDLE._replace(level=1)}, Used(False, True, True)),
-            ({"coil": IDLE._replace(current_ma=5)}, Used(False, True, True)),
+            ({"coil": IDLE.replace(level=1)}, Used(False, True, True)),
+            ({"coil": IDLE.replace(current_ma=5)}, Used(False, True, True)),
             ({"coil": None}, Used(False, True, True)),
             ({"quiet": False}, Used(False, True, True)),
             ({"field": None, "sun": None, "coil": None}, Used(False, False, False)),
@@ -139,7 +139,7 @@ class TestRunning:
 
     def test_the_coil_s_own_field_never_gets_in(self, settled):
         """A sample spoilt by 20 uT while a pulse is on leaves no trace at all."""
-        pulse = IDLE._replace(level=3)
+        pulse = IDLE.replace(level=3)
         spoilt = field_message(tuple(c + 2e-5 for c in rotate(Q_BODY_FROM_ECI, REFERENCE.b_eci_t)))
         with_sample, _ = step(settled, seen_from(field=spoilt, coil=pulse))
         without, _ = step(settled, seen_from(field=None, coil=pulse))
@@ -151,7 +151,7 @@ class TestRunning:
         open_body = unit((0.3, -0.8, 0.5))
         across = unit(cross(open_body, (1.0, 0.0, 0.0)))
         seen_t = rotate(Q_BODY_FROM_ECI, REFERENCE.b_eci_t)
-        clipped = field_message(add(seen_t, add(scale(-2e-5, open_body), scale(6e-7, across))))._replace(
+        clipped = field_message(add(seen_t, add(scale(-2e-5, open_body), scale(6e-7, across)))).replace(
             valid=0
         )
         state, used = step(settled, seen_from(field=clipped, sun=None, saturated=(open_body,)))
@@ -161,7 +161,7 @@ class TestRunning:
         predicted, sensitivity = field_prediction(*estimate[:3], REFERENCE.b_eci_t, MEKF)
         rows = np.array([across, cross(open_body, across)])
         kalman = LeanKalmanFilter(estimate.covariance)
-        innovation = rows @ np.subtract([1e-9 * b for b in clipped[1:4]], predicted)
+        innovation = rows @ np.subtract([1e-9 * b for b in clipped.values()[1:4]], predicted)
         kalman.S = (rows @ sensitivity) @ kalman.P @ (rows @ sensitivity).T + rows @ MEKF.field_noise @ rows.T
         gain = kalman.P @ (rows @ sensitivity).T @ np.linalg.inv(kalman.S)
         turned = multiply(estimate.q_body_from_eci, from_small_rotation((gain @ innovation)[0:3].tolist()))
@@ -178,12 +178,12 @@ class TestRunning:
         [
             {"saturated": ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))},
             {"saturated": ()},
-            {"saturated": ((1.0, 0.0, 0.0),), "coil": IDLE._replace(level=1)},
+            {"saturated": ((1.0, 0.0, 0.0),), "coil": IDLE.replace(level=1)},
         ],
         ids=["of two axes", "of none: not valid for another reason", "while a coil drives"],
     )
     def test_a_sample_that_is_not_valid_is_used_by_two_axes_or_not_at_all(self, settled, changes):
-        broken = seen_from().field._replace(valid=0)
+        broken = seen_from().field.replace(valid=0)
         _, used = step(settled, seen_from(field=broken, **changes))
         assert used == Used(False, True, True)
 
@@ -197,7 +197,7 @@ class TestRunning:
         assert mekf.healthy(state.estimate)
 
     def test_the_driven_dipole_turns_the_estimate(self, settled):
-        pulse = seen_from(field=None, sun=None, coil=IDLE._replace(level=3))
+        pulse = seen_from(field=None, sun=None, coil=IDLE.replace(level=3))
         pushed, _ = step(settled, pulse, driven=[Driven((0.0, 0.0, 8.0))])
         left, _ = step(settled, pulse)
         change = np.subtract(pushed.estimate.omega_body_radps, left.estimate.omega_body_radps)

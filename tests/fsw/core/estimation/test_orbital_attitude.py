@@ -100,8 +100,8 @@ class TestPerfectKnowledge:
             {},
             {"ref_attitude": Q},
             {"ref_rate": W},
-            {"ref_attitude": Q._replace(valid=0), "ref_rate": W},
-            {"ref_attitude": Q, "ref_rate": W._replace(valid=0)},
+            {"ref_attitude": Q.replace(valid=0), "ref_rate": W},
+            {"ref_attitude": Q, "ref_rate": W.replace(valid=0)},
         ],
     )
     def test_without_both_the_one_before_stays_and_is_not_valid(self, changes):

@@ -27,10 +27,10 @@ def test_a_quiet_sample_is_taken_in_tesla():
         {"field": None},
         {"field": MagField(0, 20000.0, -7000.0, 31000.0)},
         {"coil": None},
-        {"coil": IDLE._replace(level=1)},
-        {"coil": IDLE._replace(level=-3)},
-        {"coil": IDLE._replace(current_ma=1)},
-        {"coil": IDLE._replace(current_ma=-1)},
+        {"coil": IDLE.replace(level=1)},
+        {"coil": IDLE.replace(level=-3)},
+        {"coil": IDLE.replace(current_ma=1)},
+        {"coil": IDLE.replace(current_ma=-1)},
         {"quiet": False},
     ],
     ids=[
@@ -50,14 +50,14 @@ def test_a_sample_that_a_coil_may_have_spoilt_is_not(changes):
 
 def test_what_remains_of_a_pulse_does_not_count_before_it_is_driven():
     """Level is what was driven until now; the sample is good if nothing was."""
-    assert usable_field(readings_with(coil=IDLE._replace(remaining_ms=3000))) is not None
+    assert usable_field(readings_with(coil=IDLE.replace(remaining_ms=3000))) is not None
 
 
 def test_coils_are_idle_while_and_since_none_is_driven():
     """Also where there is no sample, or none that is valid."""
     assert coils_idle(readings_with(field=None))
     assert not coils_idle(readings_with(coil=None))
-    assert not coils_idle(readings_with(coil=IDLE._replace(level=-2)))
+    assert not coils_idle(readings_with(coil=IDLE.replace(level=-2)))
     assert not coils_idle(readings_with(quiet=False))
 
 
@@ -97,5 +97,5 @@ class TestSunDirection:
 
     def test_without_three_that_may_be_used_there_is_none(self):
         assert sun_direction(readings_with(cells=self.LIT, unusable_cells=(1,)), self.CELLS) is None
-        assert sun_direction(readings_with(cells=self.LIT._replace(cell_1=0.0)), self.CELLS) is None
+        assert sun_direction(readings_with(cells=self.LIT.replace(cell_1=0.0)), self.CELLS) is None
         assert sun_direction(readings_with(cells=None), self.CELLS) is None

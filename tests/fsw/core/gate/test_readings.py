@@ -78,12 +78,12 @@ class TestEachMessage:
     @pytest.mark.parametrize("change", [lambda d: d[:-1], lambda d: d + b"\0", lambda d: b""])
     def test_wrong_length(self, message, change):
         frame = message.encode()
-        assert admitted(frame._replace(data=change(frame.data))) == (NOTHING, GateState(rejected=1))
+        assert admitted(frame.replace(data=change(frame.data))) == (NOTHING, GateState(rejected=1))
 
     @pytest.mark.parametrize("flag", [EXTENDED_FLAG, REMOTE_FLAG, ERROR_FLAG])
     def test_flagged_frames_are_never_ours(self, message, flag):
         frame = message.encode()
-        flagged = frame._replace(can_id=frame.can_id | flag)
+        flagged = frame.replace(can_id=frame.can_id | flag)
         assert admitted(flagged) == (NOTHING, GateState(rejected=1))
 
     def test_every_bit_that_is_taken_shows_in_the_state(self, message):
@@ -98,28 +98,28 @@ class TestEachMessage:
 
     def test_the_first_one_is_taken_whatever_its_counter(self, message):
         for counter in range(16):
-            readings, state = admitted(message._replace(counter=counter))
+            readings, state = admitted(message.replace(counter=counter))
             assert readings != NOTHING
             assert (state.rejected, state.missed) == (0, 0)
 
     def test_forty_in_order_miss_nothing(self, message):
         state = GateState()
         for counter in range(40):
-            readings, state = admitted(message._replace(counter=counter), state=state)
+            readings, state = admitted(message.replace(counter=counter), state=state)
             assert readings != NOTHING
         assert (state.rejected, state.missed) == (0, 0)
 
     def test_the_last_of_several_counts(self, message):
-        readings, _ = admitted(*(message._replace(counter=n) for n in (3, 4, 5)))
+        readings, _ = admitted(*(message.replace(counter=n) for n in (3, 4, 5)))
         assert readings[SLOT[message.ID]].counter == 5
 
     def test_a_broken_one_does_not_displace_a_good_one(self, message):
-        readings, _ = admitted(message._replace(counter=3), broken(message._replace(counter=4).encode()))
+        readings, _ = admitted(message.replace(counter=3), broken(message.replace(counter=4).encode()))
         assert readings[SLOT[message.ID]].counter == 3
 
     def test_the_counters_of_others_do_not_move(self, message):
         _, state = admit(frames(*EVERY_KIND), GateState())
-        _, later = admitted(message._replace(counter=message.counter + 1), state=state)
+        _, later = admitted(message.replace(counter=message.counter + 1), state=state)
         changed = [a != b for a, b in zip(state.counters, later.counters, strict=True)]
         assert changed == [can_id == message.ID for can_id in (*INPUT_MESSAGES, *TELECOMMANDS)]
 
@@ -133,24 +133,24 @@ class TestEachCounter:
 
     @pytest.mark.parametrize("counter", [0, 5, 15])
     def test_repeated_in_the_next_tick(self, message, counter):
-        _, state = admitted(message._replace(counter=counter))
-        readings, state = admitted(message._replace(counter=counter), state=state)
+        _, state = admitted(message.replace(counter=counter))
+        readings, state = admitted(message.replace(counter=counter), state=state)
         assert readings == NOTHING
         assert (state.rejected, state.missed) == (1, 0)
 
     @pytest.mark.parametrize("first", [0, 13])
     @pytest.mark.parametrize("jump", range(1, 16))
     def test_a_jump_is_taken_and_what_is_missing_counted(self, message, first, jump):
-        _, state = admitted(message._replace(counter=first))
-        readings, state = admitted(message._replace(counter=first + jump), state=state)
+        _, state = admitted(message.replace(counter=first))
+        readings, state = admitted(message.replace(counter=first + jump), state=state)
         assert readings != NOTHING
         assert (state.rejected, state.missed) == (0, jump - 1)
 
     def test_a_broken_frame_does_not_move_the_counter(self, message):
         """What was rejected is missed when the next one comes."""
-        _, state = admitted(message._replace(counter=1))
-        _, state = admitted(broken(message._replace(counter=2).encode()), state=state)
-        _, state = admitted(message._replace(counter=3), state=state)
+        _, state = admitted(message.replace(counter=1))
+        _, state = admitted(broken(message.replace(counter=2).encode()), state=state)
+        _, state = admitted(message.replace(counter=3), state=state)
         assert (state.rejected, state.missed) == (1, 1)
 
 
@@ -160,9 +160,9 @@ class TestBoot:
     @pytest.mark.parametrize("before", [0, 7, 15])
     @pytest.mark.parametrize("counter", range(16))
     def test_is_taken_whatever_was_heard_before(self, before, counter):
-        _, state = admitted(BOOT._replace(counter=before))
-        readings, state = admitted(BOOT._replace(counter=counter), state=state)
-        assert readings.coil_boot == BOOT._replace(counter=counter)
+        _, state = admitted(BOOT.replace(counter=before))
+        readings, state = admitted(BOOT.replace(counter=counter), state=state)
+        assert readings.coil_boot == BOOT.replace(counter=counter)
         assert (state.rejected, state.missed) == (0, 0)
 
     def test_the_board_that_sent_it_counts_anew_and_the_others_go_on(self):
@@ -181,13 +181,13 @@ class TestBoot:
 class TestRange:
     @pytest.mark.parametrize("level", range(-8, 8))
     def test_levels_of_a_coil(self, level):
-        readings, state = admit(frames(COIL._replace(level=level)), GateState())
+        readings, state = admit(frames(COIL.replace(level=level)), GateState())
         assert (readings.coil is not None) is (-3 <= level <= 3)
         assert state.rejected == (not -3 <= level <= 3)
 
     @pytest.mark.parametrize("coil", range(4))
     def test_there_is_no_fourth_coil(self, coil):
-        readings, state = admit(frames(COIL._replace(coil=coil)), GateState())
+        readings, state = admit(frames(COIL.replace(coil=coil)), GateState())
         assert (readings.coil is not None) is (coil < 3)
         assert state.rejected == (coil == 3)
 
@@ -195,7 +195,7 @@ class TestRange:
         ("length", "taken"), [(0.88, False), (0.91, True), (1.0, True), (1.09, True), (1.11, False)]
     )
     def test_a_direction_is_nearly_a_unit_vector(self, length, taken):
-        sun = SUN._replace(s_x=0.6 * length, s_y=-0.48 * length, s_z=0.64 * length)
+        sun = SUN.replace(s_x=0.6 * length, s_y=-0.48 * length, s_z=0.64 * length)
         readings, state = admit(frames(sun), GateState())
         assert (readings.sun is not None) is taken
         assert state.rejected == (not taken)
@@ -252,13 +252,13 @@ class TestTheRest:
 
 class TestOverrun:
     def test_a_babbling_node_costs_no_more_than_the_limit(self):
-        flood = tuple(FIELD._replace(counter=n).encode() for n in range(INBOX_LIMIT + 9))
+        flood = tuple(FIELD.replace(counter=n).encode() for n in range(INBOX_LIMIT + 9))
         readings, state = admit(flood, GateState())
         assert readings.field.counter == (INBOX_LIMIT - 1) % 16
         assert (state.overrun, state.rejected, state.missed) == (9, 0, 0)
 
     def test_exactly_the_limit_is_no_overrun(self):
-        _, state = admit(frames(*[FIELD._replace(counter=n) for n in range(INBOX_LIMIT)]), GateState())
+        _, state = admit(frames(*[FIELD.replace(counter=n) for n in range(INBOX_LIMIT)]), GateState())
         assert state.overrun == 0
 
     def test_what_lies_beyond_the_limit_is_not_read(self):
@@ -272,7 +272,7 @@ class TestSkipped:
     """The frames of many ticks whose SYNCs were lost: those of now are the last."""
 
     def test_the_latest_are_read(self):
-        many = [FIELD._replace(b_x=2.0 * n, counter=n % 16) for n in range(INBOX_LIMIT + 9)]
+        many = [FIELD.replace(b_x=2.0 * n, counter=n % 16) for n in range(INBOX_LIMIT + 9)]
         readings, state = admit(frames(*many), GateState(), skipped=True)
         assert readings.field == many[-1]
         assert (state.overrun, state.rejected) == (9, 0)
@@ -280,12 +280,12 @@ class TestSkipped:
 
     @pytest.mark.parametrize("number", [1, INBOX_LIMIT - 1, INBOX_LIMIT])
     def test_where_they_fit_it_is_all_the_same(self, number):
-        few = frames(*[FIELD._replace(counter=n % 16) for n in range(number)])
+        few = frames(*[FIELD.replace(counter=n % 16) for n in range(number)])
         assert admit(few, GateState(), skipped=True) == admit(few, GateState())
 
     def test_telecommands_are_read_wherever_they_stand_and_in_their_order(self):
         told = [TcFreeze(1, 3), TcFreeze(0, 4), TcFreeze(1, 5)]
-        many = [FIELD._replace(counter=n % 16) for n in range(INBOX_LIMIT)]
+        many = [FIELD.replace(counter=n % 16) for n in range(INBOX_LIMIT)]
         inbox = frames(told[0], *many[:20], told[1], *many, told[2])
         readings, state = admit(inbox, GateState(), skipped=True)
         assert readings.telecommands == tuple(told)
@@ -298,7 +298,7 @@ class TestSkipped:
         assert state.overrun == 3 * INBOX_LIMIT, "counted"
 
     def test_in_noise_none_is_believed(self):
-        many = [FIELD._replace(counter=n % 16).encode() for n in range(INBOX_LIMIT)]
+        many = [FIELD.replace(counter=n % 16).encode() for n in range(INBOX_LIMIT)]
         many[-NOISE_LIMIT - 1 :] = [broken(FIELD.encode())] * (NOISE_LIMIT + 1)
         readings, _ = admit((TcFreeze(1, 3).encode(), *many), GateState(), skipped=True)
         assert readings.telecommands == ()
@@ -338,7 +338,7 @@ class TestNoise:
         assert readings.field == FIELD
 
     def test_whole_frames_are_no_noise(self):
-        whole = [FIELD._replace(counter=n).encode() for n in range(INBOX_LIMIT - 1)]
+        whole = [FIELD.replace(counter=n).encode() for n in range(INBOX_LIMIT - 1)]
         readings, _ = admit((*whole, self.COMMAND.encode()), GateState())
         assert readings.telecommands == (self.COMMAND,)
 

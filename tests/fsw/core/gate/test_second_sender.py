@@ -140,7 +140,7 @@ class TestInFlight:
 
     @pytest.mark.requirement("REQ-BUS-02")
     def test_frames_that_are_broken_are_no_sign(self, world):
-        broken = FIRE._replace(data=bytes((FIRE.data[0] ^ 1,)) + FIRE.data[1:])
+        broken = FIRE.replace(data=bytes((FIRE.data[0] ^ 1,)) + FIRE.data[1:])
         short = Frame(TickDone.ID, TickDone(5, 6).encode().data[:-1])
         strange = (broken, short, Frame(CoilFire.ID | 0x8000_0000, FIRE.data))
         replies = world.fly(130, lambda inbox: inbox._replace(frames=(*inbox.frames, *strange)))

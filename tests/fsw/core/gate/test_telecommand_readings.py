@@ -48,7 +48,7 @@ class TestTelecommands:
         assert (state.rejected, state.missed) == (0, 0)
 
     def test_all_of_one_kind_count(self, message):
-        sent = tuple(message._replace(counter=n & 0xF) for n in range(14, 20))
+        sent = tuple(message.replace(counter=n & 0xF) for n in range(14, 20))
         readings, state = admitted(*sent)
         assert readings.telecommands == sent
         assert (state.rejected, state.missed) == (0, 0)
@@ -62,7 +62,7 @@ class TestTelecommands:
         assert (later.rejected, later.command_crc) == (2, state.command_crc)
 
     def test_gaps_are_counted(self, message):
-        readings, state = admitted(message, message._replace(counter=9))
+        readings, state = admitted(message, message.replace(counter=9))
         assert len(readings.telecommands) == 2
         assert state.missed == 5
 
@@ -71,7 +71,7 @@ class TestTelecommands:
     )
     def test_a_broken_one_is_counted_and_nothing_else(self, message, change):
         frame = message.encode()
-        assert admitted(frame._replace(data=change(frame.data))) == (NOTHING, GateState(rejected=1))
+        assert admitted(frame.replace(data=change(frame.data))) == (NOTHING, GateState(rejected=1))
 
 
 def test_telecommands_of_all_kinds_stay_in_their_order():

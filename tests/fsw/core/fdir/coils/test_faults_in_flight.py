@@ -40,7 +40,7 @@ def current_times(coil, factor):
             if frame.can_id == CoilStatus.ID:
                 status = CoilStatus.decode(frame.data)
                 if status.level and status.coil == coil:
-                    frames.append(status._replace(current_ma=round(factor * status.current_ma)).encode())
+                    frames.append(status.replace(current_ma=round(factor * status.current_ma)).encode())
                     continue
             frames.append(frame)
         return inbox._replace(frames=tuple(frames))
@@ -51,7 +51,7 @@ def current_times(coil, factor):
 def told_by_driver(**values):
     def change(inbox):
         frames = [
-            CoilStatus.decode(f.data)._replace(**values).encode() if f.can_id == CoilStatus.ID else f
+            CoilStatus.decode(f.data).replace(**values).encode() if f.can_id == CoilStatus.ID else f
             for f in inbox.frames
         ]
         return inbox._replace(frames=tuple(frames))

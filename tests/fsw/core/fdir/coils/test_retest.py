@@ -32,7 +32,7 @@ def without_current(coil):
         for frame in inbox.frames:
             told = CoilStatus.decode(frame.data) if frame.can_id == CoilStatus.ID else None
             cut = told is not None and told.coil == coil and told.level
-            frames.append(told._replace(current_ma=0).encode() if cut else frame)
+            frames.append(told.replace(current_ma=0).encode() if cut else frame)
         return inbox._replace(frames=tuple(frames))
 
     return change

@@ -22,7 +22,7 @@ def offset(inbox):
         if frame.can_id != MagField.ID:
             return frame
         said = MagField.decode(frame.data)
-        return said._replace(b_x=said.b_x + 15000.0).encode()
+        return said.replace(b_x=said.b_x + 15000.0).encode()
 
     return inbox._replace(frames=tuple(map(change, inbox.frames)))
 

@@ -80,7 +80,7 @@ def test_the_sun_vector_has_the_length_of_one(reference, readings, part):
 def test_a_field_marked_as_not_valid_counts_while_no_coil_drives(reference, readings):
     saturated = readings(field=MagField(0, 1.0, 2.0, 3.0, counter=0))
     assert causes(examine(Memory(), saturated, reference, LIMITS)) == (SensorFault.SATURATED, 0)
-    driven = saturated._replace(coil=IDLE._replace(level=2))
+    driven = saturated._replace(coil=IDLE.replace(level=2))
     assert causes(examine(Memory(), driven, reference, LIMITS)) == (0, 0)
 
 
