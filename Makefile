@@ -36,6 +36,7 @@ PYTHONS ?=
 
 bin := .venv/bin
 installed := .venv/.installed
+kernel := .venv/.kernel
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
 .PHONY: help venv sil test test-long lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate validate-recorded same-flights fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
@@ -43,13 +44,17 @@ export PATH := $(CURDIR)/$(bin):$(PATH)
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
 
-venv: $(installed)
+venv: $(installed) $(kernel)
 
 $(installed): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit("torquer needs Python 3.11 or newer: make PYTHON=python3.11 ..." if sys.version_info < (3, 11) else 0)'
 	@echo 'Making the environment .venv (a minute or two the first time)'
 	@$(PYTHON) -m venv .venv
 	@$(bin)/pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $@
+
+$(kernel): fsw/core/estimation/kalman_kernel.c hatch_build.py $(installed)
+	$(bin)/python hatch_build.py
 	@touch $@
 
 sil: venv

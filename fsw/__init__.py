@@ -1,1 +1,5 @@
 """Torquer flight software: node, core, onboard table, and its way onto the bus."""
+
+from fsw.kernel import refuse_stale_kernel
+
+refuse_stale_kernel()

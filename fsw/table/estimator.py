@@ -4,6 +4,7 @@ from math import ceil, hypot, radians, sqrt
 
 from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.estimator import EstimatorConfig
+from fsw.core.estimation.kalman import Algebra
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.start.first import StartLimits
 from fsw.core.fdir.sensors.plausibility import PlausibilityConfig
@@ -65,6 +66,7 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
             dipole_sigma=DRIVE_SIGMA,
             gate_nis=GATE_NIS,
             cells=cells,
+            algebra=Algebra(tuning.algebra),
         ),
         perfect=table.knowledge == "perfect",
         start=StartLimits(

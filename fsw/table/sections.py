@@ -224,7 +224,7 @@ class EstimatorTable(Section):
     """Noise of the sensors, rate at start-up, and standard deviation up to which the attitude is valid.
 
     ``magnetometer_quantum_nt`` and ``sun_quantum`` are steps of a component of field and Sun vector, where
-    they are coarser than those of the bus; 0: they are not.
+    they are coarser than those of the bus; 0: they are not. ``algebra``: what computes the filter's matrices.
     """
 
     magnetometer_sigma_nt: Positive
@@ -233,6 +233,7 @@ class EstimatorTable(Section):
     sun_quantum: StepOfOne = 0.0
     rate_sigma_degps: Positive
     valid_sigma_deg: Positive
+    algebra: Literal["kernel", "filterpy"] = "kernel"
 
 
 class ModesTable(Section):

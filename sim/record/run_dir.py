@@ -14,6 +14,7 @@ from typing import Any, Final
 import numpy as np
 import tomli_w
 
+from fsw.core.estimation.kalman import Algebra, available
 from fsw.input import gzip_text
 from fsw.input.schema import Nested, TableError
 from sim.errors import HarnessError
@@ -108,6 +109,7 @@ def begin(
                 "pace_factor": pace.factor,
                 "compressed": compress,
                 "platform": fingerprint(),
+                "algebra": available(Algebra(flight_table(scenario).estimator.algebra)),
                 DIGESTS: {},
                 "complete": False,
             },
@@ -208,7 +210,7 @@ def locate(run_or_log: Path) -> tuple[Path, Path]:
 
 
 def fingerprint() -> Json:
-    """What the last bit of a result depends on: CPU, Python, numpy and its linear algebra."""
+    """What the last bit of a result depends on: CPU, Python, numpy and its linear algebra, the kernel."""
     config: Any = np.show_config(mode="dicts")
     blas = config["Build Dependencies"]["blas"]
     return {
@@ -221,6 +223,7 @@ def fingerprint() -> Json:
         "simd": config["SIMD Extensions"],
         "blas": f"{blas.get('name')} {blas.get('version')}",
         "blas_core": os.environ.get("OPENBLAS_CORETYPE", ""),
+        "algebra": available(Algebra.KERNEL),
     }
 
 

@@ -24,12 +24,16 @@ Count = Annotated[int, Field(ge=0, lt=2**32)]
 
 @with_config(_OPEN)
 class Platform(TypedDict):
-    """The platform of the run; ``run_dir.fingerprint`` has more keys."""
+    """The platform of the run; ``run_dir.fingerprint`` has more keys.
+
+    ``algebra``: what computes the filter's matrices there, unless the table names another.
+    """
 
     machine: Text
     system: Text
     python: Text
     numpy: Text
+    algebra: NotRequired[Text]
 
 
 @with_config(_OPEN)
@@ -61,7 +65,11 @@ class SenderRecord(TypedDict):
 
 @with_config(_OPEN)
 class RunRecord(FlightRecord):
-    """run.json. ``ended``: why a flight was not completed, where the plant knows."""
+    """run.json.
+
+    ``algebra``: what computed the filter's matrices; ``ended``: why a flight was not completed, where the
+    plant knows.
+    """
 
     schema_version: int
     torquer_version: Text
@@ -76,6 +84,7 @@ class RunRecord(FlightRecord):
     complete: bool
     compressed: NotRequired[bool]
     digests: NotRequired[dict[Name, Digest]]
+    algebra: NotRequired[Text]
     second_senders: NotRequired[list[SenderRecord]]
     ended: NotRequired[Text]
 

@@ -117,7 +117,7 @@ def through_flight_software(log: Path, run: LoggedRun) -> ReplayReport:
     same_platform = run.record is None or run.record["platform"] == run_dir.fingerprint()
     exact = result.bit_exact or (result.command_exact and not same_platform)
     holds, binding_lines = _binding(log, run)
-    lines = [*([f"note: {note}"] if note else []), *_found(result, same_platform), *binding_lines]
+    lines = [*([f"note: {note}"] if note else []), *_found(result, _needed(run.record)), *binding_lines]
     if result.command_exact and not result.ended:
         how = "inside a line" if result.cut else "without its end mark"
         end = f"after line {result.end_line}, at tick {max(result.last_tick, 0)}"
@@ -126,19 +126,25 @@ def through_flight_software(log: Path, run: LoggedRun) -> ReplayReport:
     return ReplayReport(exact and holds and result.ended and not miscounted, (*lines, *miscounted), result)
 
 
-def _found(result: ReplayResult, same_platform: bool) -> list[str]:
+def _needed(record: RunRecord | None) -> str:
+    """How exact the replay of a run has to be, and why."""
+    here = run_dir.fingerprint()
+    if record is None or record["platform"] == here:
+        return "bit-exact is required: the platform is the run's"
+    there = record["platform"].get("algebra")
+    if there is not None and there != here["algebra"]:
+        return f"{there} computed the filter's matrices, here {here['algebra']} does: commands count alone"
+    return "another platform than the run's"
+
+
+def _found(result: ReplayResult, needed: str) -> list[str]:
     """How exact a replay is, in words; none of a whole log without a tick."""
     if result.bit_exact and result.ended and not result.ticks:
         return []
     if result.bit_exact:
         return [f"bit-exact: {result.ticks} ticks, {result.frames} frames, every state CRC equal"]
     if result.command_exact:
-        need = (
-            "bit-exact is required: the platform is the run's"
-            if same_platform
-            else "another platform than the run's"
-        )
-        return [f"command-exact, not bit-exact ({need}): {result.first_bit_difference}"]
+        return [f"command-exact, not bit-exact ({needed}): {result.first_bit_difference}"]
     lines = [f"differs: {result.first_bit_difference}"]
     if result.first_command_difference != result.first_bit_difference:
         lines.append(f"first command that differs: {result.first_command_difference}")

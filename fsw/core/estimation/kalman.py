@@ -1,89 +1,156 @@
-"""filterpy's Kalman filter without the copies that it keeps for inspection, for mostly constant states.
+"""The matrices of the Kalman filter: prediction, update, and the products beside them.
 
-With it, a trace of what unmodelled deviations would do to errors and innovations (Friedland 1969).
+Two algebras compute the same: a small kernel in C, whose sums have a fixed order, so that a log replays to
+the same bits on every machine; and filterpy's ``KalmanFilter``, the reference, which also flies where the
+kernel is not built. The error state is zero before each prediction and each update:
+
+    predict  P <- F P F^T + Q
+    update   S = H P H^T + R,  K = P H^T S^-1,  x = K y,  P <- (1 - K H) P (1 - K H)^T + K R K^T
+
+No function changes an array in place, so arrays may be shared. P is symmetric and stays exactly so.
+
+With them, a trace of what unmodelled deviations would do to errors and innovations (Friedland 1969).
 """
 
 import struct
+from enum import StrEnum
+from functools import cache
 from math import nan
-from typing import NamedTuple
+from typing import NamedTuple, final
 
 import numpy as np
 from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dgesv
 
 Matrix = NDArray[np.float64]
 
 
-class LeanKalmanFilter(KalmanFilter):  # type: ignore[misc]  # filterpy has no types
-    """filterpy's ``KalmanFilter`` for one prediction or one update of an error state, which is zero before.
+try:
+    from fsw.core.estimation import _kalman_kernel as _kernel
+except ImportError:  # it is not built
+    _kernel = None  # type: ignore[assignment]
 
-    The operations of ``predict`` and ``update`` are filterpy's own, x = 0:
 
-        predict  P <- F P F^T + Q
-        update   y = z,  S = H P H^T + R,  K = P H^T S^-1,
-                 x <- K y,  P <- (1 - K H) P (1 - K H)^T + K R K^T
+class Algebra(StrEnum):
+    """What computes the filter's matrices."""
 
-    Most states are constants: only the first rows of F differ from those of the identity, and only they are
-    given. The triple product in the update is expanded from the left, then from the right, so that no
-    product of two (n, n) matrices is needed. There is no fading memory, no control input, and no copy of
-    prior, posterior and measurement; the constructor allocates nothing, while filterpy's takes longer than a
-    prediction. No method changes an array in place, so arrays may be shared. The likelihoods are filterpy's.
+    KERNEL = "kernel"
+    FILTERPY = "filterpy"
+
+
+def available(wanted: Algebra) -> Algebra:
+    """The algebra that flies where this one is wanted: filterpy's where the kernel is not built."""
+    return wanted if _kernel is not None else Algebra.FILTERPY
+
+
+@final
+class Update:
+    """What an update gives.
 
     Attributes:
-        x: error state after an update, (n).
-        P: its covariance, (n, n).
-        y: innovation of the update, (m).
-        K: gain, (n, m).
-        SI: inverse of the innovation's covariance, (m, m).
+        error: x, the error state, (n).
+        covariance: P, (n, n).
+        gain: K, (n, m).
+        spread: S, the covariance of the innovation, (m, m).
+        weight: S^-1, (m, m).
     """
 
-    _log_likelihood = _likelihood = _mahalanobis = None
-    """Not computed yet: filterpy computes each when it is read."""
+    __slots__ = ("covariance", "error", "gain", "spread", "weight")
 
-    def __init__(self, P: Matrix) -> None:
-        self.P = P
-
-    def predict(self, *, F: Matrix, Q: Matrix) -> None:
-        """Carry the covariance over a step.
-
-        Args:
-            F: the first rows of the transition, (k, n); the others are those of the identity.
-            Q: process noise, (n, n).
-        """
-        moving = len(F)
-        covariance, rows = self.P.copy(), F.dot(self.P)
-        covariance[:moving, :moving] = rows.dot(F.T)
-        covariance[:moving, moving:] = crossed = rows[:, moving:]
-        covariance[moving:, :moving] = crossed.T
-        covariance += Q
-        self.P = covariance
-
-    def update(self, z: Matrix, R: Matrix, H: Matrix, considered: slice | None = None) -> None:
-        """Take a measurement z, (m), with noise R, (m, m), and sensitivity H, (m, n).
-
-        States that are ``considered`` keep their values: their rows of K are zero, and P remains the
-        covariance of the errors (Schmidt 1966).
-        """
-        self.y = z
-        pht = self.P.dot(H.T)
-        self.S = H.dot(pht) + R
-        self.SI = inverse(self.S)
-        self.K = pht.dot(self.SI)
-        if considered is not None:
-            self.K[considered] = 0.0
-        self.x = self.K.dot(z)
-        left = self.P - self.K.dot(pht.T)
-        self.P = left - left.dot(H.T).dot(self.K.T) + self.K.dot(R).dot(self.K.T)
+    def __init__(
+        self, error: Matrix, covariance: Matrix, gain: Matrix, spread: Matrix, weight: Matrix
+    ) -> None:
+        self.error = error
+        self.covariance = covariance
+        self.gain = gain
+        self.spread = spread
+        self.weight = weight
 
 
-_UNITS = {size: np.eye(size) for size in (1, 3, 6)}
+def predict(covariance: Matrix, transition: Matrix, noise: Matrix, algebra: Algebra) -> Matrix:
+    """The covariance P after a step, (n, n).
+
+    Args:
+        covariance: before, (n, n).
+        transition: the first rows of F, (k, n); the others are those of the identity.
+        noise: Q, (n, n).
+        algebra: what computes it.
+    """
+    if algebra is Algebra.KERNEL and _kernel is not None:
+        return _kernel.predict(covariance, transition, noise)
+    size = len(covariance)
+    kalman, whole = _filterpy(size, 1), np.eye(size)
+    whole[: len(transition)] = transition
+    kalman.x, kalman.P = np.zeros(size), covariance
+    kalman.predict(F=whole, Q=noise)
+    return _symmetric(kalman.P)
+
+
+def update(
+    covariance: Matrix,
+    innovation: tuple[float, ...],
+    noise: Matrix,
+    sensitivity: Matrix,
+    considered: slice | None,
+    algebra: Algebra,
+) -> Update | None:
+    """The update by a measurement; None where the covariance of its innovation is singular.
+
+    Args:
+        covariance: P before, (n, n).
+        innovation: y, (m).
+        noise: R, (m, m).
+        sensitivity: H, (m, n).
+        considered: states that keep their values: their rows of K are zero, and P remains the covariance of
+            the errors (Schmidt 1966).
+        algebra: what computes it.
+    """
+    if algebra is Algebra.KERNEL and _kernel is not None:
+        first, last = (considered.start, considered.stop) if considered is not None else (0, 0)
+        found = _kernel.update(covariance, innovation, noise, sensitivity, first, last)
+        return None if found is None else Update(*found)
+    kalman = _filterpy(len(covariance), len(innovation))
+    kalman.x, kalman.P = np.zeros(len(covariance)), covariance
+    try:
+        kalman.update(np.array(innovation), noise, sensitivity)
+    except np.linalg.LinAlgError:
+        return None
+    error, after, gain = kalman.x, kalman.P, kalman.K
+    if considered is not None:
+        gain[considered] = 0.0
+        error, remains = gain.dot(innovation), np.eye(len(covariance)) - gain.dot(sensitivity)
+        after = remains.dot(covariance).dot(remains.T) + gain.dot(noise).dot(gain.T)
+    return Update(error, _symmetric(after), gain, kalman.S, kalman.SI)
+
+
+@cache
+def _filterpy(states: int, measured: int) -> KalmanFilter:
+    return KalmanFilter(dim_x=states, dim_z=measured)
+
+
+def _symmetric(covariance: Matrix) -> Matrix:
+    return 0.5 * (covariance + covariance.T)
+
+
+def product(left: Matrix, right: Matrix) -> Matrix:
+    """The product of two matrices, (k, m) and (m, n)."""
+    return left.dot(right) if _kernel is None else _kernel.product(left, right)
+
+
+def combine(numbers: tuple[float, ...], rows: Matrix) -> Matrix:
+    """The sum of each number times its row, (n), of rows (k, n)."""
+    return np.array(numbers).dot(rows) if _kernel is None else _kernel.combine(numbers, rows)
 
 
 def inverse(m: Matrix) -> Matrix:
-    """The inverse by LAPACK alone, in a fifth of numpy's time; NaN if it is singular, where numpy raises."""
-    _, _, inverted, failure = dgesv(m, _UNITS[len(m)])
-    return np.full_like(m, np.nan) if failure else inverted
+    """The inverse; NaN where it is singular."""
+    if _kernel is None:
+        try:
+            return np.asarray(np.linalg.inv(m), float)
+        except np.linalg.LinAlgError:
+            return np.full_like(m, nan)
+    found = _kernel.inverse(m)
+    return np.full_like(m, nan) if found is None else found
 
 
 class Cause(NamedTuple):
@@ -125,7 +192,7 @@ class Trace(NamedTuple):
 def carried(trace: Trace, transition: Matrix) -> Trace:
     """The trace after a prediction with this transition, (6, n)."""
     effect = trace.effect.copy()
-    effect[0:6] = transition.dot(trace.effect)
+    effect[0:6] = product(transition, trace.effect)
     return trace._replace(effect=effect)
 
 
@@ -134,9 +201,6 @@ def unexplained(sums: Matrix) -> float:
 
     What an update adds is its NIS in a filter that solves for the deviations too. NaN of damaged sums.
     """
-    evidence = sums[:-1, -1]
-    try:
-        explained = evidence.dot(np.linalg.solve(sums[:-1, :-1] + np.eye(len(evidence)), evidence))
-    except np.linalg.LinAlgError:
-        return nan
-    return float(sums[-1, -1] - explained)
+    evidence = sums[:-1, -1:]
+    weights = inverse(sums[:-1, :-1] + np.eye(len(evidence)))
+    return float(sums[-1, -1] - product(evidence.T, product(weights, evidence))[0, 0])

@@ -2,7 +2,7 @@
 
 from fsw.core.algebra.quaternion import Quaternion, rotate
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, dot, scale, skew, sub
-from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.kalman import Matrix, combine
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import Parameters
 
@@ -48,8 +48,7 @@ def _sensitivity(
         sensitivity[:, 0:3] = skew(u)
         return sensitivity
     numbers = (*_since(u, omega, delay_s), *u, *cross(omega, u), *scale(-delay_s, u))
-    whole: Matrix = by_direction.dot(numbers).reshape(constant.shape)
-    return whole + constant
+    return combine(numbers, by_direction).reshape(constant.shape) + constant
 
 
 def _late(v_body: Vec3, omega: Vec3, delay_s: float) -> Vec3:

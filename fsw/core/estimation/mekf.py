@@ -25,6 +25,7 @@ import numpy as np
 
 from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, normalise
 from fsw.core.algebra.vector import ZERO, Vec3, add, dot, sub
+from fsw.core.estimation import kalman
 from fsw.core.estimation.dynamics.error_dynamics import (
     FAST_RADPS,
     Driven,
@@ -34,7 +35,7 @@ from fsw.core.estimation.dynamics.error_dynamics import (
     with_age_along,
 )
 from fsw.core.estimation.dynamics.motion import Acting, advanced, middle, turn
-from fsw.core.estimation.kalman import LeanKalmanFilter, Matrix, Trace, carried, unexplained
+from fsw.core.estimation.kalman import Matrix, Trace, Update, carried, product, unexplained
 from fsw.core.estimation.measurement import field_prediction, sun_prediction
 from fsw.core.estimation.mekf_config import MekfConfig, piece_of_tick, pieces_of_tick
 from fsw.core.estimation.parameters import Parameters, corrected_parameters, estimated_dipole, estimated_rotor
@@ -152,13 +153,12 @@ def _predicted(
     rotation, omega_after = advanced(q, omega, motion, acting, h)
     transition = transition_matrix(motion, around_mid, driven.m_body_am2, rotor, config)
 
-    kalman = LeanKalmanFilter(covariance)
-    kalman.predict(F=transition, Q=process_noise(driven, around_mid.b_t, config))
+    noise = process_noise(driven, around_mid.b_t, config)
     return Estimate(
         normalise(multiply(q, turn(rotation))),
         omega_after,
         parameters,
-        kalman.P,
+        kalman.predict(covariance, transition, noise, config.algebra),
         trace if trace is None else carried(trace, transition),
         lag=tuple([(1.0 - h / LAG_S) * mean for mean in estimate.lag]),
     )
@@ -199,35 +199,40 @@ def take(
     gate_nis: float,
     first: int = 0,
 ) -> Estimate | None:
-    """The estimate after filterpy's update, gated by its NIS; None beyond the gate.
+    """The estimate after an update, gated by its NIS; None beyond the gate.
 
     ``first``: place of the innovation in the ``lag``; that of a single number is left out of it.
     """
-    kalman = LeanKalmanFilter(estimate.covariance)
-    kalman.update(np.array(innovation), noise, sensitivity, config.considered)
-    nis, trace = float(kalman.y.dot(kalman.SI).dot(kalman.y)), estimate.trace
+    found = kalman.update(
+        estimate.covariance, innovation, noise, sensitivity, config.considered, config.algebra
+    )
+    if found is None:
+        return None
+    y, trace = np.array([innovation]).T, estimate.trace
+    nis = float(product(y.T, product(found.weight, y))[0, 0])
     if trace is not None:
-        traced = sensitivity.dot(trace.effect)  # the operator @ takes twice as long on arrays this small
-        traced[:, -1] = kalman.y
-        sums = trace.sums + traced.T.dot(kalman.SI.dot(traced))
+        traced = product(sensitivity, trace.effect)
+        traced[:, -1:] = y
+        sums = trace.sums + product(traced.T, product(found.weight, traced))
         if nis > 2.0 * len(traced):  # otherwise nothing to explain
             nis = unexplained(sums) - unexplained(trace.sums)
-        effect, measured = trace.effect - kalman.K.dot(traced), trace.measured + len(traced)
+        effect, measured = trace.effect - product(found.gain, traced), trace.measured + len(traced)
         trace = Trace(trace.causes, effect, sums, measured)
     if not 0.0 <= nis <= gate_nis:  # overflow can make it -inf
         return None
-    nis, numbers = estimate.nis + nis, estimate.numbers + len(innovation)
-    lag = (
-        estimate.lag if len(innovation) == 1 else _lagging(estimate.lag, kalman, first, config.tick_s / LAG_S)
-    )
-    return Estimate(*_fold(estimate, kalman.x, kalman.P, config), trace, nis, numbers, lag)
+    nis, numbers, lag = estimate.nis + nis, estimate.numbers + len(innovation), estimate.lag
+    if len(innovation) > 1:
+        lag = _lagging(lag, innovation, found, first, config.tick_s / LAG_S)
+    return Estimate(*_fold(estimate, found.error, found.covariance, config), trace, nis, numbers, lag)
 
 
-def _lagging(lag: tuple[float, ...], kalman: LeanKalmanFilter, first: int, part: float) -> tuple[float, ...]:
+def _lagging(
+    lag: tuple[float, ...], innovation: tuple[float, ...], found: Update, first: int, part: float
+) -> tuple[float, ...]:
     """The means with this fraction of the new innovations added, from place ``first`` on."""
     means = list(lag)
-    variances: list[float] = kalman.S.diagonal().tolist()
-    for place, (number, variance) in enumerate(zip(kalman.y.tolist(), variances, strict=True), start=first):
+    variances: list[float] = found.spread.diagonal().tolist()
+    for place, (number, variance) in enumerate(zip(innovation, variances, strict=True), start=first):
         means[place] += part * number / sqrt(variance) if variance > 0.0 else inf
     return tuple(means)
 
@@ -247,4 +252,5 @@ def _fold(
         covariance = with_age_along(shift, covariance, parts.delay)
     if config.unobservable is not None:
         covariance = turned_along(covariance, error, parameters, config.unobservable)
-    return q_after, omega_after, after, 0.5 * (covariance + covariance.T)
+        covariance = 0.5 * (covariance + covariance.T)
+    return q_after, omega_after, after, covariance

@@ -10,7 +10,7 @@ import numpy as np
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, dot, inverse, transform
 from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.dynamics.torque_maps import cross_matrix, system_maps, torque_map
-from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.kalman import Algebra, Matrix, available
 from fsw.core.estimation.parameters import (
     NAMES,
     NOTHING,
@@ -34,8 +34,8 @@ class MekfConfig:
 
     ``process_noise`` is the covariance added per tick, (n, n). A being the system matrix and h the tick,
     ``constant`` is the constant part of the first six rows of 1 + A h, the others being the identity's;
-    ``moving`` (36, 12) is what the upper left 6x6 gains by each component of the rate and of
-    3 mu/r^3 e1 e1^T, ``driven`` (36, 9) by each of m b^T.
+    ``moving`` (12, 36) is what the upper left 6x6 gains by each component of the rate and of
+    3 mu/r^3 e1 e1^T, ``driven`` (9, 36) by each of m b^T.
 
     ``torque_map`` replaces both if the derivative by some estimated parameter varies.
 
@@ -45,6 +45,7 @@ class MekfConfig:
     ``unobservable``: what no sample shows, if anything.
     ``pieces``: how many equal pieces a tick is predicted in, ``tick_s`` being the length of one.
     ``reaction_body_nm``: torque of a driven wheel on the body over this tick, N m.
+    ``algebra``: what computes predictions and updates.
     """
 
     rotor: Rotor
@@ -71,6 +72,7 @@ class MekfConfig:
     unobservable: Unobservable | None = None
     pieces: int = 1
     reaction_body_nm: Vec3 = ZERO
+    algebra: Algebra = Algebra.FILTERPY
 
 
 WHOLE_RAD = 0.3
@@ -168,6 +170,7 @@ def mekf_config(
     dipole_sigma: float = 0.0,
     gate_nis: float,
     cells: CellSet | None = None,
+    algebra: Algebra = Algebra.KERNEL,
 ) -> MekfConfig:
     """Prepare the filter.
 
@@ -184,6 +187,7 @@ def mekf_config(
         dipole_sigma: relative error of a driven dipole in a tick, independent of those in other ticks.
         gate_nis: largest normalised innovation squared that is accepted.
         cells: Sun cells, which take the place of a Sun sensor.
+        algebra: what computes predictions and updates; without a kernel filterpy does.
     """
     parts = layout(set(priors))
     rotor = Rotor(inertia_kgm2, inverse(inertia_kgm2), wheel_body_nms)
@@ -207,7 +211,7 @@ def mekf_config(
     if parts.mag_bias is not None:
         field_sensitivity[:, parts.mag_bias] = np.eye(3)
     field_variances, sun_variances = [magnetometer_sigma_t**2] * 3, [sun_sigma_rad**2] * 3
-    moving, driven = np.split(tick_s * system_maps(j, j_inverse), [12], axis=1)
+    moving, driven = np.split(tick_s * system_maps(j, j_inverse), [12])
     return MekfConfig(
         rotor=rotor,
         tick_s=tick_s,
@@ -230,6 +234,7 @@ def mekf_config(
         gate_nis=gate_nis,
         cells=cells,
         unobservable=unobservable(parts, variances, rotor),
+        algebra=available(algebra),
     )
 
 

@@ -13,7 +13,7 @@ _SKEW = np.array([skew((x, y, z)) for x, y, z in _AXES.tolist()]).transpose(1, 2
 
 
 def sensitivity_map(parts: Layout, sensor: int, turn: slice | None, scale: slice | None) -> Matrix | None:
-    """The map to the entries of H, (3, n), by rows, from 18 numbers, (3 n, 18).
+    """The map to the entries of H, (3, n), by rows, from 18 numbers, (18, 3 n).
 
     They are the derivative by the attitude (9) and the components of the direction u as the sensor sees it,
     of omega x u, and of -delay u; body axes. None if the filter carries nothing of the sensor but its bias.
@@ -35,4 +35,4 @@ def sensitivity_map(parts: Layout, sensor: int, turn: slice | None, scale: slice
         rows[:, turn, _DIRECTION] = _SKEW
     if scale is not None:
         rows[:, scale, _DIRECTION] = _AXES[:, :, None] * _AXES[:, None]
-    return rows.reshape(-1, _NUMBERS)
+    return np.ascontiguousarray(rows.reshape(-1, _NUMBERS).T)

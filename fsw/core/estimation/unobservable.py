@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fsw.core.algebra.vector import ZERO, Vec3, skew
-from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.kalman import Matrix, product
 from fsw.core.estimation.parameters import (
     NOTHING,
     Layout,
@@ -46,7 +46,7 @@ class Unobservable(NamedTuple):
     """The directions that a filter cannot observe: turns and factor, or the factor alone.
 
     ``moved``: the m components of the error state in which the directions depend on the estimate; they depend
-    on these components alone. ``moving`` (m k, m): what each of the k directions, (m, k) by rows, gains there
+    on these components alone. ``moving`` (m, m k): what each of the k directions, (m, k) by rows, gains there
     per unit of each. ``coordinates`` (k, n): W^T, its last row, the factor's, times the trace of the inertia;
     ``trace_kgm2``: that trace, by the table.
     """
@@ -87,9 +87,9 @@ def unobservable(parts: Layout, variances: list[float], rotor: Rotor) -> Unobser
         for error in np.eye(parts.size).tolist()
     ]
     moved = slice(3, parts.inertia.stop)
-    moving = np.array([(directions - nominal)[moved, given].ravel() for directions in gained[moved]]).T
+    moving = np.array([(directions - nominal)[moved, given].ravel() for directions in gained[moved]])
     trace_kgm2 = float(np.trace(rotor.inertia_kgm2))
-    return Unobservable(moved, np.ascontiguousarray(moving), coordinates[given].copy(), trace_kgm2)
+    return Unobservable(moved, moving, coordinates[given].copy(), trace_kgm2)
 
 
 def turned_along(
@@ -107,12 +107,12 @@ def turned_along(
     """
     moved, moving, along, trace_kgm2 = directions
     xx, yy, zz, *_ = parameters.inertia_error_kgm2
-    turns: Matrix = moving.dot(error[moved]).reshape(-1, len(along))
+    turns = product(error[None, moved], moving).reshape(-1, len(along))
     turns[:, -1] *= 1.0 / (trace_kgm2 + xx + yy + zz)
-    known = along.dot(covariance)
-    known[:, moved] += known.dot(0.5 * along.T).dot(turns.T)
+    known = product(along, covariance)
+    known[:, moved] += product(product(known, 0.5 * along.T), turns.T)
     turned = covariance.copy()
-    turned[moved] += 2.0 * turns.dot(known)
+    turned[moved] += 2.0 * product(turns, known)
     return turned
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from fsw.core.algebra.quaternion import Quaternion, rotate
 from fsw.core.algebra.vector import Vec3, dot, scale
 from fsw.core.estimation.cells.cell_set import SIGMAS, CellSet, Light
-from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.kalman import Matrix, combine
 from fsw.core.estimation.measurement import sun_prediction
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
@@ -34,7 +34,7 @@ def prediction(
     direct = dot(normal, s)
     if direct > 0.0:
         gain = 1.0 + (known.cell_gain[cell] if known.cell_gain else 0.0)
-        shown, row = gain * direct, gain * np.array(normal).dot(sensitivity)
+        shown, row = gain * direct, gain * combine(normal, sensitivity)
         if parts.cell_gain is not None:
             row[parts.cell_gain.start + cell] = direct
     if seen.earth > 0.0:
@@ -43,7 +43,7 @@ def prediction(
         of_one = seen.earth / cells.albedo
         earth = seen.earth + of_one * (known.earth_light[0] if known.earth_light else 0.0)
         shown += earth * view * view
-        row = row + np.array(scale(earth * view, normal)).dot(e_sensitivity)
+        row = row + combine(scale(earth * view, normal), e_sensitivity)
         if parts.earth_light is not None:
             row[parts.earth_light.start] = of_one * view * view
     if parts.cells is not None:

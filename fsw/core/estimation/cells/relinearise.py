@@ -27,7 +27,7 @@ from fsw.core.algebra.quaternion import conjugate, multiply
 from fsw.core.algebra.vector import Vec3, sub
 from fsw.core.estimation.cells.cell_set import CellSet, Light
 from fsw.core.estimation.cells.prediction import earthlit, prediction, sunlit
-from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.kalman import Matrix, product
 from fsw.core.estimation.measurement import field_prediction
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
@@ -93,7 +93,8 @@ def cell_shown(known: Linear, number: int, estimate: Estimate, config: MekfConfi
     """
     cell, row = (*known.by_sun, *known.by_earth)[number], known.rows[3 + number]
     about = float(known.values[3 + number]) + known.about.parameters.cell_excess[cell]
-    return about + float(row.dot(correction(known.about, estimate, config))), row[None, :]
+    moved = correction(known.about, estimate, config)
+    return about + float(product(row[None, :], moved[:, None])[0, 0]), row[None, :]
 
 
 def relinearised(after: Estimate, known: Linear, config: MekfConfig, cells: CellSet) -> Estimate:
@@ -114,15 +115,16 @@ def relinearised(after: Estimate, known: Linear, config: MekfConfig, cells: Cell
     values, rows = _shown(after, known.b_eci_t, known.seen, lit, config, cells)
     moved = correction(known.about, after, config)
     left = np.zeros(len(moved))
-    left[places] = (known.values - values + known.rows.dot(moved))[numbers] - moved[places]
+    by_rows = product(known.rows, moved[:, None])[:, 0]
+    left[places] = (known.values - values + by_rows)[numbers] - moved[places]
     change = (known.rows - rows)[numbers]
     covariance = after.covariance.copy()
-    covariance[places] += change.dot(covariance)
-    covariance[:, places] += covariance.dot(change.T)
+    covariance[places] += product(change, covariance)
+    covariance[:, places] += product(covariance, change.T)
     trace = after.trace
     if trace is not None:
         effect = trace.effect.copy()
-        effect[places] += change.dot(effect)
+        effect[places] += product(change, effect)
         trace = trace._replace(effect=effect)
     return after._replace(
         parameters=corrected_parameters(after.parameters, left.tolist(), config.layout),

@@ -8,7 +8,7 @@ import numpy as np
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, skew, transform
 from fsw.core.estimation.dynamics.motion import BodyFields, BodyMotion, outer
 from fsw.core.estimation.dynamics.torque_maps import torque_rows
-from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.kalman import Matrix, combine, product
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import Parameters, Rotor, estimated_rotor
 
@@ -68,19 +68,19 @@ def transition_matrix(
     step = config.constant.copy()
     moving = step[:, 0:6]
     if config.torque_map is None:
-        change = config.moving.dot((*motion.omega, *around.pull()))
+        change = combine((*motion.omega, *around.pull()), config.moving)
         if motion.m_am2 != ZERO:
-            change += config.driven.dot(outer(motion.m_am2, around.b_t))
+            change += combine(outer(motion.m_am2, around.b_t), config.driven)
         moving += change.reshape(6, 6)
     else:
         moving[0:3, 0:3] = skew(scale(-config.tick_s, motion.omega))
         inverse_h = config.tick_s * np.array(rotor.inertia_inverse)
         by_error = torque_rows(motion, around, m_driven, rotor, config.torque_map)
-        step[3:6, : by_error.shape[1]] = inverse_h.dot(by_error)
+        step[3:6, : by_error.shape[1]] = product(inverse_h, by_error)
         moving += _IDENTITY
     if config.pieces > 1:
         return _to_fourth_order(step)
-    transition: Matrix = moving.dot(step)  # (1 + A h)^2: the mean of it and 1 is the series
+    transition = product(moving, step)  # (1 + A h)^2: the mean of it and 1 is the series
     moving[:] = _IDENTITY
     transition += step
     transition *= 0.5
@@ -93,7 +93,7 @@ def _to_fourth_order(step: Matrix) -> Matrix:
     change[:, 0:6] -= _IDENTITY
     total = change
     for order in (4.0, 3.0, 2.0):
-        total = change + change[:, 0:6].dot(total) / order
+        total = change + product(change[:, 0:6], total) / order
     total[:, 0:6] += _IDENTITY
     return total
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from fsw.core.algebra.vector import ZERO, Vec3, skew
 from fsw.core.estimation.dynamics.motion import BodyFields, BodyMotion, outer
-from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.kalman import Matrix, combine
 from fsw.core.estimation.parameters import Layout, Rotor
 
 _PULL, _ACTING, _FIELD = slice(3, 12), slice(12, 21), slice(21, 24)
@@ -17,7 +17,7 @@ _MOMENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
 def torque_map(parts: Layout) -> Matrix | None:
-    """Derivatives of the torque by the error state, (3 m, 46), less those that are also linear in J.
+    """Derivatives of the torque by the error state, (46, 3 m), less those that are also linear in J.
 
     By the first m components of the error state; the others have no effect. None where the derivative by
     every estimated parameter is constant.
@@ -27,7 +27,7 @@ def torque_map(parts: Layout) -> Matrix | None:
     axes = np.eye(3)
     acting = (parts.torque, parts.dipole, parts.coils, parts.inertia)
     rows = np.zeros((3, max(part.stop for part in acting if part is not None), _NUMBERS))
-    rows[:, 0:6, _ACTING] = system_maps(axes, axes)[18:, 12:].reshape(3, 6, 9)
+    rows[:, 0:6, _ACTING] = system_maps(axes, axes)[12:, 18:].T.reshape(3, 6, 9)
     if parts.torque is not None:
         rows[:, parts.torque, _ONE] = axes[:, :, None]
     if parts.dipole is not None:
@@ -43,7 +43,7 @@ def torque_map(parts: Layout) -> Matrix | None:
             by_moment[:, index, _ALPHA] = -change
             effects = np.hstack([np.cross(axis, change).T for axis in axes])  # e_i x (dJ e_k)
             by_moment[:, index, _PULL], by_moment[:, index, _SPIN] = effects, -effects
-    return rows.reshape(-1, _NUMBERS)
+    return np.ascontiguousarray(rows.reshape(-1, _NUMBERS).T)
 
 
 def torque_rows(
@@ -62,18 +62,18 @@ def torque_rows(
     """
     omega, b = motion.omega, around.b_t
     pull, acting, spin = around.pull(), outer(motion.m_am2, b), outer(omega, omega)
-    numbers = np.array((*omega, *pull, *acting, *b, *spin, *motion.alpha, *outer(m_driven, b), 1.0))
+    numbers = (*omega, *pull, *acting, *b, *spin, *motion.alpha, *outer(m_driven, b), 1.0)
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = rotor.inertia_kgm2
-    moving = _BY_INERTIA.dot((xx, yy, zz, xy, xz, yz)).reshape(18, 12)
-    rows: Matrix = by_error.dot(numbers).reshape(3, -1)
-    rows[:, 0:6] += moving.dot(numbers[: _PULL.stop]).reshape(3, 6)
+    moving = combine((xx, yy, zz, xy, xz, yz), _BY_INERTIA).reshape(12, 18)
+    rows = combine(numbers, by_error).reshape(3, -1)
+    rows[:, 0:6] += combine(numbers[: _PULL.stop], moving).reshape(3, 6)
     if rotor.wheel_body_nms != ZERO:
         rows[:, 3:6] += skew(rotor.wheel_body_nms)
     return rows
 
 
 def system_maps(j: Matrix, j_inverse: Matrix) -> Matrix:
-    """Derivatives of the upper left 6x6 of the system matrix by what it is linear in, (36, 21).
+    """Derivatives of the upper left 6x6 of the system matrix by what it is linear in, (21, 36).
 
     By the rate (3), by 3 mu/r^3 e1 e1^T (9) and by m b^T (9).
     """
@@ -86,7 +86,7 @@ def system_maps(j: Matrix, j_inverse: Matrix) -> Matrix:
             pull = cross_matrix(axes[i]) @ j - cross_matrix(j[i])
             columns[3 + 3 * i + k, 3:6, 0:3] = j_inverse @ pull @ cross_matrix(axes[k])
             columns[12 + 3 * i + k, 3:6, 0:3] = j_inverse @ cross_matrix(axes[i]) @ cross_matrix(axes[k])
-    return columns.reshape(21, 36).T.copy()
+    return columns.reshape(21, 36)
 
 
 def cross_matrix(a: Matrix) -> Matrix:
@@ -103,6 +103,6 @@ def _changes_of_inertia() -> list[Matrix]:
 
 
 _BY_INERTIA: Matrix = np.stack(
-    [system_maps(change, np.eye(3))[18:, :12] for change in _changes_of_inertia()], axis=2
-).reshape(216, 6)
-"""Derivatives by attitude and rate, (3, 6), per component of rate and g e1 e1^T, (12), and per moment."""
+    [system_maps(change, np.eye(3))[:12, 18:] for change in _changes_of_inertia()]
+).reshape(6, 216)
+"""By moment, the derivatives by attitude and rate, (3, 6), per component of rate and g e1 e1^T, (12)."""

@@ -1,4 +1,4 @@
-"""The lean filter gives what filterpy's gives, from the rows of the transition that move alone."""
+"""Kernel and filterpy compute the same; the products beside them are those of numpy."""
 
 import numpy as np
 import pytest
@@ -6,26 +6,33 @@ from filterpy.kalman import KalmanFilter
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fsw.core.estimation.kalman import LeanKalmanFilter, inverse
+from fsw.core.estimation.kalman import (
+    Algebra,
+    available,
+    combine,
+    inverse,
+    predict,
+    product,
+    unexplained,
+    update,
+)
 
-SIZES = st.tuples(st.sampled_from([6, 9, 12, 41]), st.sampled_from([3, 6]))
+SIZES = st.tuples(st.sampled_from([6, 9, 12, 41, 54]), st.sampled_from([1, 3, 6]))
 MOVING = 6
 SEEDS = st.integers(0, 2**32 - 1)
+BOTH = [available(Algebra.KERNEL), Algebra.FILTERPY]
+ROUNDING = 1e-12
 
 
 def covariance(random, size):
     """Full and positive definite, its deviations spread over eight decades as those of the filter are."""
     root = random.normal(size=(size, size))
     sigma = 10.0 ** random.uniform(-8.0, 0.0, size)
-    return np.outer(sigma, sigma) * (root @ root.T / size + 0.1 * np.eye(size))
+    return np.outer(sigma, sigma) * symmetric(root @ root.T / size + 0.1 * np.eye(size))
 
 
-def pair(random, states, measurements):
-    """filterpy's filter and the lean one with the same covariance, and an error state of zero."""
-    p = covariance(random, states)
-    parent = KalmanFilter(dim_x=states, dim_z=measurements)
-    parent.x, parent.P, parent.inv = np.zeros(states), p, inverse
-    return parent, LeanKalmanFilter(p)
+def symmetric(matrix):
+    return 0.5 * (matrix + matrix.T)
 
 
 def transition(random, states, change=1.0):
@@ -35,85 +42,191 @@ def transition(random, states, change=1.0):
     return full
 
 
-def assert_equal(parent, lean, names):
-    """To rounding, in units of each state's own deviation."""
-    for name in names:
-        theirs, ours = np.asarray(getattr(parent, name)), np.asarray(getattr(lean, name))
-        unit = np.abs(theirs).max() if name != "P" else deviations(theirs)
-        with np.errstate(invalid="ignore"):  # the likelihood may be infinite
-            near = (ours == theirs) | (np.abs(ours - theirs) <= 1e-9 * unit)
-        assert near.all(), name
+def measurement(random, p, measured):
+    """Innovation, noise and sensitivity that suit the deviations of a covariance."""
+    sensitivity = random.normal(size=(measured, len(p))) / np.sqrt(p.diagonal())
+    noise = symmetric(np.diag(random.uniform(0.1, 2.0, measured)) + 0.01)
+    return tuple(random.normal(size=measured).tolist()), noise, sensitivity
 
 
-def deviations(covariance):
-    sigma = np.sqrt(covariance.diagonal())
+def assert_near(ours, theirs, unit=None, allowed=ROUNDING):
+    """To rounding; of a covariance in units of each state's own deviation."""
+    unit = np.abs(theirs).max() if unit is None else unit
+    assert (np.abs(ours - theirs) <= allowed * unit).all()
+
+
+def deviations(p):
+    sigma = np.sqrt(p.diagonal())
     return np.outer(sigma, sigma)
 
 
-@given(SIZES, SEEDS)
-def test_a_prediction_is_that_of_filterpy(sizes, seed):
+@pytest.mark.parametrize("algebra", BOTH)
+@given(sizes=SIZES, seed=SEEDS)
+def test_a_prediction_is_that_of_filterpy(algebra, sizes, seed):
     random, (states, _) = np.random.default_rng(seed), sizes
-    parent, lean = pair(random, *sizes)
-    f, q = transition(random, states), covariance(random, states)
-    parent.predict(F=f, Q=q)
-    lean.predict(F=f[:MOVING], Q=q)
-    assert_equal(parent, lean, ("P",))
+    p, q, f = covariance(random, states), covariance(random, states), transition(random, states)
+    kalman = KalmanFilter(dim_x=states, dim_z=1)
+    kalman.P = p
+    kalman.predict(F=f, Q=q)
+    after = predict(p, f[:MOVING], q, algebra)
+    size = np.abs(f) @ deviations(p) @ np.abs(f).T  # of the terms that are added
+    assert_near(after, kalman.P, size + np.abs(q))
+    assert (after == after.T).all()
 
 
-@given(SIZES, SEEDS)
-def test_all_rows_may_move(sizes, seed):
-    random, (states, _) = np.random.default_rng(seed), sizes
-    parent, lean = pair(random, *sizes)
-    f = np.eye(states) + random.normal(size=(states, states))
-    parent.predict(F=f, Q=np.zeros((states, states)))
-    lean.predict(F=f, Q=np.zeros((states, states)))
-    assert_equal(parent, lean, ("P",))
+@pytest.mark.parametrize("algebra", BOTH)
+@given(seed=SEEDS)
+def test_all_rows_may_move(algebra, seed):
+    random = np.random.default_rng(seed)
+    p, f = covariance(random, 9), random.normal(size=(9, 9))
+    after = predict(p, f, np.zeros((9, 9)), algebra)
+    assert_near(after, f @ p @ f.T, np.abs(f) @ deviations(p) @ np.abs(f).T)
 
 
-@given(SIZES, SEEDS)
-def test_an_update_is_that_of_filterpy(sizes, seed):
-    random, (states, measurements) = np.random.default_rng(seed), sizes
-    parent, lean = pair(random, *sizes)
-    z, noise = random.normal(size=measurements), covariance(random, measurements)
-    sensitivity = random.normal(size=(measurements, states))
-    parent.update(z, noise, sensitivity)
-    lean.update(z, noise, sensitivity)
-    assert_equal(parent, lean, ("x", "P", "y", "K", "S", "SI", "log_likelihood"))
+@pytest.mark.parametrize("algebra", BOTH)
+@given(sizes=SIZES, seed=SEEDS)
+def test_an_update_is_that_of_filterpy(algebra, sizes, seed):
+    random, (states, measured) = np.random.default_rng(seed), sizes
+    p = covariance(random, states)
+    y, noise, sensitivity = measurement(random, p, measured)
+    kalman = KalmanFilter(dim_x=states, dim_z=measured)
+    kalman.x, kalman.P = np.zeros(states), p
+    kalman.update(np.array(y), noise, sensitivity)
+    found = update(p, y, noise, sensitivity, None, algebra)
+    sigma = np.sqrt(p.diagonal())
+    assert_near(found.error, kalman.x, 10.0 * sigma)
+    assert_near(found.covariance, kalman.P, 10.0 * deviations(p))
+    assert_near(found.gain, kalman.K, 10.0 * sigma[:, None])
+    assert_near(found.spread, kalman.S)
+    assert_near(found.weight, kalman.SI)
+    assert (found.covariance == found.covariance.T).all()
 
 
-@given(SIZES, SEEDS)
-def test_so_is_what_follows_one_upon_the_other(sizes, seed):
-    random, (states, measurements) = np.random.default_rng(seed), sizes
-    parent, lean = pair(random, *sizes)
-    for _ in range(5):
-        f, q = transition(random, states, 0.1), np.eye(states)
-        z, sensitivity = random.normal(size=measurements), random.normal(size=(measurements, states))
-        parent.x = np.zeros(states)  # once it is folded into the estimate
-        parent.predict(F=f, Q=q)
-        lean.predict(F=f[:MOVING], Q=q)
-        for one in (parent, lean):
-            one.update(z, np.eye(measurements), sensitivity)
-    assert_equal(parent, lean, ("x", "P", "y", "K", "S", "SI"))
+@given(sizes=SIZES, seed=SEEDS)
+def test_both_give_the_same_over_many_steps(sizes, seed):
+    random, (states, measured) = np.random.default_rng(seed), sizes
+    p = {algebra: covariance(np.random.default_rng(seed), states) for algebra in BOTH}
+    for _ in range(10):
+        sigma = np.sqrt(p[BOTH[0]].diagonal())
+        f = (transition(random, states, 0.01) * sigma[:, None] / sigma)[:MOVING]
+        y, noise, sensitivity = measurement(random, p[BOTH[0]], measured)
+        for algebra in BOTH:
+            before = predict(p[algebra], f, 0.01 * np.diag(p[algebra].diagonal()), algebra)
+            p[algebra] = update(before, y, noise, sensitivity, None, algebra).covariance
+    first, second = (p[algebra] for algebra in BOTH)
+    assert_near(first, second, deviations(second), 1e-9)
 
 
-def test_arrays_that_go_in_are_not_changed():
+@pytest.mark.parametrize("algebra", BOTH)
+@given(sizes=SIZES, seed=SEEDS)
+def test_considered_states_keep_their_values_and_the_covariance_is_that_of_the_errors(algebra, sizes, seed):
+    """Schmidt's filter: whatever the gain K, the error after an update is (1 - K H) e - K v."""
+    random, (states, measured) = np.random.default_rng(seed), sizes
+    p = covariance(random, states)
+    y, noise, sensitivity = measurement(random, p, measured)
+    best = p @ sensitivity.T @ np.linalg.inv(sensitivity @ p @ sensitivity.T + noise)
+    gain = np.where(np.arange(states)[:, None] < 4, best, 0.0)
+    remains = np.eye(states) - gain @ sensitivity
+    found = update(p, y, noise, sensitivity, slice(4, states), algebra)
+    assert not found.error[4:].any()
+    np.testing.assert_allclose(found.covariance[4:, 4:], p[4:, 4:], rtol=1e-12)
+    assert_near(found.error, gain @ np.array(y), 10.0 * np.sqrt(p.diagonal()))
+    assert_near(
+        found.covariance, remains @ p @ remains.T + gain @ noise @ gain.T, 100.0 * states * deviations(p)
+    )
+
+
+@pytest.mark.parametrize("algebra", BOTH)
+def test_an_innovation_without_spread_is_no_update(algebra):
+    assert update(np.eye(6), (1.0, 0.0, 0.0), np.zeros((3, 3)), np.zeros((3, 6)), None, algebra) is None
+
+
+@pytest.mark.parametrize("algebra", BOTH)
+@pytest.mark.parametrize("damage", [np.nan, np.inf])
+def test_a_bad_number_reaches_the_diagonal(algebra, damage):
+    """So that an estimate with one is known to be unsound after the next prediction."""
+    p = np.eye(12)
+    p[2, 9] = p[9, 2] = damage
+    with np.errstate(invalid="ignore"):
+        after = predict(p, np.full((MOVING, 12), 0.5), np.eye(12), algebra)
+        found = update(p, (0.1, 0.2, 0.3), np.eye(3), np.ones((3, 12)), None, algebra)
+    assert not np.isfinite(after.diagonal()).all()
+    assert found is None or not np.isfinite(found.covariance.diagonal()).all()
+
+
+@pytest.mark.parametrize("algebra", BOTH)
+def test_arrays_that_go_in_are_not_changed(algebra):
     random = np.random.default_rng(1)
-    p, f, q = covariance(random, 6), np.eye(6), covariance(random, 6)
-    z, noise, sensitivity = np.ones(3), np.eye(3), random.normal(size=(3, 6))
-    given_arrays = (p, f, q, z, noise, sensitivity)
+    p, f, q = covariance(random, 9), np.eye(6, 9), covariance(random, 9)
+    y, noise, sensitivity = measurement(random, p, 3)
+    given_arrays = (p, f, q, noise, sensitivity)
     before = [array.copy() for array in given_arrays]
-    lean = LeanKalmanFilter(p)
-    lean.predict(F=f, Q=q)
-    lean.update(z, noise, sensitivity)
+    predict(p, f, q, algebra)
+    update(p, y, noise, sensitivity, slice(6, 9), algebra)
     assert all(map(np.array_equal, given_arrays, before))
 
 
+def test_views_are_taken_as_what_they_show():
+    random = np.random.default_rng(3)
+    wide = random.normal(size=(12, 20))
+    assert_near(product(wide[:, ::2], wide.T[::2]), wide[:, ::2] @ wide.T[::2])
+    p = covariance(random, 12)
+    assert_near(
+        predict(p.T, wide[:6, 4:16], np.zeros((12, 12)), BOTH[0]),
+        predict(p, wide[:6, 4:16].copy(), np.zeros((12, 12)), BOTH[0]),
+    )
+
+
+@given(seed=SEEDS)
+def test_products_are_those_of_numpy(seed):
+    random = np.random.default_rng(seed)
+    k, m, n = random.integers(1, 30, 3)
+    left, right = random.normal(size=(k, m)), random.normal(size=(m, n))
+    assert_near(product(left, right), left @ right, np.abs(left) @ np.abs(right))
+    assert_near(combine(tuple(left[0].tolist()), right), left[0] @ right, np.abs(left[0]) @ np.abs(right))
+
+
+@pytest.mark.skipif(BOTH[0] is not Algebra.KERNEL, reason="the kernel is not built")
+class TestWhatTheKernelRefuses:
+    @pytest.mark.parametrize(
+        ("left", "right"), [((2, 3), (2, 3)), ((2,), (2, 3)), ((2, 3), (3,))], ids=["sizes", "left", "right"]
+    )
+    def test_products_that_are_none(self, left, right):
+        with pytest.raises(ValueError, match="matrix of this size"):
+            product(np.ones(left), np.ones(right))
+
+    @pytest.mark.parametrize("shape", [(12, 11), (65, 65)])
+    def test_covariances_that_are_none(self, shape):
+        with pytest.raises(ValueError, match=r"square|size"):
+            predict(np.ones(shape), np.ones((6, shape[1])), np.ones(shape), Algebra.KERNEL)
+
+    @pytest.mark.parametrize("states", [slice(-1, 3), slice(4, 3), slice(0, 13)])
+    def test_states_that_there_are_not(self, states):
+        with pytest.raises(ValueError, match="considered"):
+            update(np.eye(12), (1.0,), np.eye(1), np.ones((1, 12)), states, Algebra.KERNEL)
+
+    @pytest.mark.parametrize("count", [0, 7])
+    def test_more_or_fewer_numbers_than_an_update_takes(self, count):
+        with pytest.raises(ValueError, match="1 to 6"):
+            update(np.eye(9), (1.0,) * count, np.eye(count), np.ones((count, 9)), None, Algebra.KERNEL)
+
+
 class TestInverse:
-    @pytest.mark.parametrize("size", [3, 6])
+    @pytest.mark.parametrize("size", [1, 3, 6, 12])
     def test_it_is_the_one_of_numpy(self, size):
         m = np.random.default_rng(size).normal(size=(size, size)) + 3.0 * np.eye(size)
         np.testing.assert_allclose(inverse(m), np.linalg.inv(m), rtol=1e-12, atol=1e-14)
 
     @pytest.mark.parametrize("m", [np.zeros((3, 3)), np.ones((6, 6)), np.full((6, 6), np.inf)])
     def test_what_has_none_gives_no_numbers_and_does_not_raise(self, m):
-        assert not np.isfinite(inverse(m)).any()
+        with np.errstate(invalid="ignore"):
+            assert not np.isfinite(inverse(m)).any()
+
+
+def test_what_no_deviation_explains_is_the_rest_of_least_squares():
+    random = np.random.default_rng(5)
+    t, y = random.normal(size=(20, 4)), random.normal(size=20)
+    all_of_it = np.column_stack((t, y))
+    ridge = np.linalg.solve(t.T @ t + np.eye(4), t.T @ y)
+    assert unexplained(all_of_it.T @ all_of_it) == pytest.approx(y @ y - (t.T @ y) @ ridge, rel=1e-12)
+    assert unexplained(np.array([[7.5]])) == 7.5

@@ -7,7 +7,6 @@ import pytest
 
 from fsw.core.estimation import estimator
 from fsw.core.estimation.estimator import Turning
-from fsw.core.estimation.kalman import LeanKalmanFilter
 from fsw.core.estimation.loaded import forget, freeze, load, thaw
 from fsw.core.estimation.parameters import (
     NAMES,
@@ -92,22 +91,6 @@ def settled(make_world):
 
 def place_of(number, config):
     return component_places(config.mekf.layout)[number]
-
-
-def test_considered_states_keep_their_values_and_the_covariance_is_that_of_the_errors():
-    """Schmidt's filter: whatever the gain K, the error after an update is (1 - K H) e - K v."""
-    random = np.random.default_rng(7)
-    root, sensitivity, z = random.normal(size=(9, 9)), random.normal(size=(3, 9)), random.normal(size=3)
-    p, noise = root @ root.T, np.diag([0.2, 0.3, 0.5])
-    best = p @ sensitivity.T @ np.linalg.inv(sensitivity @ p @ sensitivity.T + noise)
-    gain = np.where(np.arange(9)[:, None] < 4, best, 0.0)
-    remains = np.eye(9) - gain @ sensitivity
-    kalman = LeanKalmanFilter(p)
-    kalman.update(z, noise, sensitivity, slice(4, 9))
-    assert not kalman.x[4:].any()
-    np.testing.assert_allclose(kalman.x, gain @ z, rtol=1e-9)
-    np.testing.assert_allclose(kalman.P, remains @ p @ remains.T + gain @ noise @ gain.T, atol=1e-9)
-    np.testing.assert_allclose(kalman.P[4:, 4:], p[4:, 4:], rtol=1e-12)
 
 
 class TestLoad:
