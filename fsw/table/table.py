@@ -205,12 +205,15 @@ class FlightTable(Section):
     def crc(self) -> int:
         """CRC-32 of the table in canonical JSON; of a law of one's own the digest counts, not the path.
 
-        A key that earlier tables do not have does not count where it is left out, nor a step that is none.
+        A key that earlier tables do not have does not count where it is left out, nor a step that is none,
+        nor the algebra that flies unless another is named.
         """
         values = self.model_dump(mode="json")
         for key in LATER_BOUNDS:
             if getattr(self.uncertainty, key) is None:
                 del values["uncertainty"][key]
+        if self.estimator.algebra == "kernel":
+            del values["estimator"]["algebra"]
         for section in ("cells", "wheel"):
             if getattr(self, section) is None:
                 del values[section]

@@ -1,4 +1,4 @@
-"""The house: rooms that are small enough to live in, each of which says what it is for."""
+"""The house: rooms that say what they are for, tests that mirror them, a flight loop of one screen."""
 
 import ast
 from pathlib import Path
@@ -7,10 +7,6 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("fsw", "hil_stub", "sim", "torquer")
-GENERATED = {"fsw/wire/messages.py", "fsw/core/orbit/igrf_coefficients.py"}
-OPEN_ENDED = {"torquer/cli"}
-"""Folders of one kind of thing, as many as there are."""
-MOST_LINES, MOST_LINES_OF_CORE, MOST_MODULES = 300, 250, 12
 
 
 def relative(path):
@@ -19,20 +15,6 @@ def relative(path):
 
 MODULES = [path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py"))]
 FOLDERS = sorted({path.parent for path in MODULES})
-
-
-@pytest.mark.parametrize("path", [path for path in MODULES if relative(path) not in GENERATED], ids=relative)
-def test_no_module_is_too_long(path):
-    most = MOST_LINES_OF_CORE if relative(path).startswith("fsw/core/") else MOST_LINES
-    assert len(path.read_text().splitlines()) <= most
-
-
-@pytest.mark.parametrize(
-    "folder", [folder for folder in FOLDERS if relative(folder) not in OPEN_ENDED], ids=relative
-)
-def test_no_folder_has_too_many_modules(folder):
-    modules = [path.name for path in folder.glob("*.py") if path.name != "__init__.py"]
-    assert len(modules) <= MOST_MODULES
 
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=relative)

@@ -45,8 +45,11 @@ def impurities(source, allowed):
     tree = ast.parse(source)
     found = [f"imports {n}" for n in imported(tree) if not within(n, allowed) or within(n, WORLDLY_NUMPY)]
     shared = set(module_variables(tree))
+    hashing = {id(name) for method in hash_methods(tree) for name in ast.walk(method)}
     for node in ast.walk(tree):
         match node:
+            case ast.Name(id="hash") if id(node) in hashing:
+                pass
             case ast.Name(id=name, ctx=ast.Load()) if name in FORBIDDEN_NAMES:
                 found.append(f"uses {name}")
             case ast.Attribute(value=ast.Name(id="np" | "numpy"), attr=attr) if (
@@ -60,6 +63,10 @@ def impurities(source, allowed):
             case ast.FunctionDef() | ast.Lambda():
                 found += [f"changes {name}" for name in changed(node) if name in shared]
     return found
+
+
+def hash_methods(tree):
+    return [one for one in ast.walk(tree) if isinstance(one, ast.FunctionDef) and one.name == "__hash__"]
 
 
 def imported(tree):
@@ -172,6 +179,7 @@ def test_the_checker_finds(violation):
         "import numpy as np\nfrom numpy.typing import NDArray\nfrom collections.abc import Callable",
         "from fsw.wire.frame import Frame\nfrom filterpy.kalman import KalmanFilter",
         "TABLE = {1: 2}\ndef f(x):\n    return TABLE[x]",
+        "class A:\n    def __hash__(self):\n        return hash(self.x)",
         "seen = []\ndef f(x):\n    seen = []\n    seen.append(x)\n    return seen",
         "def f(seen):\n    seen[0] = 1",
         "class A:\n    def f(self, x):\n        self.seen = []\n        self.seen.append(x)",

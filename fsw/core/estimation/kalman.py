@@ -14,12 +14,10 @@ With them, a trace of what unmodelled deviations would do to errors and innovati
 
 import struct
 from enum import StrEnum
-from functools import cache
 from math import nan
 from typing import NamedTuple, final
 
 import numpy as np
-from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
 
 Matrix = NDArray[np.float64]
@@ -78,12 +76,9 @@ def predict(covariance: Matrix, transition: Matrix, noise: Matrix, algebra: Alge
     """
     if algebra is Algebra.KERNEL and _kernel is not None:
         return _kernel.predict(covariance, transition, noise)
-    size = len(covariance)
-    kalman, whole = _filterpy(size, 1), np.eye(size)
-    whole[: len(transition)] = transition
-    kalman.x, kalman.P = np.zeros(size), covariance
-    kalman.predict(F=whole, Q=noise)
-    return _symmetric(kalman.P)
+    from fsw.core.estimation import filterpy_algebra  # noqa: PLC0415  (slow to load, and seldom flown)
+
+    return filterpy_algebra.predict(covariance, transition, noise)
 
 
 def update(
@@ -109,27 +104,10 @@ def update(
         first, last = (considered.start, considered.stop) if considered is not None else (0, 0)
         found = _kernel.update(covariance, innovation, noise, sensitivity, first, last)
         return None if found is None else Update(*found)
-    kalman = _filterpy(len(covariance), len(innovation))
-    kalman.x, kalman.P = np.zeros(len(covariance)), covariance
-    try:
-        kalman.update(np.array(innovation), noise, sensitivity)
-    except np.linalg.LinAlgError:
-        return None
-    error, after, gain = kalman.x, kalman.P, kalman.K
-    if considered is not None:
-        gain[considered] = 0.0
-        error, remains = gain.dot(innovation), np.eye(len(covariance)) - gain.dot(sensitivity)
-        after = remains.dot(covariance).dot(remains.T) + gain.dot(noise).dot(gain.T)
-    return Update(error, _symmetric(after), gain, kalman.S, kalman.SI)
+    from fsw.core.estimation import filterpy_algebra  # noqa: PLC0415  (slow to load, and seldom flown)
 
-
-@cache
-def _filterpy(states: int, measured: int) -> KalmanFilter:
-    return KalmanFilter(dim_x=states, dim_z=measured)
-
-
-def _symmetric(covariance: Matrix) -> Matrix:
-    return 0.5 * (covariance + covariance.T)
+    by_filterpy = filterpy_algebra.update(covariance, innovation, noise, sensitivity, considered)
+    return None if by_filterpy is None else Update(*by_filterpy)
 
 
 def product(left: Matrix, right: Matrix) -> Matrix:

@@ -25,7 +25,6 @@ import numpy as np
 
 from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, normalise
 from fsw.core.algebra.vector import ZERO, Vec3, add, dot, sub
-from fsw.core.estimation import kalman
 from fsw.core.estimation.dynamics.error_dynamics import (
     FAST_RADPS,
     Driven,
@@ -36,6 +35,8 @@ from fsw.core.estimation.dynamics.error_dynamics import (
 )
 from fsw.core.estimation.dynamics.motion import Acting, advanced, middle, turn
 from fsw.core.estimation.kalman import Matrix, Trace, Update, carried, product, unexplained
+from fsw.core.estimation.kalman import predict as predict_covariance
+from fsw.core.estimation.kalman import update as update_error
 from fsw.core.estimation.measurement import field_prediction, sun_prediction
 from fsw.core.estimation.mekf_config import MekfConfig, piece_of_tick, pieces_of_tick
 from fsw.core.estimation.parameters import Parameters, corrected_parameters, estimated_dipole, estimated_rotor
@@ -158,7 +159,7 @@ def _predicted(
         normalise(multiply(q, turn(rotation))),
         omega_after,
         parameters,
-        kalman.predict(covariance, transition, noise, config.algebra),
+        predict_covariance(covariance, transition, noise, config.algebra),
         trace if trace is None else carried(trace, transition),
         lag=tuple([(1.0 - h / LAG_S) * mean for mean in estimate.lag]),
     )
@@ -203,7 +204,7 @@ def take(
 
     ``first``: place of the innovation in the ``lag``; that of a single number is left out of it.
     """
-    found = kalman.update(
+    found = update_error(
         estimate.covariance, innovation, noise, sensitivity, config.considered, config.algebra
     )
     if found is None:
