@@ -82,10 +82,6 @@ class ModeState(NamedTuple):
     trips: int = 0
     held: bool = False
 
-    def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state."""
-        return (self.mode, self.since_tick, *self.held_since, self.trips, self.held)
-
 
 def judge(
     attitude: Attitude,

@@ -12,12 +12,12 @@ from fsw.core.actuation.wheel import WheelView
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.estimation.estimator import anew
+from fsw.core.events import Throttle
 from fsw.core.fdir import fdir
 from fsw.core.gate.second_sender import SecondSenderWatch
 from fsw.core.laws.interface import FieldSample
 from fsw.core.modes import ModeState
 from fsw.core.state import FlightState
-from fsw.core.throttle import Throttle
 
 
 def restarted(state: FlightState, tick: int, config: FlightConfig) -> FlightState:

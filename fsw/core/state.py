@@ -1,7 +1,5 @@
-"""The whole flight state, what goes into a step and what comes out, and the state's checksum."""
+"""The whole flight state, and what goes into a step."""
 
-import struct
-import zlib
 from typing import NamedTuple
 
 from fsw.core.actuation.actuator import CoilView
@@ -9,16 +7,15 @@ from fsw.core.actuation.pulses import PulseState
 from fsw.core.actuation.wheel import WheelView
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.estimator import EstimatorState
+from fsw.core.events import Throttle
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.readings import GateState
 from fsw.core.gate.second_sender import NO_SIGNS, SecondSenderWatch
 from fsw.core.gate.sync_watch import SyncWatch
 from fsw.core.laws.interface import FieldSample, Memory, Setpoint
-from fsw.core.laws.table import number_of
 from fsw.core.modes import ModeState
 from fsw.core.orbit.elements import Elements, Upload
 from fsw.core.orbit.ephemeris import EphemerisWindow
-from fsw.core.throttle import Throttle
 from fsw.wire.frame import Frame
 
 
@@ -65,60 +62,6 @@ class FlightState(NamedTuple):
     sent: tuple[int, ...]
     wheel: WheelView | None = None
     violated: int = 0
-
-    def integers(self) -> tuple[int, ...]:
-        """Every integer and flag, in the order that recorded logs fix."""
-        return (
-            self.tick,
-            self.field_tick,
-            self.status_tick,
-            self.ignored_syncs,
-            *self.syncs.integers(),
-            self.time_error_s,
-            *self.gate.integers(),
-            *self.second_sender,
-            self.upload.received,
-            self.orbit is not None,
-            *self.estimator.integers(),
-            *self.health.integers(),
-            self.attitude.valid,
-            *self.modes.integers(),
-            self.sample.tick,
-            number_of(self.setpoint.law),
-            *self.pulses.integers(),
-            *self.coil.integers(),
-            *self.events.integers(),
-            *self.sent,
-            *(self.wheel.integers() if self.wheel is not None else ()),
-            *((self.violated,) if self.violated else ()),
-        )
-
-    def floats(self) -> tuple[float, ...]:
-        """Every float outside the estimator's arrays, in the order that recorded logs fix."""
-        return (
-            *self.attitude.floats(),
-            *self.health.floats(),
-            *self.sample.b_body_t,
-            *self.pulses.floats(),
-            *self.coil.floats(),
-            *self.setpoint.floats(),
-            *self.memory,
-            *self.upload.values,
-            *(self.orbit or ()),
-            *(self.ephemeris.floats() if self.ephemeris is not None else ()),
-            *self.estimator.floats(),
-            *(self.wheel.floats() if self.wheel is not None else ()),
-        )
-
-
-def checksum(state: FlightState) -> int:
-    """CRC-32 over every number of the state, as each part gives its own.
-
-    Little-endian: all integers as 64 bit, all floats as doubles, then the arrays of the estimator.
-    """
-    integers, floats = state.integers(), state.floats()
-    numbers = struct.pack(f"<{len(integers)}q{len(floats)}d", *integers, *floats)
-    return zlib.crc32(state.estimator.packed(), zlib.crc32(numbers))
 
 
 def initial_state(

@@ -9,7 +9,7 @@ from fsw.core.estimation.attitude import Attitude
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.parameters import Layout, component_places
-from fsw.core.events import SEVERITY, Event, Happening
+from fsw.core.events import SEVERITY, Event, Happening, Throttle, throttle_events
 from fsw.core.fdir import fdir
 from fsw.core.fdir.observation import Observation
 from fsw.core.gate.readings import Readings
@@ -19,7 +19,6 @@ from fsw.core.monitors import Monitor
 from fsw.core.orbit.ephemeris import Reference
 from fsw.core.rates import RateTable
 from fsw.core.state import FlightState
-from fsw.core.throttle import Throttle, throttle_events
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CoilDipole,

@@ -1,12 +1,12 @@
 """Faults of the flight software's process, of its memory, and of its clock, which is SYNC."""
 
 import struct
-from dataclasses import fields, is_dataclass, replace
 from random import Random
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fsw.core.packing import field_names
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilFire, Sync
 from sim.faults.fault import Condition, Fault, Parameters
@@ -147,12 +147,12 @@ def flip_bit(value: float, bit: int) -> float:
 
 
 def count_doubles(value: Any) -> int:  # noqa: ANN401  (any part of a state)
-    """How many doubles there are in a value of named tuples, dataclasses, tuples and arrays."""
+    """How many doubles there are in a state."""
     if isinstance(value, float):
         return 1
     if isinstance(value, np.ndarray):
         return int(value.size)
-    return sum(map(count_doubles, _parts(value)))
+    return sum(count_doubles(part) for part in _parts(value).values())
 
 
 def flip(value: Any, place: int, bit: int) -> Any:  # noqa: ANN401  (any part of it)
@@ -164,24 +164,22 @@ def flip(value: Any, place: int, bit: int) -> Any:  # noqa: ANN401  (any part of
         flipped.flat[place] = flip_bit(float(flipped.flat[place]), bit)
         return flipped
     parts = _parts(value)
-    for index, part in enumerate(parts):
+    for name, part in parts.items():
         inside = count_doubles(part)
         if place < inside:
-            return _with_part(value, parts, index, flip(part, place, bit))
+            parts[name] = flip(part, place, bit)
+            whole = type(value)
+            return whole(parts.values()) if whole in (tuple, list) else whole(**parts)
         place -= inside
     raise IndexError(place)
 
 
-def _parts(value: Any) -> list[Any]:  # noqa: ANN401  (any part of it)
-    if isinstance(value, tuple):
-        return list(value)
-    if is_dataclass(value) and not isinstance(value, type):
-        return [getattr(value, field.name) for field in fields(value)]
-    return []
-
-
-def _with_part(value: Any, parts: list[Any], index: int, part: Any) -> Any:  # noqa: ANN401  (any part of it)
-    if isinstance(value, tuple):
-        changed = [*parts[:index], part, *parts[index + 1 :]]
-        return value._make(changed) if hasattr(value, "_make") else tuple(changed)
-    return replace(value, **{fields(value)[index].name: part})
+def _parts(value: Any) -> dict[Any, Any]:  # noqa: ANN401  (any part of it)
+    """The parts of an object by the names of its fields, or of a tuple or list by place."""
+    if value is None or isinstance(
+        value, int | str
+    ):  # and any member of an enumeration, which is one of them
+        return {}
+    if type(value) in (tuple, list):
+        return dict(enumerate(value))
+    return {name: getattr(value, name) for name in field_names(type(value))}

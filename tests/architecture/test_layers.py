@@ -13,7 +13,8 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("fsw", "hil_stub", "sim", "torquer")
 
 CALCULATION = {
-    "bisect", "collections", "copy", "dataclasses", "enum", "math", "re", "struct", "types", "typing", "zlib",
+    "bisect", "collections", "copy", "dataclasses", "enum", "functools", "marshal", "math", "operator", "re",
+    "struct", "types", "typing", "zlib",
     "numpy", "scipy.linalg.lapack", "filterpy.kalman", "sgp4.api", "sgp4.io",
 }  # fmt: skip
 FORBIDDEN_NAMES = {

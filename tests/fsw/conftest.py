@@ -1,14 +1,15 @@
 """A satellite with its boards around the flight software: real frames, nothing zero, no two axes alike."""
 
 import socket
-from dataclasses import fields, is_dataclass, replace
 from enum import Enum
+from math import nextafter
 
 import numpy as np
 import pytest
 
 from fsw.bus.hub import Hub
 from fsw.bus.link import LoopLink
+from fsw.core.packing import field_names, pack
 from fsw.core.state import Inbox
 from fsw.core.step import boot, step
 from fsw.input.schema import merge
@@ -103,24 +104,12 @@ def without():
 
 
 def leaves_of(value, path="state"):
-    """(path, leaf, rebuild) for every number in nested dataclasses, tuples and arrays.
+    """(path, leaf, rebuild) for every number in nested objects, tuples, lists and arrays.
 
     ``rebuild(other)`` is the whole with that leaf replaced.
     """
-    if is_dataclass(value):
-        for field in fields(value):
-            for name, leaf, rebuild in leaves_of(getattr(value, field.name), f"{path}.{field.name}"):
-                yield name, leaf, lambda new, f=field.name, r=rebuild: replace(value, **{f: r(new)})
-    elif isinstance(value, tuple):
-        names = getattr(value, "_fields", range(len(value)))
-        for index, name in enumerate(names):
-            for below, leaf, rebuild in leaves_of(value[index], f"{path}.{name}"):
-
-                def rebuilt(new, i=index, r=rebuild):
-                    parts = [*value[:i], r(new), *value[i + 1 :]]
-                    return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
-
-                yield below, leaf, rebuilt
+    if value is None or isinstance(value, bool | int | float | str | Enum):
+        yield path, value, lambda new: new
     elif isinstance(value, np.ndarray):
         for index in np.ndindex(value.shape):
 
@@ -130,11 +119,46 @@ def leaves_of(value, path="state"):
                 return changed
 
             yield f"{path}{list(index)}", float(value[index]), with_element
+    elif type(value) in (tuple, list):
+        for index, part in enumerate(value):
+            for name, leaf, rebuild in leaves_of(part, f"{path}.{index}"):
+
+                def with_item(new, i=index, r=rebuild):
+                    return type(value)([*value[:i], r(new), *value[i + 1 :]])
+
+                yield name, leaf, with_item
     else:
-        assert value is None or isinstance(value, bool | int | float | str | Enum), (
-            f"{path} is a {type(value)}"
-        )
-        yield path, value, lambda new: new
+        parts = {name: getattr(value, name) for name in field_names(type(value))}
+        assert parts, f"{path} is a {type(value)}"
+        for field, part in parts.items():
+            for name, leaf, rebuild in leaves_of(part, f"{path}.{field}"):
+                yield name, leaf, lambda new, f=field, r=rebuild: type(value)(**{**parts, f: r(new)})
+
+
+def nearest_other(leaf):
+    """The value that differs least: the last bit of a float, the next integer, the other truth."""
+    if isinstance(leaf, bool):
+        return not leaf
+    if isinstance(leaf, str):
+        return leaf + "a"
+    if isinstance(leaf, Enum):
+        return next(member for member in type(leaf) if member is not leaf)
+    if leaf is None:
+        return 0
+    return nextafter(leaf, 1e300) if isinstance(leaf, float) else leaf + 1
+
+
+@pytest.fixture(scope="session")
+def blind_places():
+    """The paths of those leaves whose change does not change what is packed."""
+
+    def find(value):
+        before = pack(value)
+        return [
+            path for path, leaf, rebuild in leaves_of(value) if pack(rebuild(nearest_other(leaf))) == before
+        ]
+
+    return find
 
 
 @pytest.fixture(scope="session")

@@ -14,7 +14,7 @@ from random import Random
 import numpy as np
 import pytest
 
-from fsw.core.state import checksum
+from fsw.core.packing import checksum
 from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame

@@ -44,27 +44,6 @@ class CoilView(NamedTuple):
     past_am2: tuple[Vec3, ...] = ()
     asked: RequestedDipole = NOTHING_ASKED
 
-    def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state."""
-        driven = (self.driven_coil, self.driven_level)
-        asked = () if self.asked == NOTHING_ASKED else (self.asked.tick, self.asked.reported)
-        return (
-            *self.lockout_ms,
-            *driven,
-            self.seq,
-            self.refusals,
-            self.fired_tick,
-            *self.fired,
-            self.idle_ticks,
-            *asked,
-        )
-
-    def floats(self) -> tuple[float, ...]:
-        """For the checksum of the state; a request to a continuous driver counts where there has been one."""
-        past = [part for m_am2 in self.past_am2 for part in m_am2]
-        asked_am2 = () if self.asked == NOTHING_ASKED else self.asked.m_body_am2
-        return (*self.driven_am2, *self.paid_body_nms, *past, *asked_am2)
-
 
 class ActuatorConfig(NamedTuple):
     """The limits of the pulses, and the continuous driver that is there instead, if any."""

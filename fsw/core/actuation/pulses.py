@@ -55,14 +55,6 @@ class PulseState(NamedTuple):
     owed_impulse_body_nms: Vec3 = ZERO
     held_am2: Vec3 = ZERO
 
-    def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state."""
-        return (*self.ready_tick, self.busy_until)
-
-    def floats(self) -> tuple[float, ...]:
-        """For the checksum of the state."""
-        return (*self.owed_impulse_body_nms, *self.held_am2)
-
 
 def pulse_timing(tick_hz: int, pulse_ms: int, backoff_ms: int) -> tuple[int, int, int]:
     """(pulse ticks, back-off ticks, duration in ms): the pulse rounded down, the back-off rounded up.

@@ -47,14 +47,6 @@ class WheelView(NamedTuple):
     known: bool = False
     """Whether there has been a report since boot."""
 
-    def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state."""
-        return (self.tick, self.refused, self.known)
-
-    def floats(self) -> tuple[float, ...]:
-        """For the checksum of the state."""
-        return (self.speed_radps, self.change_nms, self.asked_nm)
-
 
 def seen(view: WheelView | None, readings: Readings, tick: int, wheel: Wheel | None) -> WheelView | None:
     """The view after the reports of this tick; None without a wheel."""

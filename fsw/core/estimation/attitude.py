@@ -14,15 +14,6 @@ class Attitude(NamedTuple):
     sigma3_rate_radps: float
     valid: bool
 
-    def floats(self) -> tuple[float, ...]:
-        """For the checksum of the state, without ``valid``."""
-        return (
-            *self.q_body_from_orbit,
-            *self.omega_body_orbit_radps,
-            self.sigma3_attitude_rad,
-            self.sigma3_rate_radps,
-        )
-
 
 UNKNOWN = Attitude((1.0, 0.0, 0.0, 0.0), ZERO, 4.0, 1.0, False)
 

@@ -74,21 +74,6 @@ class EstimatorState(NamedTuple):
     batch: SampleBatch = EMPTY
     loaded: tuple[int, ...] = ()
 
-    def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state, as are the next two."""
-        counts = (self.rejected_in_a_row, self.rejected_total, self.restarts, self.turning, self.frozen)
-        return (*counts, *self.batch.integers(), *self.loaded)
-
-    def floats(self) -> tuple[float, ...]:
-        """The values to start from, and the estimate, if there is one, without its arrays."""
-        first = () if self.first is None else self.first.floats()
-        known = () if self.estimate is None else self.estimate.floats()
-        return (*first, *self.batch.floats(), *known)
-
-    def packed(self) -> bytes:
-        """The arrays of the estimate, and of the search for one."""
-        return (b"" if self.estimate is None else self.estimate.packed()) + self.batch.packed()
-
 
 class Used(NamedTuple):
     """Which measurements were taken in this tick; with Sun cells ``sun`` is whether any was."""

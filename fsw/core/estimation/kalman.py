@@ -12,7 +12,6 @@ No function changes an array in place, so arrays may be shared. P is symmetric a
 With them, a trace of what unmodelled deviations would do to errors and innovations (Friedland 1969).
 """
 
-import struct
 from enum import StrEnum
 from math import nan
 from typing import NamedTuple, final
@@ -159,12 +158,6 @@ class Trace(NamedTuple):
     def numbers(self) -> tuple[int, ...]:
         """The numbers of the causes."""
         return tuple([cause.number for cause in self.causes])
-
-    def packed(self) -> bytes:
-        """For the checksum of the state."""
-        shape = "<q" + "q2d" * len(self.causes)
-        causes = struct.pack(shape, self.measured, *[number for cause in self.causes for number in cause])
-        return causes + self.effect.tobytes() + self.sums.tobytes()
 
 
 def carried(trace: Trace, transition: Matrix) -> Trace:

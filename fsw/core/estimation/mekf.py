@@ -67,15 +67,6 @@ class Estimate(NamedTuple):
     numbers: int = 0
     lag: tuple[float, ...] = NO_LAG
 
-    def floats(self) -> tuple[float, ...]:
-        """For the checksum of the state, as is ``packed``: all but the arrays."""
-        innovation = (self.nis, float(self.numbers), *self.lag)
-        return (*self.q_body_from_eci, *self.omega_body_radps, *self.parameters.floats(), *innovation)
-
-    def packed(self) -> bytes:
-        """The arrays."""
-        return self.covariance.tobytes() + (b"" if self.trace is None else self.trace.packed())
-
 
 def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfig) -> Estimate:
     """The estimate at start-up: a known attitude, everything else at its prior."""

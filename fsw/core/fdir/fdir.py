@@ -41,14 +41,6 @@ class Health(NamedTuple):
     sensors: SensorHealth = SensorHealth()
     coils: CoilHealth = CoilHealth()
 
-    def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state, as is ``floats``."""
-        return (*self.sensors.integers(), *self.coils.integers())
-
-    def floats(self) -> tuple[float, ...]:
-        """The evidence, and the last samples."""
-        return (*self.sensors.floats(), *self.coils.floats())
-
 
 class Evidence(NamedTuple):
     """What health is judged by in one tick.

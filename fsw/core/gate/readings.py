@@ -151,14 +151,6 @@ class GateState(NamedTuple):
     input_crc: int = 0
     command_crc: int = 0
 
-    def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state; cells and wheel count where there are any."""
-        counters = list(self.counters)
-        for slot in reversed(_OPTIONAL_SLOTS):
-            if counters[slot] < 0:
-                del counters[slot]
-        return (*counters, *self[1:])
-
 
 def admit(frames: tuple[Frame, ...], state: GateState, skipped: bool = False) -> tuple[Readings, GateState]:
     """Judge the frames of one tick.

@@ -56,11 +56,6 @@ class SyncWatch(NamedTuple):
         """Whether field and Sun are those of the time: no restart, and no long skip, lately."""
         return tick >= self.timed_tick
 
-    def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state; the doubt about the time counts where there has been one."""
-        timed = (self.timed_tick,) if self.timed_tick else ()
-        return (*self.doubted, self.settled_tick, self.strange_tick, *timed)
-
 
 def judge(watch: SyncWatch, current: int, tick: int, leap_ticks: int) -> tuple[Belief, SyncWatch]:
     """How a SYNC is judged, and the watch after it.

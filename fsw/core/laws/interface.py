@@ -96,10 +96,6 @@ class Setpoint(NamedTuple):
     k_i: float
     spin_radps: float
 
-    def floats(self) -> tuple[float, ...]:
-        """For the checksum of the state; the law counts by its number."""
-        return self[1:]
-
 
 class OwnLaw(NamedTuple):
     """A law that is not in the table of laws: its name in the setpoint, its forms in ACQUIRE and POINT."""

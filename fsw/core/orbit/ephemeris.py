@@ -29,10 +29,6 @@ class EphemerisNode:
     b_eci_t: Vec3
     sun_eci: Vec3
 
-    def floats(self) -> tuple[float, ...]:
-        """For the checksum of the state."""
-        return (*self.r_eci_m, *self.v_eci_mps, *self.b_eci_t, *self.sun_eci)
-
 
 @dataclass(frozen=True, slots=True)
 class EphemerisWindow:
@@ -40,11 +36,6 @@ class EphemerisWindow:
 
     first_node: int
     nodes: tuple[EphemerisNode, EphemerisNode, EphemerisNode, EphemerisNode]
-
-    def floats(self) -> tuple[float, ...]:
-        """For the checksum of the state: 49 numbers, that of the first node leading."""
-        a, b, c, d = self.nodes
-        return (self.first_node, *a.floats(), *b.floats(), *c.floats(), *d.floats())
 
 
 @dataclass(frozen=True, slots=True)

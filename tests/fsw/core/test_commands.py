@@ -18,7 +18,7 @@ from fsw.core.monitors import Monitor
 from fsw.core.orbit.elements import RANGES, Elements, Upload
 from fsw.core.orbit.ephemeris import advance, with_orbit
 from fsw.core.orbit.propagation import element_orbit, sgp4_orbit, state_eci
-from fsw.core.state import checksum
+from fsw.core.packing import checksum
 from fsw.wire.messages import (
     Component,
     Element,

@@ -6,12 +6,11 @@ from fsw.core.actuation.actuator import LOCKOUT_UNKNOWN, CoilView
 from fsw.core.actuation.pulses import boot
 from fsw.core.actuation.wheel import WheelView
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.events import Event, Happening
+from fsw.core.events import Event, Happening, LastReport, Throttle, throttle_events
 from fsw.core.gate.second_sender import NO_SIGNS
 from fsw.core.laws.interface import FieldSample
 from fsw.core.modes import ModeState
 from fsw.core.restart import restarted
-from fsw.core.throttle import LastReport, Throttle, throttle_events
 from fsw.wire.messages import Mode
 
 REACHED, NEW = 5000, 3

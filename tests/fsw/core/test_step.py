@@ -7,7 +7,7 @@ import pytest
 from replies import events_of, of
 
 from fsw.core.algebra.vector import dot, norm
-from fsw.core.state import checksum
+from fsw.core.packing import checksum
 from fsw.core.step import boot, step
 from fsw.core.telemetry import Event
 from fsw.wire.messages import (

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from fsw.core.packing import checksum
 from fsw.core.restart import restarted
-from fsw.core.state import checksum
 from fsw.wire.messages import Mode, WheelStatus, WheelTorque
 
 WHEEL = {

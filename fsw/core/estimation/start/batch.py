@@ -38,22 +38,6 @@ class SampleBatch(NamedTuple):
     searched_s: float = 0.0
     search: MotionSearch | None = None
 
-    def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state, as is ``floats``; nothing of a batch that has not begun."""
-        under_way = () if self.search is None else self.search.integers()
-        return () if self == EMPTY else (len(self.samples), *under_way)
-
-    def floats(self) -> tuple[float, ...]:
-        """Every number."""
-        if self == EMPTY:
-            return ()
-        kept = [number for sample in self.samples for number in sample.floats()]
-        return (self.since_s, *self.driven_am2s, self.searched_s, *kept)
-
-    def packed(self) -> bytes:
-        """The arrays of the search."""
-        return b"" if self.search is None else self.search.packed()
-
     @property
     def span_s(self) -> float:
         """From the first sample to the last."""

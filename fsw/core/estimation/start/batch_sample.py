@@ -25,8 +25,3 @@ class BatchSample(NamedTuple):
     lit: float
     earth: float
     coarse: Vec3 | None = None
-
-    def floats(self) -> tuple[float, ...]:
-        """For the checksum of the state."""
-        vectors = (*self.m_body_am2, *self.field_t, *self.b_eci_t, *self.s_eci, *self.r_eci_m)
-        return (self.since_s, *self.currents, *vectors, self.lit, self.earth, *(self.coarse or ()))

@@ -80,17 +80,6 @@ class MotionSearch(NamedTuple):
     equations: Equations
     best: Best | None = None
 
-    def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state."""
-        return (self.searched, self.stage, self.at, self.steps)
-
-    def packed(self) -> bytes:
-        """The arrays."""
-        best = self.best
-        known = () if best is None else (*best.motions, *best.equations, best.ends, best.damping)
-        arrays = (*self.motions, self.q, self.omega, *self.equations, *known)
-        return b"".join([array.tobytes() for array in arrays])
-
 
 Ended = Estimate | None
 """None where the samples leave more than one motion, or none fits."""

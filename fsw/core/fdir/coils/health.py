@@ -51,16 +51,6 @@ class CoilHealth(NamedTuple):
     conducts: Vec3 = ZERO
     until_retest: tuple[int, int, int] = (0, 0, 0)
 
-    def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state."""
-        older = [one.parts.pulses for one in self.older]
-        return (*self.faults, *older, self.strange_ticks, self.stray_ma, self.stuck, *self.until_retest)
-
-    def floats(self) -> tuple[float, ...]:
-        """The evidence, and the fractions of a stray current."""
-        first, second, third = [(*one.parts[1:], one.kept) for one in self.older]
-        return (*self.nats, *first, *second, *third, *self.conducts)
-
 
 def driven_am2(health: CoilHealth, view: CoilView, config: CoilHealthConfig) -> Vec3:
     """Dipole over the tick that has ended, body axes, with what is known of a stray current.

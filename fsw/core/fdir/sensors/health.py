@@ -41,21 +41,6 @@ class SensorHealth(NamedTuple):
     memory: Memory = Memory()
     cells: CellsHealth = ()
 
-    def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state, as is ``floats``."""
-        faults = (self.field.fault, self.sun.fault)
-        both, by_cell = (
-            self.pair,
-            [number for one in self.cells for number in (one.watch.fault, one.still, one.by_this)],
-        )
-        return (*faults, both.standing, both.ended, both.blind_ticks, *self.memory.integers(), *by_cell)
-
-    def floats(self) -> tuple[float, ...]:
-        """The evidence, and the last samples."""
-        both, memory = (*self.pair[1:4], *self.pair[6:8]), self.memory.floats()
-        by_cell = [number for one in self.cells for number in (one.watch.nats, one.shown, one.predicted)]
-        return (self.field.nats, self.sun.nats, *both, *memory, *by_cell)
-
 
 class SensorConfig(NamedTuple):
     """The weights of evidence, what is credible, and the filter."""

@@ -63,17 +63,6 @@ class Memory(NamedTuple):
     sun_still: int = 0
     motion: Motion | None = None
 
-    def integers(self) -> tuple[int, ...]:
-        """For the checksum of the state, as is ``floats``."""
-        return (self.field_still, self.sun_still)
-
-    def floats(self) -> tuple[float, ...]:
-        """The samples, and the motion."""
-        if self.motion is None:
-            return (*self.field, *self.sun)
-        (by_field, field_sigma), (by_sun, sun_sigma) = self.motion
-        return (*self.field, *self.sun, *by_field, field_sigma, *by_sun, sun_sigma)
-
 
 class Seen(NamedTuple):
     """What the checks look at in one tick: all that the boards sent, and what the models expect.

@@ -7,6 +7,7 @@ import pytest
 from fsw.core.actuation.actuator import LOCKOUT_UNKNOWN, MOST_IDLE_TICKS, CoilView, unexpected, update_view
 from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.plan.pulse_model import Pulse
+from fsw.core.packing import pack
 from fsw.wire.messages import CoilBoot, CoilRefused, CoilRefusedReason, CoilStatus
 
 ZERO = (0.0, 0.0, 0.0)
@@ -173,4 +174,4 @@ class TestIdleTicks:
         assert self.after(CoilView(idle_ticks=MOST_IDLE_TICKS), status(1), coils) == MOST_IDLE_TICKS
 
     def test_it_is_in_the_checksum_of_the_state(self):
-        assert CoilView(idle_ticks=3).integers() != CoilView().integers()
+        assert pack(CoilView(idle_ticks=3)) != pack(CoilView())

@@ -6,7 +6,7 @@ from fsw.core.actuation.actuator import CoilView
 from fsw.core.actuation.read_back import ReadBackConfig, without_offset
 from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.plan.pulse_model import Pulse
-from fsw.core.state import checksum
+from fsw.core.packing import checksum
 from fsw.wire.messages import CoilStatus
 
 CONFIG = ReadBackConfig(off_ma=2.5, died_away_ticks=5)

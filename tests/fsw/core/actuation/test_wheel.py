@@ -186,7 +186,5 @@ class TestRequest:
         assert asked(-sign * slowing_nm, sign * 600.0)[1].torque == 0.0
 
 
-def test_every_number_of_the_view_counts_in_the_checksum():
-    view = WheelView(3.0, 7, 0.25, -0.5, 2, known=True)
-    assert view.integers() == (7, 2, True)
-    assert view.floats() == (3.0, 0.25, -0.5)
+def test_every_number_of_the_view_counts_in_the_checksum(blind_places):
+    assert blind_places(WheelView(3.0, 7, 0.25, -0.5, 2, known=True)) == []

@@ -30,6 +30,7 @@ from fsw.core.estimation.estimator import (
     update,
 )
 from fsw.core.estimation.measurement import field_prediction, sun_prediction
+from fsw.core.packing import pack
 from fsw.wire.messages import SunVector
 
 
@@ -145,7 +146,7 @@ class TestAfterAFastTurn:
         assert lost == EstimatorState(None, 0, settled.rejected_total, settled.restarts + 1, Turning.NO)
 
     def test_it_is_in_the_checksum_of_the_state(self, settled):
-        assert settled._replace(turning=Turning.FAST).integers() != settled.integers()
+        assert pack(settled._replace(turning=Turning.FAST)) != pack(settled)
 
 
 class TestOfAFastTurnWhoseRateIsKnown:

@@ -341,15 +341,3 @@ class TestNoise:
         whole = [FIELD.replace(counter=n).encode() for n in range(INBOX_LIMIT - 1)]
         readings, _ = admit((*whole, self.COMMAND.encode()), GateState())
         assert readings.telecommands == (self.COMMAND,)
-
-
-def test_on_a_bus_without_cells_and_wheel_the_checksum_is_that_of_a_software_that_knows_none():
-    """So that logs of before are flown again bit by bit."""
-    _, without = admitted(*COUNTED)
-    _, with_cells = admitted(*COUNTED, CELLS)
-    _, with_wheel = admitted(*COUNTED, WHEEL)
-    _, with_both = admitted(*COUNTED, CELLS, WHEEL)
-    places = len(without.integers())
-    assert len(with_cells.integers()) == len(with_wheel.integers()) == places + 1
-    assert len(with_both.integers()) == places + 2
-    assert without.integers()[:9] == (*range(5, 12), -1, -1)

@@ -96,14 +96,8 @@ def test_a_node_is_the_models_own_at_its_moment(make_model, itamsat, itamsat_epo
     assert made.sun_eci == sun_eci(unix_s)
 
 
-def test_every_number_of_the_window_is_packed(make_model):
-    model = make_model()
-    window = advance(None, 333, model)
-    values = window.floats()
-    assert len(values) == len(set(values)) == 49
-    assert values[0] == window.first_node
-    assert values[1:4] == window.nodes[0].r_eci_m
-    assert values[-3:] == window.nodes[3].sun_eci
+def test_every_number_of_the_window_counts_in_the_checksum(make_model, blind_places):
+    assert blind_places(advance(None, 333, make_model())) == []
 
 
 # The loss of the orbit

@@ -22,6 +22,7 @@ from fsw.core.estimation.start.batch_sample import UNKNOWN
 from fsw.core.estimation.start.first import StartLimits, from_batch, linear
 from fsw.core.estimation.start.motions import flown, in_body
 from fsw.core.estimation.start.search import IMPROVED, PIECES, MotionSearch, Stage, begun, worked
+from fsw.core.packing import pack
 from sim.faults.node_kinds import count_doubles, flip
 
 MODEL = model_of(CONFIG, CELLS)
@@ -351,11 +352,10 @@ class TestByTicks:
 
     def test_every_number_counts(self, batches):
         search = next(one.search for one in batches if one.search and one.search.steps == 2)
-        assert search.integers() == (search.searched, Stage.IMPROVE, search.at, 2)
-        whole, sound = count_doubles(search), search.packed()
-        assert len(sound) == 8 * whole
-        for place in range(0, whole, 997):
-            assert flip(search, place, 3).packed() != sound
+        assert search.stage is Stage.IMPROVE
+        sound = pack(search)
+        for place in range(0, count_doubles(search), 997):
+            assert pack(flip(search, place, 3)) != sound
 
     @pytest.mark.filterwarnings("error")
     def test_a_flipped_bit_ends_in_an_estimate_that_is_one_or_none(self, batches):

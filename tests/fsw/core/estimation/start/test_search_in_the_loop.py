@@ -5,8 +5,9 @@ import pytest
 
 from fsw.core.estimation.estimator import restart
 from fsw.core.estimation.start.batch import EMPTY
+from fsw.core.packing import checksum, pack
 from fsw.core.restart import restarted
-from fsw.core.state import Inbox, checksum
+from fsw.core.state import Inbox
 from fsw.core.step import boot, step
 from fsw.table.config import flight_config
 from fsw.wire.messages import Mode, Sync, TcMode
@@ -51,15 +52,14 @@ def test_a_change_of_mode_does_not_touch_it(searching):
     told = inbox._replace(frames=(TcMode(mode).encode(), *inbox.frames))
     quiet, commanded = step(state, inbox, config)[0], step(state, told, config)[0]
     assert commanded.modes.mode is mode is not quiet.modes.mode
-    assert commanded.estimator.batch.packed() == quiet.estimator.batch.packed()
-    assert commanded.estimator.batch.floats() == quiet.estimator.batch.floats()
+    assert pack(commanded.estimator.batch) == pack(quiet.estimator.batch)
 
 
 def test_without_a_sample_it_goes_on_all_the_same(searching):
     config, state, inbox = searching
     silent, _ = step(state, inbox._replace(frames=()), config)
     usual, _ = step(state, inbox, config)
-    assert silent.estimator.batch.packed() == usual.estimator.batch.packed()
+    assert pack(silent.estimator.batch) == pack(usual.estimator.batch)
 
 
 def test_a_new_count_of_ticks_and_a_restart_of_the_filter_end_it(searching):
@@ -70,8 +70,8 @@ def test_a_new_count_of_ticks_and_a_restart_of_the_filter_end_it(searching):
 
 def test_the_step_is_pure(searching):
     config, state, inbox = searching
-    before = state.estimator.batch.packed()
+    before = pack(state.estimator.batch)
     first, second = step(state, inbox, config), step(state, inbox, config)
     assert checksum(first[0]) == checksum(second[0])
-    assert state.estimator.batch.packed() == before
+    assert pack(state.estimator.batch) == before
     np.testing.assert_array_equal(*(one.estimator.batch.search.q for one, _ in (first, second)))

@@ -2,8 +2,7 @@
 
 import pytest
 
-from fsw.core.events import Event, Happening
-from fsw.core.throttle import MOST_KINDS, Throttle, throttle_events
+from fsw.core.events import MOST_KINDS, Event, Happening, Throttle, throttle_events
 from fsw.wire.messages import FswEvent
 
 REFUSED, OTHER = Happening(Event.REQUEST_REFUSED, 8), Happening(Event.REQUEST_REFUSED, 3)
