@@ -18,7 +18,8 @@ from fsw.core.estimation.start.batch import EMPTY
 from fsw.core.fdir.coils.retest import with_unknown_gain
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.fdir import Health
-from fsw.core.gate.readings import Readings, Telecommand
+from fsw.core.gate.measurements import Measurements
+from fsw.core.gate.readings import Telecommand
 from fsw.core.laws.entry import LawEntry, is_met
 from fsw.core.laws.interface import MAX_GAIN, MAX_SPIN_RADPS, ControlConfig
 from fsw.core.laws.table import LAWS, OWN_NUMBER
@@ -60,13 +61,13 @@ LAW_NAMES = {law.number: name for name, law in LAWS.items()}
 
 
 def command(
-    state: FlightState, readings: Readings, violated: Monitor | None, config: FlightConfig
+    state: FlightState, measurements: Measurements, violated: Monitor | None, config: FlightConfig
 ) -> tuple[FlightState, list[TcAck]]:
     """Carry out the telecommands of this tick.
 
     Args:
         state: of this tick, its mode as the mode table left it.
-        readings: what came through the gate.
+        measurements: what came through the gate.
         violated: the monitor that is violated in this tick, if any.
         config: the onboard tables.
 
@@ -75,12 +76,12 @@ def command(
     """
     situation = Situation(violated, config)
     acks = []
-    for message in readings.telecommands:
+    for message in measurements.telecommands:
         outcome = HANDLERS[type(message)](state, message, situation)
         if isinstance(outcome, FlightState):
             state, outcome = outcome, TcAckResult.ACCEPTED
         acks.append(_ack(message, outcome, state.tick))
-    acks += [_ack(message, TcAckResult.REPEATED, state.tick) for message in readings.repeated]
+    acks += [_ack(message, TcAckResult.REPEATED, state.tick) for message in measurements.repeated]
     return state, acks
 
 

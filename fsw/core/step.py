@@ -19,7 +19,8 @@ from fsw.core.fdir import fdir
 from fsw.core.fdir.fdir import Evidence
 from fsw.core.fdir.observation import Observation
 from fsw.core.gate import calibration, second_sender
-from fsw.core.gate.readings import Readings, admit
+from fsw.core.gate.measurements import Measurements
+from fsw.core.gate.readings import admit
 from fsw.core.gate.sync_watch import Belief, SyncWatch, judge, near
 from fsw.core.laws import by_mode
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
@@ -59,15 +60,15 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
         return state, (_done(state, tick),) if belief is Belief.UNANSWERED else ()
     state, inbox = _begin(state, inbox, belief, config)
     model = with_orbit(config.ephemeris, state.orbit)
-    state, readings = _gate(state, inbox, syncs, config)
+    state, measurements = _gate(state, inbox, syncs, config)
     config = _with_wheel(state, before.tick, config)
     state, reference = _predict(state, model, before.tick, config)
-    observation = _update(state, readings, reference, config)
+    observation = _update(state, measurements, reference, config)
     state = _judge(state, observation, config)
     state, violated = supervise(state, config)
-    state, acks = command(state, observation.readings, violated, config)
+    state, acks = command(state, observation.measurements, violated, config)
     law_input, demand = _control(state, observation, model, config)
-    state, requests = _schedule(state, observation.readings, law_input, demand, config)
+    state, requests = _schedule(state, observation.measurements, law_input, demand, config)
     replies = (*requests, *acks)
     state, frames = telemetry.report(before, state, observation, violated, replies, config)
     return state, (*frames, _done(state, tick))
@@ -102,30 +103,36 @@ def _begin(
 
 def _gate(
     state: FlightState, inbox: Inbox, syncs: SyncWatch, config: FlightConfig
-) -> tuple[FlightState, Readings]:
+) -> tuple[FlightState, Measurements]:
     """Accept what the boards sent, and compare the coil driver's currents with the requests."""
     tick = inbox.tick
-    readings, gate = admit(inbox.frames, state.gate, skipped=0 <= state.tick < tick - 1)
-    readings = calibration.calibrated(readings, config.calibration)
-    readings = read_back.without_offset(readings, state.coil, tick, config.read_back)
-    view = update_view(state.coil, readings, tick, config.coils)
-    view, readings = own_field.taken_off(view, readings, config.estimator.blank_ticks, config.own_field)
+    gate = replace(state.gate, counters=state.gate.counters.copy())
+    readings = admit(inbox.frames, gate, skipped=0 <= state.tick < tick - 1)
+    measurements = calibration.measure(readings, config.calibration)
+    read_back.remove_offset(measurements, state.coil, tick, config.read_back)
+    view = update_view(state.coil, measurements, tick, config.coils)
+    view = own_field.subtract_own_field(view, measurements, config.estimator.blank_ticks, config.own_field)
     expected_s = config.epoch_unix_s + tick // config.tick_hz
     state = state._replace(
         tick=tick,
         syncs=syncs if syncs.strange_tick < 0 else syncs._replace(strange_tick=-1),
-        field_tick=tick if readings.field is not None else state.field_tick,
-        status_tick=tick if readings.coil is not None else state.status_tick,
+        field_tick=tick if measurements.field is not None else state.field_tick,
+        status_tick=tick if measurements.coil is not None else state.status_tick,
         time_error_s=inbox.unix_time_s - expected_s,
         gate=gate,
         second_sender=second_sender.watch(
-            state.second_sender, readings, view.seq, config.coils.dipoles is None, tick, config.second_sender
+            state.second_sender,
+            measurements,
+            view.seq,
+            config.coils.dipoles is None,
+            tick,
+            config.second_sender,
         ),
         coil=view,
-        wheel=wheel.seen(state.wheel, readings, tick, config.wheel),
-        health=fdir.judge_current(state.health, view, readings, tick, config.fdir),
+        wheel=wheel.seen(state.wheel, measurements, tick, config.wheel),
+        health=fdir.judge_current(state.health, view, measurements, tick, config.fdir),
     )
-    return state, readings
+    return state, measurements
 
 
 def _with_wheel(state: FlightState, before: int, config: FlightConfig) -> FlightConfig:
@@ -163,23 +170,24 @@ def _without_orbit(state: FlightState) -> FlightState:
 
 
 def _update(
-    state: FlightState, readings: Readings, reference: Reference | None, config: FlightConfig
+    state: FlightState, measurements: Measurements, reference: Reference | None, config: FlightConfig
 ) -> Observation:
-    """Update the estimate by the readings that may be trusted."""
+    """Update the estimate by the samples that may be trusted."""
     if reference is None:
-        return Observation(readings, None, state.estimator, UNKNOWN)
+        return Observation(measurements, None, state.estimator, UNKNOWN)
     if config.estimator.perfect:
-        return Observation(readings, reference, state.estimator, perfect_attitude(readings, state.attitude))
+        attitude = perfect_attitude(measurements, state.attitude)
+        return Observation(measurements, reference, state.estimator, attitude)
     known = state.estimator.estimate if state.attitude.valid else None
-    findings = fdir.examine(readings, state.health, reference, config.fdir, known)
-    readings = fdir.trusted(readings, state.health, findings)
-    updated, used = update(state.estimator, readings, reference, config.estimator)
+    findings = fdir.examine(measurements, state.health, reference, config.fdir, known)
+    fdir.judge_samples(measurements, state.health, findings)
+    updated, used = update(state.estimator, measurements, reference, config.estimator)
     attitude = orbital_attitude(updated.estimate, reference, config.estimator.valid_sigma_rad)
-    return Observation(readings, reference, updated, attitude, used, findings)
+    return Observation(measurements, reference, updated, attitude, used, findings)
 
 
 def _judge(state: FlightState, observation: Observation, config: FlightConfig) -> FlightState:
-    """Judge sensors and coils by all readings, those of isolated sensors included."""
+    """Judge sensors and coils by all samples, those of isolated sensors included."""
     _, reference, estimator, attitude, used, findings = observation
     tick, health = state.tick, state.health
     if reference is not None and findings is not None:
@@ -201,8 +209,8 @@ def _law_input(
     state: FlightState, observation: Observation, model: EphemerisModel, config: FlightConfig
 ) -> LawInput:
     """The field is the modelled one where the attitude is valid, otherwise the last one measured."""
-    readings, reference, attitude = observation.readings, observation.reference, state.attitude
-    usable = usable_field(readings)
+    measurements, reference, attitude = observation.measurements, observation.reference, state.attitude
+    usable = usable_field(measurements)
     sample = FieldSample(usable, state.tick) if usable is not None else state.sample
     b_body_t = sample.b_body_t
     if attitude.valid and reference is not None:
@@ -215,24 +223,28 @@ def _law_input(
         b_body_t,
         sample,
         state.sample,
-        sun_direction(readings, config.estimator.mekf.cells),
+        sun_direction(measurements, config.estimator.mekf.cells),
         reference,
         constant_torque(parameters, reference),
         parameters.dipole_body_am2,
         state.tick,
         model,
-        wait_ticks(state.pulses, state.coil, readings, state.tick, config.coils.pulses, faults),
+        wait_ticks(state.pulses, state.coil, measurements, state.tick, config.coils.pulses, faults),
         wheel.momentum_nms(state.wheel, config.wheel),
     )
 
 
 def _schedule(
-    state: FlightState, readings: Readings, law_input: LawInput, demand: Demand | None, config: FlightConfig
+    state: FlightState,
+    measurements: Measurements,
+    law_input: LawInput,
+    demand: Demand | None,
+    config: FlightConfig,
 ) -> tuple[FlightState, list[CoilFire | CoilDipole | WheelTorque]]:
     """At most one request to the coil driver, and one to the wheel."""
     faults, b_body_t = state.health.coils.faults, law_input.b_body_t
     timers, view, request = actuate(
-        state.pulses, state.coil, demand, b_body_t, readings, state.tick, config.coils, faults
+        state.pulses, state.coil, demand, b_body_t, measurements, state.tick, config.coils, faults
     )
     memory = demand.memory if demand is not None else ()
     turning, torque = wheel.request(state.wheel, demand, state.tick, config.wheel)

@@ -12,7 +12,7 @@ from fsw.core.estimation.parameters import Layout, component_places
 from fsw.core.events import SEVERITY, Event, Happening, Throttle, throttle_events
 from fsw.core.fdir import fdir
 from fsw.core.fdir.observation import Observation
-from fsw.core.gate.readings import Readings
+from fsw.core.gate.measurements import Measurements
 from fsw.core.gate.sync_watch import near
 from fsw.core.modes import ModeState
 from fsw.core.monitors import Monitor
@@ -73,7 +73,7 @@ def report(
 ) -> tuple[FlightState, list[Frame]]:
     """The frames of this tick: requests and acknowledgements, then telemetry as it is due."""
     events, of_events = event_messages(
-        before, state, observation.readings, violated, config.event_spacing_ticks, config.leap_ticks
+        before, state, observation.measurements, violated, config.event_spacing_ticks, config.leap_ticks
     )
     messages = [
         *replies,
@@ -124,13 +124,13 @@ def heartbeat_messages(state: FlightState, rates: RateTable) -> list[CountedMess
 def event_messages(
     before: FlightState,
     after: FlightState,
-    readings: Readings,
+    measurements: Measurements,
     violated: Monitor | None,
     spacing_ticks: int,
     leap_ticks: int,
 ) -> tuple[Throttle, list[CountedMessage]]:
     """The events of this tick that may be sent, and the throttle after it."""
-    found = happenings(before, after, readings, violated, leap_ticks)
+    found = happenings(before, after, measurements, violated, leap_ticks)
     throttle, passed = throttle_events(after.events, found, after.tick, spacing_ticks)
     return throttle, [event_message(happening, after.tick) for happening in passed]
 
@@ -183,10 +183,14 @@ def heartbeat_message(tick: int, modes: ModeState, rejects: int) -> CountedMessa
 
 
 def happenings(
-    before: FlightState, after: FlightState, readings: Readings, violated: Monitor | None, leap_ticks: int
+    before: FlightState,
+    after: FlightState,
+    measurements: Measurements,
+    violated: Monitor | None,
+    leap_ticks: int,
 ) -> list[Happening]:
     """The events of this tick: changes only, so that nothing is reported again while it lasts."""
-    found = _plant(before, after, readings, leap_ticks) if before.tick >= 0 else []
+    found = _plant(before, after, measurements, leap_ticks) if before.tick >= 0 else []
     tripped = after.modes.trips > before.modes.trips
     if violated is not None and (tripped or violated != before.violated):
         found.append(Happening(Event.MONITOR_TRIPPED, violated))
@@ -199,22 +203,24 @@ def happenings(
     found += fdir.happenings(before.health, after.health)
     if after.second_sender.detected and not before.second_sender.detected:
         found.append(Happening(Event.SECOND_SENDER, after.second_sender.can_id))
-    if readings.refused is not None:
-        found.append(Happening(Event.REQUEST_REFUSED, readings.refused.reason))
+    if measurements.refused is not None:
+        found.append(Happening(Event.REQUEST_REFUSED, measurements.refused.reason))
     if after.time_error_s != before.time_error_s:
         found.append(Happening(Event.TIME_MISMATCH, after.time_error_s))
     return found
 
 
-def _plant(before: FlightState, after: FlightState, readings: Readings, leap_ticks: int) -> list[Happening]:
+def _plant(
+    before: FlightState, after: FlightState, measurements: Measurements, leap_ticks: int
+) -> list[Happening]:
     """A restart of the plant, and frames under its identifiers that it cannot have sent."""
     found = []
     if not near(before.tick, after.tick, leap_ticks):
         found.append(Happening(Event.PLANT_RESTARTED, before.tick))
     elif before.syncs.strange_tick >= 0:
         found.append(Happening(Event.STRANGE_SYNC, before.syncs.strange_tick))
-    if readings.end is not None:
-        found.append(Happening(Event.FALSE_END, readings.end.ticks))
+    if measurements.end_ticks >= 0:
+        found.append(Happening(Event.FALSE_END, measurements.end_ticks))
     return found
 
 

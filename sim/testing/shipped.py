@@ -6,7 +6,8 @@ from math import isfinite
 from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, update_view
 from fsw.core.actuation.pulses import PulseConfig, PulseState
-from fsw.core.gate.readings import NOTHING
+from fsw.core.gate.calibration import NO_CALIBRATION, measure
+from fsw.core.gate.readings import Readings
 from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, Law, LawInput, Memory
 from fsw.core.laws.plan.pulse_model import AXES
 from fsw.wire.messages import CoilBoot, CoilFire
@@ -57,10 +58,11 @@ class ShippedScheduler:
         """The same for this demand in place of that of the flight."""
         if self._state is None:
             self._state = pulses.boot(heard.tick, self._config.pulses)
-        readings = NOTHING._replace(coil=heard.status, coil_boot=_BOOTED if heard.booted else None)
-        self._view = update_view(self._view, readings, heard.tick, self._config)
+        readings = Readings(coil=heard.status, coil_boot=_BOOTED if heard.booted else None)
+        measurements = measure(readings, NO_CALIBRATION)
+        self._view = update_view(self._view, measurements, heard.tick, self._config)
         self._state, self._view, request = actuate(
-            self._state, self._view, demand, heard.b_body_t, readings, heard.tick, self._config
+            self._state, self._view, demand, heard.b_body_t, measurements, heard.tick, self._config
         )
         if not isinstance(request, CoilFire):
             return ()

@@ -12,6 +12,7 @@ import pytest
 from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, update_view
 from fsw.core.actuation.pulses import PulseConfig
+from fsw.core.gate.calibration import NO_CALIBRATION, measure
 from fsw.core.gate.readings import GateState, admit
 from fsw.core.laws.interface import Demand as Asked
 from fsw.wire.frame import Frame
@@ -90,7 +91,7 @@ class Flight:
     def step(self, tick, frames, demand, mode=Mode.POINT):
         if self.state is None:
             self.state = pulses.boot(tick, self.config.pulses)
-        readings, self.gate = admit(tuple(frames), self.gate)
+        readings = measure(admit(tuple(frames), self.gate), NO_CALIBRATION)
         self.view = update_view(self.view, readings, tick, self.config)
         m_body_am2, b_body_t = demand
         asked = Asked(m_body_am2) if mode is not Mode.SAFE else None

@@ -1,9 +1,10 @@
 """A scheduler whose timers ran out long ago, over a board on which all coils are free."""
 
+from gate_samples import measured
+
 from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate
 from fsw.core.actuation.pulses import PulseConfig
-from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import Demand
 from fsw.wire.messages import CoilRefused, CoilRefusedReason, CoilStatus
 
@@ -51,7 +52,7 @@ def status(coil, lockout_ms=0, level=0, seq=0):
 ALL_FREE = CoilView(lockout_ms=(0, 0, 0))
 
 
-BOARD_IS_THERE = NOTHING._replace(coil=status(0))
+BOARD_IS_THERE = measured(coil=status(0))
 
 
 def run(state=None, view=ALL_FREE, demand=None, readings=BOARD_IS_THERE, tick=TICK, config=CONFIG):

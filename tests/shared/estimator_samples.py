@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import radians
 
 import numpy as np
+from gate_samples import measured
 
 from fsw.core.algebra.quaternion import conjugate, multiply, normalise, rotate
 from fsw.core.algebra.vector import add, norm, scale, unit
@@ -16,7 +17,6 @@ from fsw.core.estimation.estimator import (
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
 from fsw.core.estimation.start.first import StartLimits
-from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import Reference
 from fsw.wire.messages import CoilStatus, MagField, SunVector
 
@@ -79,12 +79,12 @@ def field_message(b_body_t, valid=1):
 
 def seen_from(q_body_from_eci=Q_BODY_FROM_ECI, reference=REFERENCE, **changes):
     """What ideal sensors of a body in this attitude say, with changes."""
-    readings = NOTHING._replace(
-        field=field_message(rotate(q_body_from_eci, reference.b_eci_t)),
-        sun=SunVector(1, *rotate(q_body_from_eci, reference.sun_eci)),
-        coil=IDLE,
-    )
-    return readings._replace(**changes)
+    sound = {
+        "field": field_message(rotate(q_body_from_eci, reference.b_eci_t)),
+        "sun": SunVector(1, *rotate(q_body_from_eci, reference.sun_eci)),
+        "coil": IDLE,
+    }
+    return measured(**(sound | changes))
 
 
 def step(state, readings, reference=REFERENCE, driven=(NOT_DRIVEN,), config=CONFIG):

@@ -1,11 +1,12 @@
 """A message of each kind that the controller listens to, and the gate that admits it."""
 
+from copy import deepcopy
+from dataclasses import fields
+
 import pytest
 
-from fsw.core.gate.readings import (
-    GateState,
-    admit,
-)
+from fsw.core.gate.calibration import NO_CALIBRATION, measure
+from fsw.core.gate.readings import GateState, Readings, admit
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CoilBoot,
@@ -35,6 +36,8 @@ CELLS = SunCells(1, 0.5, 0.25, 1.125, 0.0078125, 1.9921875, 0.75, counter=14)
 WHEEL = WheelStatus(1, 1, -312.5, 0.001953125, counter=15)
 EVERY_KIND = (*COUNTED, BOOT, END, CELLS, WHEEL)
 SLOT = {message.ID: slot for slot, message in enumerate(EVERY_KIND)}
+KINDS = tuple(field.name for field in fields(Readings))[: len(EVERY_KIND)]
+"""Their names, in the same order."""
 EVERY_MESSAGE = pytest.mark.parametrize("message", EVERY_KIND, ids=lambda m: type(m).__name__)
 EVERY_COUNTED = pytest.mark.parametrize("message", COUNTED, ids=lambda m: type(m).__name__)
 
@@ -43,9 +46,21 @@ def frames(*messages):
     return tuple(message.encode() for message in messages)
 
 
-def admitted(*messages, state=None):
+def admitted(*messages, state=None, skipped=False):
+    """The messages that came through, and the state after them; the one before stays as it was."""
     raw = tuple(m if isinstance(m, Frame) else m.encode() for m in messages)
-    return admit(raw, state or GateState())
+    after = deepcopy(state or GateState())
+    return admit(raw, after, skipped), after
+
+
+def measured(calibration=NO_CALIBRATION, **given):
+    """What a tick shows in which these messages came, by kind; of the measurements, the others as given."""
+    sent = {one.name: given.pop(one.name) for one in fields(Readings) if one.name in given}
+    measurements = measure(Readings(**sent), calibration)
+    for name, value in given.items():
+        assert hasattr(measurements, name)
+        setattr(measurements, name, value)
+    return measurements
 
 
 def broken(frame):

@@ -7,7 +7,7 @@ from fsw.core.actuation import dipoles, pulses
 from fsw.core.actuation.dipoles import NOTHING_ASKED, DipoleConfig, RequestedDipole
 from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale
-from fsw.core.gate.readings import Readings
+from fsw.core.gate.measurements import Measurements
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.plan.pulse_model import NEVER, NO_PULSE, Pulse
 from fsw.wire.messages import CoilDipole, CoilFire, CoilRefusedReason
@@ -52,14 +52,14 @@ class ActuatorConfig(NamedTuple):
     dipoles: DipoleConfig | None
 
 
-def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorConfig) -> CoilView:
+def update_view(view: CoilView, measurements: Measurements, tick: int, config: ActuatorConfig) -> CoilView:
     """The view after the reports of the coil driver in this tick.
 
     A board that has just booted has not reported its lockouts. Without a status, the last request counts as
     driven while it is under way.
     """
-    lockout = list(view.lockout_ms if readings.coil_boot is None else LOCKOUT_UNKNOWN)
-    status = readings.coil
+    lockout = list(view.lockout_ms if not measurements.coil_booted else LOCKOUT_UNKNOWN)
+    status = measurements.coil
     if status is not None:
         lockout[status.coil] = status.lockout_ms
         coil, level, seq = status.coil, status.level, status.seq
@@ -67,8 +67,8 @@ def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorC
         coil, level, seq = view.fired.coil, requested_level(view, tick, config.pulses), view.seq
     if config.dipoles is None:
         driven_am2 = scale(pulses.dipole_am2(level, config.pulses.levels_am2), config.pulses.coil_axes[coil])
-    elif readings.dipole is not None:
-        driven_am2 = dipoles.dipole_am2(readings.dipole, config.dipoles)
+    elif measurements.dipole is not None:
+        driven_am2 = dipoles.dipole_am2(measurements.dipole, config.dipoles)
     else:
         driven_am2 = view.asked.over(tick)
     idle = status is not None and status.level == 0 and status.current_ma == 0
@@ -78,13 +78,13 @@ def update_view(view: CoilView, readings: Readings, tick: int, config: ActuatorC
         driven_level=level,
         driven_am2=driven_am2,
         seq=seq,
-        refusals=view.refusals + (readings.refused is not None),
+        refusals=view.refusals + (measurements.refused is not None),
         fired_tick=view.fired_tick,
         fired=view.fired,
         paid_body_nms=view.paid_body_nms,
         idle_ticks=min(view.idle_ticks + 1, MOST_IDLE_TICKS) if idle else 0,
         past_am2=view.past_am2,
-        asked=view.asked._replace(reported=readings.dipole is not None) if config.dipoles else view.asked,
+        asked=view.asked._replace(reported=measurements.dipole is not None) if config.dipoles else view.asked,
     )
 
 
@@ -97,7 +97,7 @@ def requested_level(view: CoilView, tick: int, config: PulseConfig) -> int:
 def wait_ticks(
     state: PulseState,
     view: CoilView,
-    readings: Readings,
+    measurements: Measurements,
     tick: int,
     config: PulseConfig,
     faults: tuple[int, int, int],
@@ -109,7 +109,7 @@ def wait_ticks(
     own = pulses.wait_ticks(state, tick, faults)
     if 0 not in own:
         return own
-    soonest = 0 if readings.coil is not None else 1
+    soonest = 0 if measurements.coil is not None else 1
     a, b, c = (
         wait if wait == NEVER else max(wait, soonest, _lockout_ticks(lockout_ms, config))
         for wait, lockout_ms in zip(own, view.lockout_ms, strict=True)
@@ -134,7 +134,7 @@ def actuate(
     view: CoilView,
     demand: Demand | None,
     b_body_t: Vec3,
-    readings: Readings,
+    measurements: Measurements,
     tick: int,
     config: ActuatorConfig,
     faults: tuple[int, int, int] = (0, 0, 0),
@@ -146,7 +146,7 @@ def actuate(
         view: after ``update_view``.
         demand: of the law; None: nothing is owed and nothing is sent.
         b_body_t: field, body axes, T.
-        readings: of this tick; without a status of the coil driver nothing is sent.
+        measurements: of this tick; without a status of the coil driver nothing is sent.
         tick: tick that is answered.
         config: the coils.
         faults: by coil; one with a fault is not fired.
@@ -158,21 +158,21 @@ def actuate(
         return state._replace(owed_impulse_body_nms=ZERO, held_am2=ZERO), view, None
     if config.dipoles is not None:
         state, request = dipoles.request(state, demand, b_body_t, tick, config.dipoles, config.pulses)
-        if readings.dipole is None:
+        if measurements.dipole is None:
             return state, view, None
         return state, view._replace(asked=dipoles.asked(request, tick, config.dipoles)), request
-    if _refused(view, readings, tick):
+    if _refused(view, measurements, tick):
         state = state._replace(owed_impulse_body_nms=add(state.owed_impulse_body_nms, view.paid_body_nms))
         view = view._replace(fired=NO_PULSE, paid_body_nms=ZERO)
-    return _pulse(state, view, demand, b_body_t, readings.coil is not None, tick, config.pulses, faults)
+    return _pulse(state, view, demand, b_body_t, measurements.coil is not None, tick, config.pulses, faults)
 
 
-def _refused(view: CoilView, readings: Readings, tick: int) -> bool:
+def _refused(view: CoilView, measurements: Measurements, tick: int) -> bool:
     """Whether the request of the tick before, or of the one before that, was refused.
 
     Not if the board reports that it is driven: then another frame of that tick was refused.
     """
-    refused, status = readings.refused, readings.coil
+    refused, status = measurements.refused, measurements.coil
     if refused is None or tick > view.fired_tick + 2 or refused.tick != view.fired_tick & 0xFF:
         return False
     if status is not None and status.level and (status.coil, status.level) == view.fired:

@@ -13,7 +13,7 @@ from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, dot, scale, transfo
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.predictive.genetic import search
 from fsw.core.laws.predictive.predictive import best_impulse
-from fsw.wire.messages import CoilDipole, CoilDipoleStatus
+from fsw.wire.messages import CoilDipole
 
 MOST = 1.0 - 2.0**-16
 """Largest fraction of full scale on the wire."""
@@ -53,12 +53,13 @@ NOTHING_ASKED = RequestedDipole(-1, ZERO)
 
 def asked(request: CoilDipole, tick: int, config: DipoleConfig) -> RequestedDipole:
     """What is remembered of a request."""
-    return RequestedDipole(tick, dipole_am2(CoilDipole.decode(request.encode().data), config))
+    on_the_wire = CoilDipole.decode(request.encode().data)
+    return RequestedDipole(tick, dipole_am2((on_the_wire.m_x, on_the_wire.m_y, on_the_wire.m_z), config))
 
 
-def dipole_am2(fractions: CoilDipoleStatus | CoilDipole, config: DipoleConfig) -> Vec3:
+def dipole_am2(fractions: Vec3, config: DipoleConfig) -> Vec3:
     """The mean dipole over a tick by these fractions of full scale, body axes, A m^2."""
-    driven_am2 = scale(config.full_scale_am2, (fractions.m_x, fractions.m_y, fractions.m_z))
+    driven_am2 = scale(config.full_scale_am2, fractions)
     return driven_am2 if config.body_from_coils is None else transform(config.body_from_coils, driven_am2)
 
 

@@ -9,10 +9,9 @@ from dataclasses import dataclass
 
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.actuation.pulses import dipole_am2
-from fsw.core.algebra.vector import ZERO, Mat3, Vec3, scale, transform
-from fsw.core.gate.readings import Readings
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, scale, sub, transform
+from fsw.core.gate.measurements import FieldReading, Measurements
 from fsw.core.laws.plan.pulse_model import AXES
-from fsw.wire.messages import MagField
 
 SOUND = (0.7, 1.3)
 """Fractions of its nominal current between which a driven coil has about its nominal field."""
@@ -33,47 +32,48 @@ class OwnField:
     current_ma: Vec3
 
 
-def taken_off(
-    view: CoilView, readings: Readings, blank_ticks: int, config: OwnField | None
-) -> tuple[CoilView, Readings]:
-    """The view with what was driven in this tick, and the readings with a field sample that is free of it.
+def subtract_own_field(
+    view: CoilView, measurements: Measurements, blank_ticks: int, config: OwnField | None
+) -> CoilView:
+    """Free the field sample of what the coils add, or mark it; the view with what was driven in this tick.
 
     Args:
         view: after ``update_view``.
-        readings: of this tick, in body axes.
+        measurements: of this tick.
         blank_ticks: for this long after a pulse a sample may date from it, where that field is not known.
         config: None: the coils' field is not known.
     """
     if config is None:
-        return view, readings if view.idle_ticks > blank_ticks else readings._replace(quiet=False)
-    view = _remembered(view, readings, config)
+        measurements.quiet = view.idle_ticks > blank_ticks
+        return view
+    view = _remembered(view, measurements, config)
     shown = view.past_am2[config.newest : config.oldest + 1]
     if len(shown) <= config.oldest - config.newest or any(m_am2 != shown[0] for m_am2 in shown):
-        return view, readings._replace(quiet=False)
-    return view, _corrected(readings, shown[0], config)
+        measurements.quiet = False
+    else:
+        _subtract(measurements, shown[0], config)
+    return view
 
 
-def _remembered(view: CoilView, readings: Readings, config: OwnField) -> CoilView:
+def _remembered(view: CoilView, measurements: Measurements, config: OwnField) -> CoilView:
     """The view with what was driven in the tick that just ended; all is forgotten if that is uncertain."""
-    if not _certain(readings, config):
+    if not _certain(measurements, config):
         return view._replace(past_am2=())
     m_am2 = scale(dipole_am2(view.driven_level, config.levels_am2), AXES[view.driven_coil])
     return view._replace(past_am2=(m_am2, *view.past_am2)[: config.oldest + 1])
 
 
-def _certain(readings: Readings, config: OwnField) -> bool:
+def _certain(measurements: Measurements, config: OwnField) -> bool:
     """Whether the driver has reported, and the current is that of the level."""
-    status = readings.coil
+    status = measurements.coil
     if status is None or status.level == 0:
         return status is not None and status.current_ma == 0
     low, high = (part * config.current_ma[abs(status.level) - 1] for part in SOUND)
     return low <= (status.current_ma if status.level > 0 else -status.current_ma) <= high
 
 
-def _corrected(readings: Readings, m_am2: Vec3, config: OwnField) -> Readings:
-    field = readings.field
-    if field is None or m_am2 == ZERO:
-        return readings._replace(settled=True)
-    x, y, z = transform(config.field_nt_per_am2, m_am2)
-    field = MagField(field.valid, field.b_x - x, field.b_y - y, field.b_z - z, field.counter)
-    return readings._replace(field=field, settled=True)
+def _subtract(measurements: Measurements, m_am2: Vec3, config: OwnField) -> None:
+    field, measurements.settled = measurements.field, True
+    if field is not None and m_am2 != ZERO:
+        own_nt = transform(config.field_nt_per_am2, m_am2)
+        measurements.field = FieldReading(field.valid, sub(field.b_body_nt, own_nt))

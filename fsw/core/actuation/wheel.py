@@ -15,7 +15,7 @@ from typing import NamedTuple
 from fsw.core.algebra.vector import scale
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.mekf_config import with_wheel
-from fsw.core.gate.readings import Readings
+from fsw.core.gate.measurements import Measurements
 from fsw.core.laws.interface import Demand, Wheel
 from fsw.wire.messages import WheelTorque
 
@@ -48,19 +48,21 @@ class WheelView(NamedTuple):
     """Whether there has been a report since boot."""
 
 
-def seen(view: WheelView | None, readings: Readings, tick: int, wheel: Wheel | None) -> WheelView | None:
+def seen(
+    view: WheelView | None, measurements: Measurements, tick: int, wheel: Wheel | None
+) -> WheelView | None:
     """The view after the reports of this tick; None without a wheel."""
     if view is None or wheel is None:
         return None
     if view.tick >= 0 and tick - view.tick > wheel.stale_ticks:
         view = view._replace(tick=-1)
-    status = readings.wheel
+    status = measurements.wheel
     if status is None:
         return view._replace(change_nms=0.0)
-    if not status.valid or not _possible(status.speed, view, tick, wheel):
+    if not status.valid or not _possible(status.speed_radps, view, tick, wheel):
         return view._replace(change_nms=0.0, refused=min(view.refused + 1, MOST_REFUSED))
-    change_nms = wheel.inertia_kgm2 * (status.speed - view.speed_radps) if view.known else 0.0
-    return view._replace(speed_radps=status.speed, tick=tick, change_nms=change_nms, known=True)
+    change_nms = wheel.inertia_kgm2 * (status.speed_radps - view.speed_radps) if view.known else 0.0
+    return view._replace(speed_radps=status.speed_radps, tick=tick, change_nms=change_nms, known=True)
 
 
 def _possible(speed_radps: float, view: WheelView, tick: int, wheel: Wheel) -> bool:

@@ -18,7 +18,7 @@ from fsw.core.estimation.parameters import Parameters
 from fsw.core.estimation.samples import saturated_field, sensed_sun, usable_cells, usable_field, usable_sun
 from fsw.core.estimation.start.batch import EMPTY, SampleBatch, waited
 from fsw.core.estimation.start.first import StartLimits, first_estimate, from_batch, with_given
-from fsw.core.gate.readings import Readings
+from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.earth import MU_M3PS2
 from fsw.core.orbit.ephemeris import Reference, earlier
 
@@ -124,19 +124,19 @@ def _predicted(
 
 
 def update(
-    state: EstimatorState, readings: Readings, reference: Reference, config: EstimatorConfig
+    state: EstimatorState, measurements: Measurements, reference: Reference, config: EstimatorConfig
 ) -> tuple[EstimatorState, Used]:
     """Take the samples of this tick, or start from them; also which of them were taken.
 
     Args:
         state: predicted to this tick.
-        readings: what the boards sent.
+        measurements: what the boards sent.
         reference: field, Sun and orbit at this tick.
         config: tuning.
     """
-    field, sun, cells = usable_field(readings), usable_sun(readings), config.mekf.cells
-    currents = usable_cells(readings, cells)
-    blanked = field is None and readings.field is not None
+    field, sun, cells = usable_field(measurements), usable_sun(measurements), config.mekf.cells
+    currents = usable_cells(measurements, cells)
+    blanked = field is None and measurements.field is not None and measurements.field_trusted
     if state.estimate is None:
         batch = state.batch
         if cells is None:
@@ -151,7 +151,7 @@ def update(
         return state._replace(estimate=started, turning=turning, batch=EMPTY), Used(True, True, blanked)
 
     tuning = with_frozen_parameters(config.mekf) if state.frozen else config.mekf
-    limited = saturated_field(readings)
+    limited = saturated_field(measurements)
     if limited is not None:
         field, blanked, tuning = limited[0], False, with_open_direction(tuning, limited[1])
     before = state.estimate
@@ -171,7 +171,7 @@ def update(
         estimate=estimate, rejected_in_a_row=in_a_row, rejected_total=state.rejected_total + rejected
     )
     if not state.frozen:
-        both = took_field and took_sun and (cells is None or sensed_sun(readings, cells) is not None)
+        both = took_field and took_sun and (cells is None or sensed_sun(measurements, cells) is not None)
         updated = _settled(updated, estimate, both, config.mekf)
     lost = in_a_row >= config.restart_after_rejections or not mekf.healthy(estimate)
     return (restart(updated) if lost else updated), Used(took_field, took_sun, blanked, by_cell)

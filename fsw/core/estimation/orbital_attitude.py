@@ -4,7 +4,7 @@ from fsw.core.algebra.quaternion import canonical, conjugate, multiply, normalis
 from fsw.core.algebra.vector import scale, sub
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.mekf import Estimate
-from fsw.core.gate.readings import Readings
+from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.ephemeris import Reference
 
 
@@ -20,11 +20,12 @@ def orbital_attitude(estimate: Estimate | None, reference: Reference, valid_sigm
     return Attitude(q, omega, 3.0 * sigma_attitude, 3.0 * sigma_rate, sigma_attitude <= valid_sigma_rad)
 
 
-def perfect_attitude(readings: Readings, before: Attitude) -> Attitude:
+def perfect_attitude(measurements: Measurements, before: Attitude) -> Attitude:
     """The attitude the reference messages give; the one before, no longer valid, where they are missing."""
-    q, w = readings.ref_attitude, readings.ref_rate
-    if q is None or w is None or not q.valid or not w.valid:
+    attitude, rate = measurements.ref_attitude, measurements.ref_rate
+    if attitude is None or rate is None or not attitude.valid or not rate.valid:
         return before._replace(valid=False)
-    scalar = max(0.0, 1.0 - q.q_x**2 - q.q_y**2 - q.q_z**2) ** 0.5
-    near_unit = (scalar, q.q_x, q.q_y, q.q_z)  # near 180 deg rounding makes the vector longer than 1
-    return Attitude(normalise(near_unit), (w.w_x, w.w_y, w.w_z), 0.0, 0.0, True)
+    q1, q2, q3 = attitude.vector
+    scalar = max(0.0, 1.0 - q1**2 - q2**2 - q3**2) ** 0.5
+    near_unit = (scalar, q1, q2, q3)  # near 180 deg rounding makes the vector longer than 1
+    return Attitude(normalise(near_unit), rate.vector, 0.0, 0.0, True)

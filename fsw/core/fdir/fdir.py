@@ -22,7 +22,7 @@ from fsw.core.fdir.sensors.credibility import credible_but_coils
 from fsw.core.fdir.sensors.health import SensorConfig, SensorHealth
 from fsw.core.fdir.sensors.pair import Pair, Standing
 from fsw.core.fdir.sensors.plausibility import Findings, PlausibilityConfig
-from fsw.core.gate.readings import Readings
+from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.ephemeris import Reference
 
 
@@ -59,11 +59,11 @@ class Evidence(NamedTuple):
 
 
 def judge_current(
-    health: Health, view: CoilView, readings: Readings, tick: int, config: FdirConfig
+    health: Health, view: CoilView, measurements: Measurements, tick: int, config: FdirConfig
 ) -> Health:
     """The health after comparing what the coil driver reports with what was requested of it."""
     unasked = unexpected(view, tick, config.coils.pulses)
-    found = currents.judge_current(health.coils, view, readings, unasked, tick, config.coils)
+    found = currents.judge_current(health.coils, view, measurements, unasked, tick, config.coils)
     return health if found is health.coils else Health(health.sensors, found)
 
 
@@ -73,7 +73,7 @@ def driven_am2(health: Health, view: CoilView, config: FdirConfig) -> Vec3:
 
 
 def examine(
-    readings: Readings,
+    measurements: Measurements,
     health: Health,
     reference: Reference,
     config: FdirConfig,
@@ -81,21 +81,20 @@ def examine(
 ) -> Findings:
     """What the samples of this tick show by themselves; by an estimate, if it is valid, while they repeat."""
     memory, isolated = health.sensors.memory, faulty(health.sensors.cells)
-    return plausibility.examine(memory, readings, reference, config.plausibility, estimate, isolated)
+    return plausibility.examine(memory, measurements, reference, config.plausibility, estimate, isolated)
 
 
-def trusted(readings: Readings, health: Health, findings: Findings) -> Readings:
-    """The readings from which the filter may be updated.
+def judge_samples(measurements: Measurements, health: Health, findings: Findings) -> None:
+    """Withhold samples from the filter: of an isolated sensor, and those that something speaks against.
 
-    Without the samples of an isolated sensor, and those that something speaks against; without the Sun too
-    while the pair is disputed, so that no estimate begins.
+    The Sun too while the pair is disputed, so that no estimate begins.
     """
-    field, sun, *_ = found = health.sensors
-    if field.fault or findings.field_cause:
-        readings = readings._replace(field=None)
-    if sun.fault or findings.sun_cause or found.pair.standing is Standing.DISPUTED:
-        readings = readings._replace(sun=None, cells=None)
-    return readings._replace(unusable_cells=unusable(found.cells)) if found.cells else readings
+    found = health.sensors
+    measurements.field_trusted = not (found.field.fault or findings.field_cause)
+    disputed = found.pair.standing is Standing.DISPUTED
+    measurements.sun_trusted = not (found.sun.fault or findings.sun_cause or disputed)
+    if found.cells:
+        measurements.unusable_cells = unusable(found.cells)
 
 
 def judge(

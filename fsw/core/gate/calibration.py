@@ -8,22 +8,24 @@ in the sense of the output: the status does not tell in which coil it flows.
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 from fsw.core.algebra.vector import Mat3, Vec3, sub, transform, transpose
-from fsw.core.gate.readings import Readings
-from fsw.wire.messages import (
-    CoilDipole,
-    CoilDipoleStatus,
-    CoilFire,
-    CoilRefused,
-    CoilStatus,
-    MagField,
-    SunVector,
+from fsw.core.gate.measurements import (
+    CellReading,
+    CoilReport,
+    FieldReading,
+    Measurements,
+    ReferenceReading,
+    Refusal,
+    SunReading,
+    WheelReading,
 )
+from fsw.core.gate.readings import Readings
+from fsw.wire.messages import CoilDipole, CoilFire, MagField
 
 
-class MagnetometerCalibration(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class MagnetometerCalibration:
     """b_body = ``matrix`` (z - ``offset_nt``), nT; z saturates beyond ``range_nt``."""
 
     offset_nt: Vec3
@@ -31,7 +33,8 @@ class MagnetometerCalibration(NamedTuple):
     range_nt: float
 
 
-class Outputs(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Outputs:
     """By output of the coil driver, the body axis of its coil, and the sense: +1 or -1."""
 
     axis: tuple[int, int, int]
@@ -54,59 +57,79 @@ class Calibration:
 NO_CALIBRATION = Calibration()
 
 
-def calibrated(readings: Readings, calibration: Calibration) -> Readings:
-    """The readings in body axes, those of the coil driver by coil axis."""
-    if calibration is NO_CALIBRATION:
-        return readings
-    field, sun, outputs = readings.field, readings.sun, calibration.outputs
-    if field is not None and calibration.magnetometer is not None:
-        readings = readings._replace(
-            field=_body_field(field, calibration.magnetometer),
-            saturated=() if field.valid else _saturated(field, calibration.magnetometer),
-        )
-    if sun is not None and calibration.sun is not None:
-        readings = readings._replace(sun=_body_sun(sun, calibration.sun))
-    return readings if outputs is None else _by_axis(readings, outputs)
+def measure(readings: Readings, calibration: Calibration) -> Measurements:
+    """What was sent, in body axes, that of the coil driver by coil axis."""
+    measurements = Measurements()
+    _measure_field(measurements, readings.field, calibration.magnetometer)
+    _measure_sun(measurements, readings, calibration.sun)
+    _measure_coils(measurements, readings, calibration.outputs)
+    if readings.wheel is not None:
+        measurements.wheel = WheelReading(readings.wheel.valid != 0, readings.wheel.speed)
+    attitude, rate = readings.ref_attitude, readings.ref_rate
+    if attitude is not None:
+        q_vector = (attitude.q_x, attitude.q_y, attitude.q_z)
+        measurements.ref_attitude = ReferenceReading(attitude.valid != 0, q_vector)
+    if rate is not None:
+        measurements.ref_rate = ReferenceReading(rate.valid != 0, (rate.w_x, rate.w_y, rate.w_z))
+    if readings.end is not None:
+        measurements.end_ticks = readings.end.ticks
+    measurements.telecommands, measurements.repeated = readings.telecommands, readings.repeated
+    measurements.under_own_id = readings.under_own_id
+    return measurements
 
 
-def _body_field(sample: MagField, calibration: MagnetometerCalibration) -> MagField:
-    x, y, z = transform(calibration.matrix, sub((sample.b_x, sample.b_y, sample.b_z), calibration.offset_nt))
-    return MagField(sample.valid, x, y, z, sample.counter)
+def _measure_field(
+    measurements: Measurements, sample: MagField | None, calibration: MagnetometerCalibration | None
+) -> None:
+    if sample is None:
+        return
+    valid, b_nt = sample.valid != 0, (sample.b_x, sample.b_y, sample.b_z)
+    if calibration is not None:
+        if not valid:
+            measurements.saturated = _saturated(b_nt, calibration)
+        b_nt = transform(calibration.matrix, sub(b_nt, calibration.offset_nt))
+    measurements.field = FieldReading(valid, b_nt)
 
 
-def _saturated(sample: MagField, calibration: MagnetometerCalibration) -> tuple[Vec3, ...]:
+def _saturated(b_nt: Vec3, calibration: MagnetometerCalibration) -> tuple[Vec3, ...]:
     """Of each axis at the end of its range, what a unit of its reading is in body axes."""
-    columns = zip((sample.b_x, sample.b_y, sample.b_z), transpose(calibration.matrix), strict=True)
-    return tuple([column for reading, column in columns if abs(reading) >= calibration.range_nt])
+    columns = transpose(calibration.matrix)
+    return tuple([columns[axis] for axis in range(3) if abs(b_nt[axis]) >= calibration.range_nt])
 
 
-def _body_sun(sample: SunVector, body_from_sensor: Mat3) -> SunVector:
-    x, y, z = transform(body_from_sensor, (sample.s_x, sample.s_y, sample.s_z))
-    return SunVector(sample.valid, x, y, z, sample.counter)
+def _measure_sun(measurements: Measurements, readings: Readings, body_from_sensor: Mat3 | None) -> None:
+    sun, cells = readings.sun, readings.cells
+    if sun is not None:
+        s = (sun.s_x, sun.s_y, sun.s_z)
+        s_body = s if body_from_sensor is None else transform(body_from_sensor, s)
+        measurements.sun = SunReading(sun.valid != 0, s_body)
+    if cells is not None:
+        currents = (cells.cell_1, cells.cell_2, cells.cell_3, cells.cell_4, cells.cell_5, cells.cell_6)
+        measurements.cells = CellReading(cells.valid != 0, currents)
 
 
-def _by_axis(readings: Readings, outputs: Outputs) -> Readings:
+def _measure_coils(measurements: Measurements, readings: Readings, outputs: Outputs | None) -> None:
     coil, refused, dipole = readings.coil, readings.refused, readings.dipole
     if coil is not None:
-        sign = outputs.sign[coil.coil]
+        axis, sign = (coil.coil, 1) if outputs is None else (outputs.axis[coil.coil], outputs.sign[coil.coil])
         current_ma = sign * coil.current_ma if coil.level else coil.current_ma
-        coil = CoilStatus(
-            level=sign * coil.level,
-            coil=outputs.axis[coil.coil],
-            remaining_ms=coil.remaining_ms,
-            current_ma=current_ma,
-            lockout_ms=coil.lockout_ms,
-            seq=coil.seq,
-            counter=coil.counter,
+        measurements.coil = CoilReport(
+            sign * coil.level, axis, coil.remaining_ms, current_ma, coil.lockout_ms, coil.seq
         )
-    if refused is not None and refused.coil < len(outputs.axis):
-        coil_axis = outputs.axis[refused.coil]
-        refused = CoilRefused(coil_axis, refused.seq, refused.reason, refused.tick, refused.counter)
+    if refused is not None:
+        axis = refused.coil
+        if outputs is not None and axis < len(outputs.axis):
+            axis = outputs.axis[axis]
+        measurements.refused = Refusal(axis, refused.seq, refused.reason, refused.tick)
     if dipole is not None:
         driven = (dipole.m_x, dipole.m_y, dipole.m_z)
-        x, y, z = (outputs.sign[o] * driven[o] for o in map(outputs.of_axis, range(3)))
-        dipole = CoilDipoleStatus(x, y, z, dipole.counter)
-    return readings._replace(coil=coil, refused=refused, dipole=dipole)
+        measurements.dipole = driven if outputs is None else _dipole_by_axis(driven, outputs)
+    measurements.coil_booted = readings.coil_boot is not None
+
+
+def _dipole_by_axis(driven: Vec3, outputs: Outputs) -> Vec3:
+    a, b, c = outputs.of_axis(0), outputs.of_axis(1), outputs.of_axis(2)
+    return (outputs.sign[a] * driven[a], outputs.sign[b] * driven[b], outputs.sign[c] * driven[c])
 
 
 def for_outputs(request: CoilFire | CoilDipole, calibration: Calibration) -> CoilFire | CoilDipole:
@@ -119,5 +142,5 @@ def for_outputs(request: CoilFire | CoilDipole, calibration: Calibration) -> Coi
         level = outputs.sign[output] * request.level
         return CoilFire(level, output, request.seq, request.tick, request.duration_ms, request.counter)
     wanted = (request.m_x, request.m_y, request.m_z)
-    x, y, z = (sign * wanted[axis] for axis, sign in zip(*outputs, strict=True))
-    return CoilDipole(x, y, z, request.counter)
+    (a, b, c), (of_a, of_b, of_c) = outputs.axis, outputs.sign
+    return CoilDipole(of_a * wanted[a], of_b * wanted[b], of_c * wanted[c], request.counter)

@@ -1,13 +1,13 @@
-"""The decode gate: from raw frames to the readings of one tick.
+"""The decode gate: from raw frames to the messages of one tick.
 
 A frame is taken whole or not at all: known identifier, right length and CRC, a counter that moved, values
 in range. Everything else is counted and dropped, and so is a telecommand in the midst of noise.
 """
 
-from typing import NamedTuple
+from dataclasses import dataclass, field
+from typing import final
 from zlib import crc32
 
-from fsw.core.algebra.vector import Vec3
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     SENDERS,
@@ -96,29 +96,25 @@ _IN_ANY_PLACE = frozenset({*TELECOMMANDS, PlantEnd.ID})
 """Identifiers of messages that other nodes may send between those of the boards."""
 _OWN = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW")
 """Identifiers of fsw: no other node is to use them."""
-_OPTIONAL_SLOTS = (_SLOT[SunCells.ID], _SLOT[WheelStatus.ID])
-"""Of messages that few satellites have."""
 _COIL_SLOTS = [slot for can_id, slot in _SLOT.items() if SENDERS[can_id] == "COIL"]
 
 
-class Readings(NamedTuple):
-    """The last accepted message of each kind in this tick; None where there was none.
+@final
+@dataclass(slots=True)
+class Readings:
+    """The last accepted message of each kind in this tick, as it was sent; None where there was none.
 
     Telecommands are all taken, in order of reception; ``repeated`` are those with the counter of the one
     before. ``under_own_id`` is the lowest identifier of fsw itself under which an intact frame came, 0 if
-    none did. ``end`` is a PLANT_END after which the flight has gone on. ``quiet``: no coil has been driven
-    for as long as a field sample may be old. ``unusable_cells``: those of ``cells`` not to be trusted.
-    ``settled``: what the coils add to the field sample is known, and has been subtracted. ``saturated``: for
-    each axis of the magnetometer that is at the end of its range, the direction of ``field``, body axes, that
-    follows from its reading.
+    none did. ``end`` is a PLANT_END after which the flight has gone on.
     """
 
-    field: MagField | None
-    sun: SunVector | None
-    coil: CoilStatus | None
-    refused: CoilRefused | None
-    ref_attitude: RefAttitude | None
-    ref_rate: RefRate | None
+    field: MagField | None = None
+    sun: SunVector | None = None
+    coil: CoilStatus | None = None
+    refused: CoilRefused | None = None
+    ref_attitude: RefAttitude | None = None
+    ref_rate: RefRate | None = None
     dipole: CoilDipoleStatus | None = None
     coil_boot: CoilBoot | None = None
     end: PlantEnd | None = None
@@ -127,24 +123,48 @@ class Readings(NamedTuple):
     telecommands: tuple[Telecommand, ...] = ()
     repeated: tuple[Telecommand, ...] = ()
     under_own_id: int = 0
-    quiet: bool = True
-    unusable_cells: tuple[int, ...] = ()
-    settled: bool = False
-    saturated: tuple[Vec3, ...] = ()
+
+    def take(self, message: InputMessage | Telecommand) -> None:
+        """Keep an accepted message, in the place of an earlier one of its kind if it is not a telecommand."""
+        if isinstance(message, MagField):
+            self.field = message
+        elif isinstance(message, SunVector):
+            self.sun = message
+        elif isinstance(message, CoilStatus):
+            self.coil = message
+        elif isinstance(message, CoilRefused):
+            self.refused = message
+        elif isinstance(message, RefAttitude):
+            self.ref_attitude = message
+        elif isinstance(message, RefRate):
+            self.ref_rate = message
+        elif isinstance(message, CoilDipoleStatus):
+            self.dipole = message
+        elif isinstance(message, CoilBoot):
+            self.coil_boot = message
+        elif isinstance(message, PlantEnd):
+            self.end = message
+        elif isinstance(message, SunCells):
+            self.cells = message
+        elif isinstance(message, WheelStatus):
+            self.wheel = message
+        else:
+            self.telecommands = (*self.telecommands, message)
 
 
-NOTHING = Readings(None, None, None, None, None, None)
-
-
-class GateState(NamedTuple):
+@final
+@dataclass(slots=True)
+class GateState:
     """Last counter of each message listened to (-1: none yet), and counts and CRCs since boot.
 
-    ``input_crc`` is the CRC-32 of the data of all accepted messages: no accepted frame can be altered in a
-    log without a change of the state CRC, not even an unused sample. ``command_crc`` is the same for
-    telecommands and PLANT_END, which may come between the boards' messages in any order.
+    ``rejected``: broken, unknown, repeated, out of range, or a telecommand in noise; ``missed``: jumps of a
+    counter; ``overrun``: frames beyond the limit, unread. ``input_crc`` is the CRC-32 of the data of all
+    accepted messages: no accepted frame can be altered in a log without a change of the state CRC, not even
+    an unused sample. ``command_crc`` is the same for telecommands and PLANT_END, which may come between the
+    boards' messages in any order.
     """
 
-    counters: tuple[int, ...] = (-1,) * len(_ACCEPTED)
+    counters: list[int] = field(default_factory=lambda: [-1] * len(_ACCEPTED))
     rejected: int = 0
     missed: int = 0
     overrun: int = 0
@@ -152,65 +172,52 @@ class GateState(NamedTuple):
     command_crc: int = 0
 
 
-def admit(frames: tuple[Frame, ...], state: GateState, skipped: bool = False) -> tuple[Readings, GateState]:
+def admit(frames: tuple[Frame, ...], state: GateState, skipped: bool = False) -> Readings:
     """Judge the frames of one tick.
 
     Args:
         frames: in the order of reception.
-        state: of the tick before.
+        state: of the tick before; it becomes that of this one.
         skipped: the frames are those of several ticks.
-
-    Returns:
-        The readings, and the gate's state with ``rejected`` (broken, unknown, repeated, out of range, or a
-        telecommand in noise), ``missed`` (jumps of a counter), ``overrun`` (frames beyond the limit, unread),
-        ``input_crc`` and ``command_crc`` updated.
     """
-    slots: list[object] = [None] * len(INPUT_MESSAGES)
-    telecommands: list[Telecommand] = []
-    repeated: list[Telecommand] = []
-    counters = list(state.counters)
-    rejected, missed = state.rejected, state.missed
-    digests = [state.input_crc, state.command_crc]
-    under_own_id = 0
+    readings, counters = Readings(), state.counters
     read = _latest(frames) if skipped else frames[:INBOX_LIMIT]
-    heard = [(frame, intact(frame)) for frame in read]
-    noisy = sum(not whole for _, whole in heard) > NOISE_LIMIT
-    for frame, whole in heard:
-        message_class = _ACCEPTED.get(frame.can_id)
+    state.overrun += len(frames) - len(read)
+    whole = [intact(frame) for frame in read]
+    noisy = whole.count(False) > NOISE_LIMIT
+    for place, frame in enumerate(read):
+        can_id = frame.can_id
+        message_class = _ACCEPTED.get(can_id)
         if message_class is None:
-            if not whole:
-                rejected += 1
-            elif frame.can_id in _OWN:
-                under_own_id = min(under_own_id or frame.can_id, frame.can_id)
+            if not whole[place]:
+                state.rejected += 1
+            elif can_id in _OWN:
+                readings.under_own_id = min(readings.under_own_id or can_id, can_id)
             continue
-        if not whole or (noisy and frame.can_id in TELECOMMANDS):
-            rejected += 1
+        if not whole[place] or (noisy and can_id in TELECOMMANDS):
+            state.rejected += 1
             continue
         message = message_class.decode(frame.data)
-        slot = _SLOT[frame.can_id]
+        slot = _SLOT[can_id]
         step = (message.counter - counters[slot]) & 0xF
-        if message_class is CoilBoot:  # a board that boots counts anew
+        if can_id == CoilBoot.ID:  # a board that boots counts anew
             for coil_slot in _COIL_SLOTS:
                 counters[coil_slot] = -1
         has_counter = counters[slot] >= 0
         if (has_counter and step == 0) or not _in_range(message):
-            rejected += 1
+            state.rejected += 1
             if isinstance(message, Telecommand):
-                repeated.append(message)
+                readings.repeated = (*readings.repeated, message)
             continue
         if has_counter:
-            missed += step - 1
+            state.missed += step - 1
         counters[slot] = message.counter
-        if isinstance(message, Telecommand):
-            telecommands.append(message)
+        readings.take(message)
+        if can_id in _IN_ANY_PLACE:
+            state.command_crc = crc32(frame.data, state.command_crc)
         else:
-            slots[slot] = message
-        digest = frame.can_id in _IN_ANY_PLACE
-        digests[digest] = crc32(frame.data, digests[digest])
-    overrun = state.overrun + len(frames) - len(read)
-    rest = (tuple(telecommands), tuple(repeated), under_own_id)
-    readings = Readings(*slots, *rest)  # type: ignore[arg-type, call-arg]  # each slot is of its field's kind
-    return readings, GateState(tuple(counters), rejected, missed, overrun, *digests)
+            state.input_crc = crc32(frame.data, state.input_crc)
+    return readings
 
 
 def _latest(frames: tuple[Frame, ...]) -> tuple[Frame, ...]:

@@ -7,8 +7,8 @@ still on its way, or noise with the right CRC: several in quick succession revea
 
 from typing import NamedTuple
 
-from fsw.core.gate.readings import Readings
-from fsw.wire.messages import CoilDipole, CoilFire, CoilRefused, CoilRefusedReason
+from fsw.core.gate.measurements import Measurements, Refusal
+from fsw.wire.messages import CoilDipole, CoilFire, CoilRefusedReason
 
 SIGNS = 3
 """Ticks with a sign that make a second sender detected."""
@@ -45,7 +45,7 @@ NO_SIGNS = SecondSenderWatch()
 
 def watch(
     before: SecondSenderWatch,
-    readings: Readings,
+    measurements: Measurements,
     seq: int,
     pulsed: bool,
     tick: int,
@@ -55,14 +55,14 @@ def watch(
 
     Args:
         before: the watch before it.
-        readings: of this tick.
+        measurements: of this tick.
         seq: number of the request that the coil driver accepted last; fsw's own has this or the next.
         pulsed: whether the coil driver is pulsed: its refusals then carry request numbers.
         tick: this one.
         config: the limits.
     """
-    can_id = readings.under_own_id
-    if not can_id and readings.refused is not None and pulsed and _of_another(readings.refused, seq):
+    can_id = measurements.under_own_id
+    if not can_id and measurements.refused is not None and pulsed and _of_another(measurements.refused, seq):
         can_id = CoilFire.ID
     if not can_id:
         return NO_SIGNS if before.signs and tick - before.tick > config.request_ticks else before
@@ -71,6 +71,6 @@ def watch(
     return SecondSenderWatch(min(signs + 1, SIGNS), tick, can_id)
 
 
-def _of_another(refused: CoilRefused, seq: int) -> bool:
+def _of_another(refused: Refusal, seq: int) -> bool:
     """Whether the refused request is not fsw's; a malformed one may carry any number."""
     return refused.reason != CoilRefusedReason.MALFORMED and (refused.seq - seq) & 0xFF > 1

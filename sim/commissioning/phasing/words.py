@@ -34,7 +34,7 @@ def of_table(table: FlightTable) -> Pair:
     sensor = max(WIRINGS, key=lambda one: float(np.sum(channels_from_body(one).T * body_from_channels)))
     coils = table.calibration.coils
     outputs: Outputs = outputs_of(AXES if coils is None or coils.matrix is None else coils.matrix)
-    one, two, three = (sign * (axis + 1) for axis, sign in zip(*outputs, strict=True))
+    one, two, three = (sign * (axis + 1) for axis, sign in zip(outputs.axis, outputs.sign, strict=True))
     return sensor, (one, two, three)
 
 

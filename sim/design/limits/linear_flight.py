@@ -25,14 +25,14 @@ from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import Attitude
-from fsw.core.gate.readings import NOTHING
+from fsw.core.gate.measurements import CoilReport, Measurements
 from fsw.core.laws import by_mode
 from fsw.core.laws.interface import FieldSample, LawInput, Memory
 from fsw.core.laws.plan.pulse_model import AXES
 from fsw.core.laws.plan.riccati import free_step, resting_torque
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, reference_at
 from fsw.table.config import flight_config
-from fsw.wire.messages import CoilFire, CoilStatus, Mode
+from fsw.wire.messages import CoilFire, Mode
 from sim.scenario.schema import Scenario, flight_table
 
 Array = NDArray[np.float64]
@@ -43,7 +43,8 @@ LOST_DEG = 20.0
 NO_FAULTS = (0, 0, 0)
 READY = CoilView(lockout_ms=(0, 0, 0))
 """The board bars no coil: the scheduler's own timers are the limit."""
-REPORTED = NOTHING._replace(coil=CoilStatus(0, 0, 0, 0, 0, 0, 0))
+REPORTED = Measurements()
+REPORTED.coil = CoilReport(0, 0, 0, 0, 0, 0)
 
 
 class Fired(NamedTuple):

@@ -22,14 +22,14 @@ from fsw.core.algebra.quaternion import canonical, conjugate, multiply, rotate
 from fsw.core.algebra.vector import ZERO, Vec3, add, scale, sub
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import Attitude
-from fsw.core.gate.readings import NOTHING
+from fsw.core.gate.measurements import CoilReport, Measurements
 from fsw.core.laws import by_mode
 from fsw.core.laws.interface import ControlConfig, FieldSample, LawInput, Memory
 from fsw.core.laws.plan.pulse_model import AXES
 from fsw.core.orbit.ephemeris import Reference
 from fsw.table.config import flight_config
 from fsw.table.schedules import planned_pulses
-from fsw.wire.messages import CoilFire, CoilStatus, Mode
+from fsw.wire.messages import CoilFire, Mode
 from sim.design.tuning.flown import RigidFlight
 from sim.design.tuning.orbit_path import Path, path_of
 from sim.plant.dynamics import torques
@@ -40,7 +40,8 @@ from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 
 STEP_S = 10.0
 NO_FAULTS = (0, 0, 0)
-REPORTED = NOTHING._replace(coil=CoilStatus(0, 0, 0, 0, 0, 0, 0))
+REPORTED = Measurements()
+REPORTED.coil = CoilReport(0, 0, 0, 0, 0, 0)
 """The board bars no coil: the scheduler's own timers are the limit."""
 
 

@@ -3,9 +3,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
+from gate_samples import measured
 
 from fsw.core.commands import command
-from fsw.core.gate.readings import NOTHING
 from fsw.core.modes import ModeState
 from fsw.core.orbit.ephemeris import advance
 from fsw.core.orbit.propagation import sgp4_orbit
@@ -170,7 +170,7 @@ def obey(config):
     """Carries out telecommands: the state, and the results."""
 
     def through(state, *telecommands, violated=None, config=config):
-        after, acks = command(state, NOTHING._replace(telecommands=telecommands), violated, config)
+        after, acks = command(state, measured(telecommands=telecommands), violated, config)
         assert [(ack.command, ack.command_counter, ack.tick) for ack in acks] == [
             (message.ID, message.counter, TICK) for message in telecommands
         ]

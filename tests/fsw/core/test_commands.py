@@ -5,12 +5,13 @@ from math import dist
 
 import pytest
 from batch_samples import search_under_way
+from gate_samples import measured
 
 from fsw.core.commands import HANDLERS, LAW_NAMES, command, decimal
 from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.fdir.fdir import Health
 from fsw.core.fdir.sensors.health import SensorHealth, Watch
-from fsw.core.gate.readings import NOTHING, TELECOMMANDS
+from fsw.core.gate.readings import TELECOMMANDS
 from fsw.core.laws.interface import OwnLaw, Wheel
 from fsw.core.laws.table import LAWS, OWN_NUMBER
 from fsw.core.modes import ModeState
@@ -298,12 +299,12 @@ class TestAcknowledgement:
         assert after.setpoint.spin_radps == -0.02
 
     def test_a_repeated_one_is_not_carried_out_again_but_answered(self, state, config):
-        repeated = NOTHING._replace(repeated=(TcMode(Mode.SAFE, 4), TcClear(9)))
+        repeated = measured(repeated=(TcMode(Mode.SAFE, 4), TcClear(9)))
         acks = [TcAck(TcAckResult.REPEATED, *sent, TICK) for sent in ((TcMode.ID, 4), (TcClear.ID, 9))]
         assert command(state, repeated, False, config) == (state, acks)
 
     def test_no_telecommand_no_answer(self, state, config):
-        assert command(state, NOTHING, True, config) == (state, [])
+        assert command(state, measured(), True, config) == (state, [])
 
     @pytest.mark.parametrize(
         "sent",

@@ -1,6 +1,7 @@
 """Telecommands in the flight loop: acknowledged in the answer to their tick, and never beyond the limits."""
 
 from collections import Counter
+from dataclasses import replace
 from random import Random
 
 import pytest
@@ -65,7 +66,7 @@ class TestInTheLoop:
         replies = world.step(lambda inbox: inbox._replace(frames=(broken, *inbox.frames)))
         assert of(TcAck, replies) == []
         other.step()
-        expected = other.state._replace(gate=other.state.gate._replace(rejected=1))
+        expected = other.state._replace(gate=replace(other.state.gate, rejected=1))
         assert checksum(world.state) == checksum(expected)
 
     def test_a_safe_that_the_ground_asked_for_lasts_until_it_asks_for_more(self, make_world):

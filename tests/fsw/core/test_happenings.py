@@ -3,11 +3,11 @@
 from types import SimpleNamespace
 
 import pytest
+from gate_samples import measured
 
 from fsw.core import telemetry
 from fsw.core.estimation.estimator import Used
 from fsw.core.events import Event, Happening
-from fsw.core.gate.readings import NOTHING
 from fsw.core.gate.second_sender import SIGNS, SecondSenderWatch
 from fsw.core.rates import RateGroup, RateTable
 from fsw.core.step import boot
@@ -23,13 +23,16 @@ def state(make_world):
     return boot(make_world().config)
 
 
+NOTHING = measured()
+
+
 def told(before, after, readings=NOTHING):
     return telemetry.happenings(before, after, readings, None, LEAP_TICKS)
 
 
 @pytest.mark.parametrize(("tick", "events"), [(-1, []), (0, [Happening(Event.FALSE_END, 7)])])
 def test_an_end_is_false_from_the_second_tick_on(state, tick, events):
-    ended = NOTHING._replace(end=PlantEnd(7, counter=3))
+    ended = measured(end=PlantEnd(7, counter=3))
     assert told(state._replace(tick=tick), state._replace(tick=tick + 1), ended) == events
 
 

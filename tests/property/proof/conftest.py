@@ -21,10 +21,10 @@ from math import inf
 from typing import NamedTuple
 
 import pytest
+from gate_samples import measured
 
 from fsw.core.actuation import actuator, pulses
 from fsw.core.algebra.vector import ZERO
-from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import Demand
 from fsw.wire.messages import CoilBoot, CoilFire, CoilStatus
 from hil_stub.coils import interlock
@@ -240,7 +240,7 @@ class Search:
         """Each outcome, the scheduler afterwards and what it asks, with the demands that lead to it."""
         tick = EPOCH + phase
         timers = pulses.PulseState(tuple(tick + left for left in own.ready), tick + own.busy, ZERO)
-        readings = NOTHING._replace(coil=status, coil_boot=boot)
+        readings = measured(coil=status, coil_boot=boot)
         view = actuator.update_view(actuator.CoilView(lockout_ms=own.word), readings, tick, self.coils)
         outcomes: dict[tuple[Own, CoilFire | None], list[int | None]] = {}
         for demand, (owed, b_body_t) in DEMANDS.items():

@@ -12,6 +12,7 @@ import pytest
 from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, update_view
 from fsw.core.actuation.dipoles import DipoleConfig
+from fsw.core.gate.calibration import NO_CALIBRATION, measure
 from fsw.core.gate.readings import GateState, admit
 from fsw.core.laws.interface import Demand
 from fsw.wire.messages import CoilBoot, CoilDipole, CoilDipoleStatus
@@ -55,7 +56,7 @@ class Line:
             self.board = None
         said = [] if self.board is None else self.board.begin_tick(tick, 0.0)
         heard = [f for f in said if status == "heard" or f.can_id in (CoilBoot.ID,)]
-        readings, self.gate = admit(tuple(heard), self.gate)
+        readings = measure(admit(tuple(heard), self.gate), NO_CALIBRATION)
         self.view = update_view(self.view, readings, tick, CONFIG)
         self.state, self.view, asked = actuate(self.state, self.view, demand, FIELD, readings, tick, CONFIG)
         self.judge_request(tick, asked, demand, told=any(f.can_id == CoilDipoleStatus.ID for f in heard))

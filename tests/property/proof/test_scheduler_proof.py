@@ -8,6 +8,7 @@ That the search has teeth is shown by planting bugs in both: each must be found.
 """
 
 from collections.abc import Callable
+from copy import copy
 from dataclasses import replace
 from functools import partial
 from types import ModuleType
@@ -83,7 +84,7 @@ def hearing(lockout_of: Callable) -> Planting:
         after = update_view(view, readings, tick, config)
         if readings.coil is None:
             return after
-        before = view.lockout_ms if readings.coil_boot is None else actuator.LOCKOUT_UNKNOWN
+        before = view.lockout_ms if not readings.coil_booted else actuator.LOCKOUT_UNKNOWN
         return after._replace(lockout_ms=tuple(lockout_of(after.lockout_ms, before, readings.coil)))
 
     return around(actuator, "update_view", wrong)
@@ -252,13 +253,12 @@ def test_a_board_that_restarts_and_is_heard_refuses_nothing_and_fires_again(sear
 
 @pytest.mark.parametrize("shared", BOTH, ids=["shared", "per coil"])
 def test_a_scheduler_that_does_not_hear_of_the_restart_is_refused(search, small, shared):
-    deaf = around(
-        actuator,
-        "update_view",
-        lambda update_view, view, readings, *rest: update_view(
-            view, readings._replace(coil_boot=None), *rest
-        ),
-    )
+    def without_the_boot(update_view, view, measurements, *rest):
+        heard = copy(measurements)
+        heard.coil_booted = False
+        return update_view(view, heard, *rest)
+
+    deaf = around(actuator, "update_view", without_the_boot)
     assert search(with_restarts_of_the_board(small[shared], deaf)).refused
 
 

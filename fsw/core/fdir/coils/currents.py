@@ -9,8 +9,7 @@ from fsw.core.algebra.vector import ZERO
 from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig, with_fault, with_item
 from fsw.core.fdir.evidence import weigh
 from fsw.core.fdir.faults import CoilFault, coil_fault
-from fsw.core.gate.readings import Readings
-from fsw.wire.messages import CoilStatus
+from fsw.core.gate.measurements import CoilReport, Measurements
 
 WHOLE_MS = 1e-6
 """Rounding of a duration, ms."""
@@ -19,7 +18,7 @@ WHOLE_MS = 1e-6
 def judge_current(
     health: CoilHealth,
     view: CoilView,
-    readings: Readings,
+    measurements: Measurements,
     unasked: bool,
     tick: int,
     config: CoilHealthConfig,
@@ -31,12 +30,12 @@ def judge_current(
     Args:
         health: of the tick before.
         view: after what was received in this tick.
-        readings: what was received.
+        measurements: what was received.
         unasked: whether the driver reports a level that was not requested.
         tick: this one.
         config: limits.
     """
-    status = readings.coil
+    status = measurements.coil
     if status is None:
         return health
     if unasked or (status.level == 0 and abs(status.current_ma) > config.stuck_ma):
@@ -67,7 +66,7 @@ def _judged_after(pulses: PulseConfig) -> int:
     return 1 if pulses.duration_ms >= 1000.0 * pulses.tick_s - WHOLE_MS else -1
 
 
-def _strange(health: CoilHealth, status: CoilStatus, unasked: bool, config: CoilHealthConfig) -> CoilHealth:
+def _strange(health: CoilHealth, status: CoilReport, unasked: bool, config: CoilHealthConfig) -> CoilHealth:
     """Something flows without a request; a level that lasts for ``stuck_ticks`` isolates its coil.
 
     Of a pulse longer than a tick one report proves nothing: it may be one that was delayed.

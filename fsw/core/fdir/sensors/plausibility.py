@@ -16,7 +16,7 @@ from fsw.core.estimation.samples import coils_idle, sensed_sun, usable_cells, us
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.faults import Sensor, SensorFault
 from fsw.core.fdir.sensors.standstill import NO_MOTION, Motion, Steps, frozen, moved_on
-from fsw.core.gate.readings import Readings
+from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.earth import RADIUS_M
 from fsw.core.orbit.ephemeris import Reference
 from fsw.core.orbit.sun import lit
@@ -70,7 +70,7 @@ class Seen(NamedTuple):
     ``lamps``: how many Sun cells in use are lit in the shadow; ``beyond``: how many show what no light does.
     """
 
-    readings: Readings
+    measurements: Measurements
     field: Vec3 | None
     sun: Vec3 | None
     modelled_t: float
@@ -83,15 +83,15 @@ class Seen(NamedTuple):
 
 
 CHECKS: tuple[tuple[Sensor, SensorFault, Callable[[Seen], bool]], ...] = (
-    (Sensor.MAGNETOMETER, SensorFault.SILENT, lambda s: s.readings.field is None),
+    (Sensor.MAGNETOMETER, SensorFault.SILENT, lambda s: s.measurements.field is None),
     (
         Sensor.MAGNETOMETER,
         SensorFault.SATURATED,
         lambda s: (
-            s.readings.field is not None
-            and not s.readings.field.valid
-            and coils_idle(s.readings)
-            and not (s.readings.saturated and s.modelled_t > s.limits.in_range_t)
+            s.measurements.field is not None
+            and not s.measurements.field.valid
+            and coils_idle(s.measurements)
+            and not (s.measurements.saturated and s.modelled_t > s.limits.in_range_t)
         ),
     ),
     (Sensor.MAGNETOMETER, SensorFault.FROZEN, lambda s: s.field_still and not s.sun_still),
@@ -103,7 +103,11 @@ CHECKS: tuple[tuple[Sensor, SensorFault, Callable[[Seen], bool]], ...] = (
             and not abs(norm(s.field) - s.modelled_t) <= s.limits.field_t + s.limits.field_part * s.modelled_t
         ),
     ),
-    (Sensor.SUN_SENSOR, SensorFault.SILENT, lambda s: s.readings.sun is None and s.readings.cells is None),
+    (
+        Sensor.SUN_SENSOR,
+        SensorFault.SILENT,
+        lambda s: s.measurements.sun is None and s.measurements.cells is None,
+    ),
     (
         Sensor.SUN_SENSOR,
         SensorFault.UNLIT,
@@ -142,7 +146,7 @@ class Findings(NamedTuple):
 
 def examine(
     memory: Memory,
-    readings: Readings,
+    measurements: Measurements,
     reference: Reference,
     limits: PlausibilityConfig,
     estimate: Estimate | None = None,
@@ -152,23 +156,23 @@ def examine(
 
     Args:
         memory: of the tick before.
-        readings: all that the boards sent, of isolated sensors too.
+        measurements: all that the boards sent, of isolated sensors too.
         reference: field and Sun as modelled.
         limits: largest deviations if all is well.
         estimate: predicted to this tick, if it is valid; only quantised readings are judged by it.
         isolated: Sun cells of which it is known that they are faulty.
     """
-    memory, late = _remember(memory, readings), limits.late_ticks
+    memory, late = _remember(memory, measurements), limits.late_ticks
     field_still, sun_still = still = memory.field_still > late, memory.sun_still > late
     if limits.steps is not None:
         motion = moved_on(memory.motion or NO_MOTION, still, estimate, reference, limits.steps)
         memory, (field_still, sun_still) = memory._replace(motion=motion), frozen(motion, still, limits.steps)
-    field, sun = usable_field(readings), sensed_sun(readings, limits.cells)
-    currents = usable_cells(readings, limits.cells)
+    field, sun = usable_field(measurements), sensed_sun(measurements, limits.cells)
+    currents = usable_cells(measurements, limits.cells)
     shadow = (sun is not None or bool(currents)) and _in_shadow(reference)
     lamps, beyond = NOWHERE if limits.cells is None else _wrong(currents, shadow, isolated, limits.cells)
     modelled_t, still = norm(reference.b_eci_t), (field_still, sun_still)
-    seen = Seen(readings, field, sun, modelled_t, shadow, *still, limits, len(lamps), len(beyond))
+    seen = Seen(measurements, field, sun, modelled_t, shadow, *still, limits, len(lamps), len(beyond))
     causes = {Sensor.MAGNETOMETER: 0, Sensor.SUN_SENSOR: 0}
     for sensor, cause, speaks_against in CHECKS:
         if not causes[sensor] and speaks_against(seen):
@@ -202,14 +206,13 @@ def _wrong(currents: Sequence[float | None], shadow: bool, isolated: Sequence[in
     return lamps, tuple([cell for cell, current in used if current > most])
 
 
-def _remember(memory: Memory, readings: Readings) -> Memory:
+def _remember(memory: Memory, measurements: Measurements) -> Memory:
     field, sun, field_still, sun_still, motion = memory
-    if readings.field is not None:
-        sample = (readings.field.b_x, readings.field.b_y, readings.field.b_z)
+    if measurements.field is not None:
+        sample = measurements.field.b_body_nt
         field, field_still = sample, field_still + 1 if sample == field else 0
-    message = readings.sun
-    if message is not None:
-        sample = (message.s_x, message.s_y, message.s_z) if message.valid else DARK
+    if measurements.sun is not None:
+        sample = measurements.sun.s_body if measurements.sun.valid else DARK
         sun, sun_still = sample, sun_still + 1 if sample == sun and sample is not DARK else 0
     return Memory(field, sun, field_still, sun_still, motion)
 

@@ -21,22 +21,22 @@ from actuator_samples import (
     run_safe,
     status,
 )
+from gate_samples import measured
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
 from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import OF_ANY_FRAME, CoilView, actuate, update_view
-from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.plan.pulse_model import NO_PULSE, Pulse
 from fsw.wire.messages import CoilBoot, CoilFire, CoilRefused, CoilRefusedReason
 
 
 def test_after_a_boot_of_the_board_nothing_goes_out_before_its_word_is_heard():
-    view = update_view(ALL_FREE, NOTHING._replace(coil_boot=CoilBoot(1, 1, 7), coil=status(1)), TICK, COILS)
+    view = update_view(ALL_FREE, measured(coil_boot=CoilBoot(1, 1, 7), coil=status(1)), TICK, COILS)
     state, view, request = run(view=view)
     assert request is None, "coil 0 is what is wanted"
-    view = update_view(view, NOTHING._replace(coil=status(0)), TICK + 1, COILS)
+    view = update_view(view, measured(coil=status(0)), TICK + 1, COILS)
     assert run(state, view, tick=TICK + 1)[2].coil == 0
 
 
@@ -89,7 +89,7 @@ def test_a_pulse_is_paid_when_it_is_asked_for():
 
 def test_the_torque_of_the_demanded_dipole_is_owed():
     """T = m x b: 0.5 A m^2 along axis 1 in 20 uT along axis 3 turn about axis 2."""
-    state, _, request = run(ready(ZERO), demand=Demand((0.5, 0.0, 5.0)), readings=NOTHING)
+    state, _, request = run(ready(ZERO), demand=Demand((0.5, 0.0, 5.0)), readings=measured())
     assert request is None
     assert state.owed_impulse_body_nms == pytest.approx((0.0, -1e-5, 0.0))
 
@@ -120,7 +120,7 @@ def test_a_pulse_goes_out_only_if_the_word_on_exactly_its_coil_is_zero(coil, loc
 
 
 def test_a_pulse_waits_for_a_tick_with_a_status():
-    state, view, request = run(readings=NOTHING)
+    state, view, request = run(readings=measured())
     assert request is None
     assert state == pulses.owe(ready(), ZERO, B_BODY_T, CONFIG)
     assert view == ALL_FREE
@@ -162,7 +162,7 @@ def refused_at(ticks_later, of_tick=TICK):
     state, view, request = run(config=config)
     assert request is not None
     assert state.owed_impulse_body_nms == pytest.approx(ZERO, abs=1e-18)
-    readings = BOARD_IS_THERE._replace(refused=refusal(of_tick))
+    readings = measured(coil=status(0), refused=refusal(of_tick))
     state, view, again = run(state, view, readings=readings, tick=TICK + ticks_later, config=config)
     assert again is None, "the own timers run whatever the board did"
     return state, view, config
@@ -172,7 +172,7 @@ def refused_at(ticks_later, of_tick=TICK):
 def test_what_a_refused_request_paid_is_owed_again_and_only_once(ticks_later):
     state, view, config = refused_at(ticks_later)
     assert state.owed_impulse_body_nms == pytest.approx(OWED_FOR[0])
-    readings = BOARD_IS_THERE._replace(refused=refusal(TICK))
+    readings = measured(coil=status(0), refused=refusal(TICK))
     again, _, _ = run(state, view, readings=readings, tick=TICK + ticks_later + 1, config=config)
     assert again.owed_impulse_body_nms == state.owed_impulse_body_nms
 
@@ -183,7 +183,7 @@ def test_a_refusal_that_is_heard_twice_gives_back_once():
     owed = (0.0, -3.0 * 0.5 * 2e-5, 0.0)
     state, view, request = run(ready(owed), config=config)
     assert abs(request.level) == 1
-    readings = BOARD_IS_THERE._replace(refused=refusal(TICK))
+    readings = measured(coil=status(0), refused=refusal(TICK))
     for tick in (TICK + 1, TICK + 2):
         state, view, _ = run(state, view, readings=readings, tick=tick, config=config)
         assert state.owed_impulse_body_nms == pytest.approx(owed)
@@ -191,7 +191,7 @@ def test_a_refusal_that_is_heard_twice_gives_back_once():
 
 def test_a_request_that_was_refused_does_not_count_as_driven():
     _, view, _ = refused_at(1)
-    after = update_view(view, NOTHING, TICK + 2, COILS)
+    after = update_view(view, measured(), TICK + 2, COILS)
     assert (after.driven_level, after.driven_am2) == (0, ZERO)
 
 
@@ -205,7 +205,7 @@ def test_a_refusal_of_another_request_or_one_that_comes_too_late_gives_nothing_b
 
 
 def test_a_refusal_before_the_first_request_gives_nothing_back():
-    state, _, _ = run(ready(ZERO), readings=BOARD_IS_THERE._replace(refused=refusal(255)), tick=1)
+    state, _, _ = run(ready(ZERO), readings=measured(coil=status(0), refused=refusal(255)), tick=1)
     assert state.owed_impulse_body_nms == ZERO
 
 
@@ -215,7 +215,7 @@ def test_a_request_that_is_reported_as_driven_was_not_refused(seq, reason):
     """Another frame of that tick was: a broken one, a repeated one, or that of another sender."""
     state, view, request = run()
     driven = status(request.coil, level=request.level, seq=request.seq)
-    readings = NOTHING._replace(coil=driven, refused=CoilRefused(request.coil, seq, reason, TICK & 0xFF))
+    readings = measured(coil=driven, refused=CoilRefused(request.coil, seq, reason, TICK & 0xFF))
     view = update_view(view, readings, TICK + 1, COILS)
     assert run(state, view, readings=readings, tick=TICK + 1)[1].fired == view.fired
 
@@ -223,22 +223,22 @@ def test_a_request_that_is_reported_as_driven_was_not_refused(seq, reason):
 @pytest.mark.parametrize("reason", OF_ANY_FRAME)
 def test_a_broken_frame_without_a_status_may_be_any(reason):
     state, view, _ = run()
-    lost = NOTHING._replace(refused=refusal(TICK).replace(reason=reason))
+    lost = measured(refused=refusal(TICK).replace(reason=reason))
     assert run(state, view, readings=lost, tick=TICK + 1)[1].fired == view.fired
-    off = lost._replace(coil=BOARD_IS_THERE.coil)
+    off = measured(refused=refusal(TICK).replace(reason=reason), coil=status(0))
     assert run(state, view, readings=off, tick=TICK + 1)[1].fired == NO_PULSE
 
 
 def test_a_refusal_of_another_coil_is_not_of_this_request():
     state, view, _ = run()
-    readings = BOARD_IS_THERE._replace(refused=refusal(TICK).replace(coil=1))
+    readings = measured(coil=status(0), refused=refusal(TICK).replace(coil=1))
     assert run(state, view, readings=readings, tick=TICK + 1)[1].fired == view.fired
 
 
 def test_a_refused_impulse_is_not_owed():
     """It was never: the law that missed it asks anew."""
     state, view, _ = run(ready(ZERO), demand=Demand(impulse_body_nms=OWED_FOR[0]))
-    readings = BOARD_IS_THERE._replace(refused=refusal(TICK))
+    readings = measured(coil=status(0), refused=refusal(TICK))
     state, _, _ = run(state, view, readings=readings, tick=TICK + 1)
     assert state.owed_impulse_body_nms == ZERO
 
@@ -253,7 +253,7 @@ def test_without_a_law_nothing_is_fired_and_nothing_owed(fresh, lockout_ms):
     timers = ready()._replace(ready_tick=(TICK - 5, TICK, TICK + 9), busy_until=TICK - 20)
     before = timers._replace(held_am2=(1.0, -2.0, 3.0))
     view = ALL_FREE._replace(lockout_ms=lockout_ms)
-    after, found, request = run_safe(before, view, BOARD_IS_THERE if fresh else NOTHING)
+    after, found, request = run_safe(before, view, BOARD_IS_THERE if fresh else measured())
     assert request is None
     assert after == timers._replace(owed_impulse_body_nms=ZERO)
     assert found == view
@@ -261,7 +261,7 @@ def test_without_a_law_nothing_is_fired_and_nothing_owed(fresh, lockout_ms):
 
 def test_a_refusal_that_comes_while_no_law_flies_is_not_owed_either():
     state, view, _ = run()
-    state, view, _ = run_safe(state, view, BOARD_IS_THERE._replace(refused=refusal(TICK)), TICK + 1)
+    state, view, _ = run_safe(state, view, measured(coil=status(0), refused=refusal(TICK)), TICK + 1)
     assert state.owed_impulse_body_nms == ZERO
 
 
@@ -282,7 +282,7 @@ def test_a_pulse_asked_for_before_safe_still_locks_out_after_it():
 
 def test_seq_never_repeats_the_last_accepted_one():
     for accepted in range(256):
-        view = update_view(ALL_FREE, NOTHING._replace(coil=status(0, seq=accepted)), TICK, COILS)
+        view = update_view(ALL_FREE, measured(coil=status(0, seq=accepted)), TICK, COILS)
         _, _, request = run(view=view)
         assert request.seq == (accepted + 1) % 256
         assert CoilFire.decode(request.encode().data).seq != accepted
@@ -292,7 +292,7 @@ def test_seq_follows_what_the_board_accepted_not_what_was_asked():
     """A lost request leaves no gap: its number comes again, and the board has never seen it."""
     state, view, request = run(view=ALL_FREE._replace(seq=7))
     assert request.seq == 8
-    view = update_view(view, NOTHING._replace(coil=status(0, seq=7)), TICK + 1, COILS)
+    view = update_view(view, measured(coil=status(0, seq=7)), TICK + 1, COILS)
     _, _, again = run(state._replace(owed_impulse_body_nms=OWED_FOR[0]), view, tick=TICK + 103)
     assert again.seq == 8
 

@@ -5,6 +5,7 @@ from math import inf, nan
 
 import numpy as np
 import pytest
+from gate_samples import measured
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -13,7 +14,6 @@ from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, updat
 from fsw.core.actuation.dipoles import MOST, DipoleConfig, RequestedDipole, dipole_am2, request, saturate
 from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.algebra.vector import ZERO, inverse
-from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.predictive.predictive import best_impulse
 from fsw.wire.messages import CoilDipole, CoilDipoleStatus, CoilStatus
@@ -51,6 +51,10 @@ def am2(sent):
     return FULL_SCALE_AM2 * np.array([sent.m_x, sent.m_y, sent.m_z])
 
 
+def driven_by(sent, config):
+    return dipole_am2((sent.m_x, sent.m_y, sent.m_z), config)
+
+
 class TestSaturation:
     def test_a_dipole_that_fits_is_sent_as_it_is(self):
         assert am2(saturate((1.0, -9.5, 4.0), CONFIG)) == pytest.approx((1.0, -9.5, 4.0))
@@ -85,20 +89,18 @@ class TestSaturation:
 
 class TestDriven:
     def test_is_what_the_board_says_of_full_scale(self):
-        assert dipole_am2(CoilDipoleStatus(0.5, -0.25, 0.125), CONFIG) == pytest.approx((4.8, -2.4, 1.2))
+        assert dipole_am2((0.5, -0.25, 0.125), CONFIG) == pytest.approx((4.8, -2.4, 1.2))
 
     @pytest.mark.parametrize(("age", "driven_am2"), [(1, (1.0, 2.0, 3.0)), (0, ZERO), (2, ZERO)])
     def test_without_a_report_it_is_what_was_asked_for_this_tick(self, age, driven_am2):
         view = CoilView(asked=RequestedDipole(44 - age, (1.0, 2.0, 3.0)))
-        view = update_view(view, NOTHING, 44, ActuatorConfig(TIMING, CONFIG))
+        view = update_view(view, measured(), 44, ActuatorConfig(TIMING, CONFIG))
         assert view.driven_am2 == driven_am2
         assert not view.asked.reported
 
     def test_it_is_what_the_view_holds_and_no_level_is(self):
         coils = ActuatorConfig(TIMING, CONFIG)
-        readings = NOTHING._replace(
-            coil=CoilStatus(0, 1, 0, 0, 0, 0), dipole=CoilDipoleStatus(0.5, -0.25, 0.125)
-        )
+        readings = measured(coil=CoilStatus(0, 1, 0, 0, 0, 0), dipole=CoilDipoleStatus(0.5, -0.25, 0.125))
         view = update_view(CoilView(), readings, 44, coils)
         assert view.driven_am2 == pytest.approx((4.8, -2.4, 1.2))
         assert view.driven_level == 0
@@ -112,19 +114,17 @@ class TestCoilsOutOfSquare:
     COILS = replace(CONFIG, body_from_coils=TRUE, coils_from_body=inverse(TRUE))
 
     def test_what_the_board_says_is_driven_by_the_true_ones(self):
-        driven_am2 = dipole_am2(CoilDipoleStatus(0.5, -0.25, 0.125), self.COILS)
+        driven_am2 = dipole_am2((0.5, -0.25, 0.125), self.COILS)
         assert driven_am2 == pytest.approx(np.array(self.TRUE) @ (4.8, -2.4, 1.2), rel=1e-12)
 
     def test_the_request_is_what_makes_them_give_the_dipole_wanted(self):
         wanted_am2 = (1.0, -5.5, 4.0)
-        assert dipole_am2(saturate(wanted_am2, self.COILS), self.COILS) == pytest.approx(
-            wanted_am2, rel=1e-12
-        )
+        assert driven_by(saturate(wanted_am2, self.COILS), self.COILS) == pytest.approx(wanted_am2, rel=1e-12)
 
     def test_what_does_not_fit_is_shortened_in_the_body_too(self):
         wanted_am2 = np.array((30.0, -40.0, 20.0))
         sent = saturate(tuple(wanted_am2), self.COILS)
-        driven_am2 = np.array(dipole_am2(sent, self.COILS))
+        driven_am2 = np.array(driven_by(sent, self.COILS))
         assert max(map(abs, sent.values()[:3])) == MOST
         assert np.dot(driven_am2, wanted_am2) > 0.0
         assert np.cross(driven_am2, wanted_am2) == pytest.approx(ZERO, abs=1e-9)
@@ -230,7 +230,7 @@ class TestActuate:
     """The continuous driver behind the same door as the pulses."""
 
     COILS = ActuatorConfig(TIMING, CONFIG)
-    HEARD = NOTHING._replace(dipole=CoilDipoleStatus(0.0, 0.0, 0.0))
+    HEARD = measured(dipole=CoilDipoleStatus(0.0, 0.0, 0.0))
 
     def run(self, demand, readings=HEARD, tick=500):
         state = pulses.boot(0, TIMING)._replace(ready_tick=(0, 0, 0), owed_impulse_body_nms=(1.0, 1.0, 1.0))
@@ -242,17 +242,17 @@ class TestActuate:
 
     def test_it_is_remembered_as_it_is_on_the_wire(self):
         _, view, sent = self.run(Demand((1.0, -2.0, 3.0)))
-        assert view.asked == RequestedDipole(500, dipole_am2(CoilDipole.decode(sent.encode().data), CONFIG))
+        assert view.asked == RequestedDipole(500, driven_by(CoilDipole.decode(sent.encode().data), CONFIG))
         assert view.asked.m_body_am2 == pytest.approx((1.0, -2.0, 3.0), abs=FULL_SCALE_AM2 * LSB)
 
     def test_one_that_was_not_sent_is_not(self):
-        for demand, readings in ((None, self.HEARD), (missing(), NOTHING)):
+        for demand, readings in ((None, self.HEARD), (missing(), measured())):
             assert self.run(demand, readings)[1] == CoilView()
 
     @pytest.mark.parametrize("demand", [Demand((1.0, -2.0, 3.0)), missing()], ids=["dipole", "impulse"])
     def test_nothing_goes_to_a_board_that_is_not_heard(self, demand):
-        assert self.run(demand, NOTHING)[2] is None
-        assert self.run(demand, NOTHING._replace(coil=CoilStatus(0, 0, 0, 0, 0, 0)))[2] is None
+        assert self.run(demand, measured())[2] is None
+        assert self.run(demand, measured(coil=CoilStatus(0, 0, 0, 0, 0, 0)))[2] is None
 
     def test_without_a_law_nothing_is_sent_and_nothing_owed(self):
         state, _, sent = self.run(None)

@@ -4,12 +4,12 @@ from math import sqrt
 
 import numpy as np
 import pytest
+from gate_samples import measured
 
 from fsw.core.actuation.actuator import CoilView, update_view
 from fsw.core.actuation.dipoles import DipoleConfig, RequestedDipole
 from fsw.core.actuation.driven import driven
 from fsw.core.estimation.dynamics.error_dynamics import Driven
-from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.plan.pulse_model import Pulse
 from fsw.wire.messages import CoilDipoleStatus, CoilStatus
 
@@ -34,7 +34,7 @@ def drives(coils):
 
     def over(ticks_after, status=None, skipped=0, view=FIRED):
         tick = TICK + ticks_after
-        after = update_view(view, NOTHING._replace(coil=status), tick, coils)
+        after = update_view(view, measured(coil=status), tick, coils)
         ticks = range(tick - skipped, tick + 1)
         return driven(after, after.driven_am2, status is not None, ticks, coils)
 
@@ -125,7 +125,7 @@ class TestContinuousDriver:
 
         def over(ticks_after, status=None, skipped=0, asked_am2=self.WANTED_AM2):
             tick, view = TICK + ticks_after, CoilView(asked=RequestedDipole(TICK, asked_am2))
-            after = update_view(view, NOTHING._replace(dipole=status), tick, continuous)
+            after = update_view(view, measured(dipole=status), tick, continuous)
             return driven(after, after.driven_am2, True, range(tick - skipped, tick + 1), continuous)
 
         return over

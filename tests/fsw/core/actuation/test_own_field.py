@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from gate_samples import measured
 
 from fsw.core.actuation.actuator import CoilView
-from fsw.core.actuation.own_field import OwnField, taken_off
+from fsw.core.actuation.own_field import OwnField, subtract_own_field
 from fsw.core.estimation.samples import usable_field
-from fsw.core.gate.readings import NOTHING
 from fsw.wire.messages import CoilStatus, MagField
 
 F = ((2000.0, -300.0, 100.0), (50.0, 1500.0, -700.0), (-900.0, 200.0, 2500.0))
@@ -33,10 +33,10 @@ def fly(driven, config, late=0):
         field = np.array(EARTH) + np.array(F) @ m
         report = driven[k]
         status = None if report is None else CoilStatus(report[1], report[0], 0, report[2], 0, 1)
-        readings = NOTHING._replace(field=MagField(1, *field.tolist()), coil=status)
+        readings = measured(field=MagField(1, *field.tolist()), coil=status)
         coil, level, _ = report or OFF
         view = view._replace(driven_coil=coil, driven_level=level)
-        view, readings = taken_off(view, readings, 0, config)
+        view = subtract_own_field(view, readings, 0, config)
         sample = usable_field(readings)
         found.append(None if sample is None else tuple(1e9 * part for part in sample))
     return found
@@ -56,7 +56,7 @@ def test_at_once_every_sample_is_used_and_shows_the_earth_alone():
     assert all(sample == pytest.approx(EARTH, rel=1e-12) for sample in found)
 
 
-def test_two_ticks_late_the_pulse_is_taken_off_two_ticks_later():
+def test_two_ticks_late_the_pulse_is_subtract_own_field_two_ticks_later():
     found = fly(PULSE, own_field(2, 2), late=2)
     assert used(found) == list(range(2, len(PULSE)))
     assert all(found[k] == pytest.approx(EARTH, rel=1e-12) for k in used(found))
@@ -82,7 +82,7 @@ def test_what_is_not_certain_blanks_until_it_can_show_no_more(doubtful):
 
 def test_without_the_field_a_pulse_is_blanked_as_long_as_a_sample_may_be_old():
     idle = CoilView(idle_ticks=3)
-    readings = NOTHING._replace(field=MagField(1, *EARTH), coil=CoilStatus(0, 0, 0, 0, 0, 1))
-    assert usable_field(taken_off(idle, readings, 2, None)[1]) is not None
-    assert usable_field(taken_off(idle, readings, 3, None)[1]) is None
-    assert taken_off(idle, readings, 2, None)[0].past_am2 == ()
+    for blank_ticks, used in ((2, True), (3, False)):
+        readings = measured(field=MagField(1, *EARTH), coil=CoilStatus(0, 0, 0, 0, 0, 1))
+        assert subtract_own_field(idle, readings, blank_ticks, None).past_am2 == ()
+        assert (usable_field(readings) is not None) is used

@@ -15,10 +15,11 @@ from actuator_samples import (
     ready,
     refusal,
     run,
+    status,
 )
+from gate_samples import measured
 
 from fsw.core.actuation.actuator import actuate, wait_ticks
-from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.plan.pulse_model import NEVER, NO_PULSE, Pulse
 
@@ -49,7 +50,7 @@ class TestPlannedPulses:
         elif hindrance == "lockout":
             view = view._replace(lockout_ms=(0, 20, 0))
         elif hindrance == "no status":
-            readings = NOTHING
+            readings = measured()
         else:
             faults = (0, 1, 0)
         demand = Demand(pulse=Pulse(1, 2))
@@ -58,7 +59,7 @@ class TestPlannedPulses:
 
     def test_that_are_refused_are_not_owed(self):
         _, view, _ = run(ready(ZERO), demand=Demand(pulse=Pulse(1, 2)))
-        readings = BOARD_IS_THERE._replace(refused=refusal(TICK).replace(coil=1))
+        readings = measured(coil=status(0), refused=refusal(TICK).replace(coil=1))
         after, view, _ = run(ready(ZERO), view, Demand(pulse=NO_PULSE), readings, TICK + 1)
         assert after.owed_impulse_body_nms == ZERO
         assert view.fired == NO_PULSE
@@ -91,7 +92,7 @@ class TestWaits:
         assert self.waits(ready(), view) == (0, 0, CONFIG.backoff_ticks)
 
     def test_are_at_least_a_tick_without_a_status(self):
-        assert self.waits(ready(), readings=NOTHING) == (1, 1, 1)
+        assert self.waits(ready(), readings=measured()) == (1, 1, 1)
 
     def test_have_no_end_with_a_fault(self):
         assert self.waits(ready(), faults=(0, 3, 0)) == (0, NEVER, 0)

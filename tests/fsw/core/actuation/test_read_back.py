@@ -1,10 +1,11 @@
 """The offset of the read-back: a current of coils that are off, which is none."""
 
 import pytest
+from gate_samples import measured
 
 from fsw.core.actuation.actuator import CoilView
-from fsw.core.actuation.read_back import ReadBackConfig, without_offset
-from fsw.core.gate.readings import NOTHING
+from fsw.core.actuation.read_back import ReadBackConfig, remove_offset
+from fsw.core.gate.measurements import CoilReport
 from fsw.core.laws.plan.pulse_model import Pulse
 from fsw.core.packing import checksum
 from fsw.wire.messages import CoilStatus
@@ -15,8 +16,10 @@ FIRED = CoilView(fired_tick=TICK, fired=Pulse(1, -3))
 
 
 def left(current_ma, tick=TICK + 5, level=0, view=FIRED):
-    readings = NOTHING._replace(coil=CoilStatus(level, 1, 0, current_ma, 0, 7))
-    return without_offset(readings, view, tick, CONFIG).coil.current_ma
+    readings = measured(coil=CoilStatus(level, 1, 0, current_ma, 0, 7))
+    remove_offset(readings, view, tick, CONFIG)
+    assert readings.coil == CoilReport(level, 1, 0, readings.coil.current_ma, 0, 7)
+    return readings.coil.current_ma
 
 
 @pytest.mark.parametrize(("current_ma", "kept"), [(0, 0), (1, 0), (-2, 0), (3, 3), (-3, -3), (400, 400)])
@@ -35,7 +38,9 @@ def test_a_current_that_dies_away_stays():
 
 
 def test_without_a_report_there_is_nothing_to_leave_out():
-    assert without_offset(NOTHING, FIRED, TICK, CONFIG) is NOTHING
+    nothing = measured()
+    remove_offset(nothing, FIRED, TICK, CONFIG)
+    assert nothing.coil is None
 
 
 def test_what_is_flown_with_an_offset_is_what_is_flown_without(make_world):

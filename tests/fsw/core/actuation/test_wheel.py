@@ -4,6 +4,7 @@ from math import inf, nan, sqrt
 
 import pytest
 from estimator_samples import CONFIG
+from gate_samples import measured
 
 from fsw.core.actuation.wheel import (
     UNIT_NM,
@@ -14,7 +15,6 @@ from fsw.core.actuation.wheel import (
     request,
     seen,
 )
-from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.interface import Demand, Wheel
 from fsw.wire.messages import WheelStatus, WheelTorque
 
@@ -23,14 +23,14 @@ WHEEL = Wheel(AXIS, 2e-4, 2e-3, 0.12, 2e-7, 2e-5, tick_s=0.5, stale_ticks=20)
 
 
 def reported(speed_radps, valid=1):
-    return NOTHING._replace(wheel=WheelStatus(valid, 1, speed_radps, 0.0))
+    return measured(wheel=WheelStatus(valid, 1, speed_radps, 0.0))
 
 
 def after(*speeds, first_tick=0):
     """The view after reports in tick after tick; None: none came."""
     view = WheelView()
     for tick, speed in enumerate(speeds, start=first_tick):
-        view = seen(view, NOTHING if speed is None else reported(speed), tick, WHEEL)
+        view = seen(view, measured() if speed is None else reported(speed), tick, WHEEL)
     return view
 
 
@@ -54,7 +54,7 @@ def test_the_first_report_is_no_change():
 
 
 @pytest.mark.parametrize(
-    "readings", [NOTHING, reported(1e4), reported(104.0, valid=0)], ids=["lost", "beyond", "invalid"]
+    "readings", [measured(), reported(1e4), reported(104.0, valid=0)], ids=["lost", "beyond", "invalid"]
 )
 def test_a_change_counts_once_and_not_again_where_no_report_follows(readings):
     moved = after(100.0, 103.0)
@@ -99,7 +99,7 @@ def test_after_too_long_without_one_the_next_within_the_range_counts_again():
     """And its change is the whole of it, which the body has felt."""
     kept = after(100.0, *[None] * 20)
     assert momentum_nms(kept, WHEEL) is not None
-    gone = seen(kept, NOTHING, 21, WHEEL)
+    gone = seen(kept, measured(), 21, WHEEL)
     assert gone.tick == -1
     assert momentum_nms(gone, WHEEL) is None
     back = seen(gone, reported(-400.0), 22, WHEEL)
@@ -121,7 +121,7 @@ class TestFilter:
         assert config.mekf.reaction_body_nm == pytest.approx([-rate * part for part in AXIS])
 
     def test_without_a_report_the_momentum_is_the_last_one_and_what_was_asked_for_in_doubt(self):
-        view = seen(after(100.0)._replace(asked_nm=-1e-3), NOTHING, 1, WHEEL)
+        view = seen(after(100.0)._replace(asked_nm=-1e-3), measured(), 1, WHEEL)
         config = estimating(CONFIG, view, 1, 1, WHEEL)
         sure = estimating(CONFIG, after(100.0, 100.0), 1, 1, WHEEL)
         assert config.mekf.rotor == sure.mekf.rotor

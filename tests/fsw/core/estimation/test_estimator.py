@@ -19,6 +19,7 @@ from estimator_samples import (
     seen_from,
     step,
 )
+from gate_samples import measured
 
 from fsw.core.algebra.quaternion import conjugate, from_small_rotation, multiply, normalise, rotate
 from fsw.core.algebra.vector import ZERO, add, cross, norm, scale, sub, unit
@@ -33,10 +34,13 @@ from fsw.core.estimation.estimator import (
 )
 from fsw.core.estimation.measurement import field_prediction
 from fsw.core.estimation.parameters import NOTHING as NO_DIFFERENCE
-from fsw.core.gate.readings import NOTHING
 from fsw.wire.messages import SunVector
 
 MAX_ELAPSED = round(MAX_ELAPSED_S / MEKF.tick_s)
+
+
+BROKEN_FIELD = field_message(rotate(Q_BODY_FROM_ECI, REFERENCE.b_eci_t), valid=0)
+SEEN_SUN = rotate(Q_BODY_FROM_ECI, REFERENCE.sun_eci)
 
 
 class TestStart:
@@ -58,8 +62,8 @@ class TestStart:
             {"field": None},
             {"sun": None},
             {"field": None, "sun": None},
-            {"field": seen_from().field.replace(valid=0)},
-            {"sun": seen_from().sun.replace(valid=0)},
+            {"field": BROKEN_FIELD},
+            {"sun": SunVector(0, *SEEN_SUN)},
             {"coil": None},
             {"coil": IDLE.replace(level=2)},
             {"coil": IDLE.replace(current_ma=17)},
@@ -132,7 +136,7 @@ class TestRunning:
         state, said = step(settled, seen_from(**changes))
         assert said == used
         assert state.rejected_total == 0
-        silent, _ = step(settled, NOTHING)
+        silent, _ = step(settled, measured())
         without, after = (s.estimate.covariance[0:3, 0:3].trace() for s in (silent, state))
         assert bool(after < without) is (used.field or used.sun)
 
@@ -155,7 +159,7 @@ class TestRunning:
         )
         state, used = step(settled, seen_from(field=clipped, sun=None, saturated=(open_body,)))
         assert used == Used(True, False, False)
-        expected, _ = step(settled, NOTHING)
+        expected, _ = step(settled, measured())
         estimate = expected.estimate
         predicted, sensitivity = field_prediction(*estimate[:3], REFERENCE.b_eci_t, MEKF)
         rows = np.array([across, cross(open_body, across)])
@@ -182,8 +186,7 @@ class TestRunning:
         ids=["of two axes", "of none: not valid for another reason", "while a coil drives"],
     )
     def test_a_sample_that_is_not_valid_is_used_by_two_axes_or_not_at_all(self, settled, changes):
-        broken = seen_from().field.replace(valid=0)
-        _, used = step(settled, seen_from(field=broken, **changes))
+        _, used = step(settled, seen_from(field=BROKEN_FIELD, **changes))
         assert used == Used(False, True, True)
 
     def test_in_eclipse_the_magnetometer_alone_carries_on(self, settled):
@@ -207,7 +210,7 @@ class TestRunning:
     def test_gravity_turns_it_too(self, settled):
         """J dw/dt = 3 mu / r^3 e x J e - w x J w, with a body at rest and nothing else."""
         still = settled.estimate._replace(omega_body_radps=ZERO, parameters=NO_DIFFERENCE)
-        after, _ = step(settled._replace(estimate=still), NOTHING)
+        after, _ = step(settled._replace(estimate=still), measured())
         e = np.array(rotate(still.q_body_from_eci, REFERENCE.r_eci_m)) / REFERENCE.radius_m
         j = np.array(MEKF.rotor.inertia_kgm2)
         pull = 3.0 * 3.986004418e14 / REFERENCE.radius_m**3 * np.linalg.solve(j, np.cross(e, j @ e))
@@ -215,7 +218,7 @@ class TestRunning:
 
 
 class TestElapsedTicks:
-    QUIET = NOTHING
+    QUIET = measured()
     STILL = replace(REFERENCE, orbit_rate_radps=0.0)
 
     def test_three_ticks_at_once_are_three_ticks(self, settled):
@@ -319,7 +322,7 @@ class TestRejections:
 
     def test_silence_does_not_end_the_row(self, settled):
         state, _ = step(settled, seen_from(sun=OFF_SUN, field=None))
-        state, _ = step(state, NOTHING)
+        state, _ = step(state, measured())
         assert state.rejected_in_a_row == 1
 
     def test_a_body_that_was_turned_unseen_is_found_again(self, settled):

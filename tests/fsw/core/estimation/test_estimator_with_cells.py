@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from cell_samples import CELLS, Q_BODY_FROM_ECI, REFERENCE, cell_filter, cells_taken
 from estimator_samples import IDLE, field_message
+from gate_samples import measured
 
 from fsw.core.algebra.quaternion import normalise, rotate
 from fsw.core.algebra.vector import ZERO, scale, unit
@@ -17,7 +18,6 @@ from fsw.core.estimation.estimator import EstimatorConfig, EstimatorState, Turni
 from fsw.core.estimation.start.batch import EMPTY, kept
 from fsw.core.estimation.start.batch_sample import BatchSample
 from fsw.core.estimation.start.first import StartLimits
-from fsw.core.gate.readings import NOTHING
 from fsw.wire.messages import SunCells
 
 MEKF = cell_filter()
@@ -42,7 +42,7 @@ def readings(*off):
     shown = [one + 1.5 * (cell in off) for cell, one in enumerate(currents())]
     sent = [one * full for one, full in zip(shown, CELLS.full_sun, strict=True)]
     field = field_message(rotate(Q_BODY_FROM_ECI, REFERENCE.b_eci_t))
-    return NOTHING._replace(field=field, cells=SunCells(1, *sent), coil=IDLE)
+    return measured(field=field, cells=SunCells(1, *sent), coil=IDLE)
 
 
 def running(turning=Turning.NO):

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from gate_samples import measured
 
 from fsw.core.estimation import estimator
 from fsw.core.estimation.estimator import Turning
@@ -16,7 +17,6 @@ from fsw.core.estimation.parameters import (
     layout,
     with_component,
 )
-from fsw.core.gate.readings import NOTHING as READINGS
 from fsw.core.packing import pack
 from fsw.wire.messages import Component
 
@@ -130,12 +130,12 @@ class TestLoad:
         found = before.estimate._replace(trace=None)
         monkeypatch.setattr(estimator, "first_estimate", lambda *samples: found)
         waiting = estimator.restart(after)
-        begun, _ = estimator.update(waiting, READINGS, None, config)
+        begun, _ = estimator.update(waiting, measured(), None, config)
         parameters = with_component(found.parameters, self.NUMBER, self.VALUE)
         assert begun.estimate.parameters == parameters
         assert found.parameters != with_component(after.first, self.NUMBER, self.VALUE)
         np.testing.assert_array_equal(begun.estimate.covariance, after.estimate.covariance)
-        free, _ = estimator.update(estimator.restart(before), READINGS, None, config)
+        free, _ = estimator.update(estimator.restart(before), measured(), None, config)
         assert free.estimate is found, "nothing was loaded"
 
     def test_forgotten_it_is_back_where_the_filter_starts_from(self, settled, both):

@@ -4,6 +4,7 @@ from math import degrees, radians
 
 import numpy as np
 import pytest
+from gate_samples import measured
 
 from fsw.core.algebra.quaternion import canonical, conjugate, multiply, normalise, rotate
 from fsw.core.algebra.vector import ZERO, norm, scale, unit
@@ -11,7 +12,6 @@ from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.orbital_attitude import orbital_attitude, perfect_attitude
 from fsw.core.estimation.parameters import Parameters
-from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import Reference
 from fsw.wire.messages import RefAttitude, RefRate
 
@@ -87,7 +87,7 @@ class TestPerfectKnowledge:
     W = RefRate(1, 0.01, -0.02, 0.03)
 
     def test_it_is_what_the_plant_reports(self):
-        attitude = perfect_attitude(NOTHING._replace(ref_attitude=self.Q, ref_rate=self.W), self.BEFORE)
+        attitude = perfect_attitude(measured(ref_attitude=self.Q, ref_rate=self.W), self.BEFORE)
         assert attitude.q_body_from_orbit[1:] == pytest.approx((0.5, -0.25, 0.125), rel=1e-12)
         assert sum(c * c for c in attitude.q_body_from_orbit) == pytest.approx(1.0, abs=1e-15)
         assert attitude.q_body_from_orbit[0] > 0.0
@@ -105,11 +105,11 @@ class TestPerfectKnowledge:
         ],
     )
     def test_without_both_the_one_before_stays_and_is_not_valid(self, changes):
-        attitude = perfect_attitude(NOTHING._replace(**changes), self.BEFORE)
+        attitude = perfect_attitude(measured(**changes), self.BEFORE)
         assert attitude == self.BEFORE._replace(valid=False)
 
     def test_upside_down_the_wire_s_rounding_still_gives_a_unit_quaternion(self):
         for vector in ((0.6, -0.48, 0.64), (0.57735027, 0.57735027, 0.57735027), (0.999985, 0.0, 0.0)):
             decoded = RefAttitude.decode(RefAttitude(1, *vector).encode().data)
-            attitude = perfect_attitude(NOTHING._replace(ref_attitude=decoded, ref_rate=self.W), self.BEFORE)
+            attitude = perfect_attitude(measured(ref_attitude=decoded, ref_rate=self.W), self.BEFORE)
             assert sum(c * c for c in attitude.q_body_from_orbit) == pytest.approx(1.0, abs=1e-15)

@@ -1,10 +1,10 @@
 """Which samples the filter may use: none that a coil may have spoilt."""
 
 import pytest
+from gate_samples import measured
 
 from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.samples import coils_idle, sun_direction, usable_field, usable_sun
-from fsw.core.gate.readings import NOTHING
 from fsw.wire.messages import CoilStatus, MagField, SunCells, SunVector
 
 IDLE = CoilStatus(0, 2, 0, 0, 98000, 0)
@@ -13,7 +13,7 @@ FIELD, SUN = MagField(1, 17000.0, -23000.0, 31000.0), SunVector(1, 0.6, -0.48, 0
 
 def readings_with(**changes):
     """What all boards send while no coil is driven, with changes."""
-    return NOTHING._replace(field=FIELD, sun=SUN, coil=IDLE)._replace(**changes)
+    return measured(**({"field": FIELD, "sun": SUN, "coil": IDLE} | changes))
 
 
 def test_a_quiet_sample_is_taken_in_tesla():
@@ -32,6 +32,7 @@ def test_a_quiet_sample_is_taken_in_tesla():
         {"coil": IDLE.replace(current_ma=1)},
         {"coil": IDLE.replace(current_ma=-1)},
         {"quiet": False},
+        {"field_trusted": False},
     ],
     ids=[
         "none",
@@ -42,6 +43,7 @@ def test_a_quiet_sample_is_taken_in_tesla():
         "current",
         "current backwards",
         "a pulse not long ago",
+        "not trusted",
     ],
 )
 def test_a_sample_that_a_coil_may_have_spoilt_is_not(changes):
@@ -69,6 +71,8 @@ def test_sun():
     assert usable_sun(readings_with(sun=SunVector(1, 0.6, -0.48, 0.64))) == (0.6, -0.48, 0.64)
     assert usable_sun(readings_with(sun=SunVector(0, 0.6, -0.48, 0.64))) is None
     assert usable_sun(readings_with(sun=None)) is None
+    assert usable_sun(readings_with(sun_trusted=False)) is None
+    assert usable_sun(readings_with(field_trusted=False)) is not None
 
 
 class TestSunDirection:
@@ -99,3 +103,4 @@ class TestSunDirection:
         assert sun_direction(readings_with(cells=self.LIT, unusable_cells=(1,)), self.CELLS) is None
         assert sun_direction(readings_with(cells=self.LIT.replace(cell_1=0.0)), self.CELLS) is None
         assert sun_direction(readings_with(cells=None), self.CELLS) is None
+        assert sun_direction(readings_with(cells=self.LIT, sun_trusted=False), self.CELLS) is None

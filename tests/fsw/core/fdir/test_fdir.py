@@ -3,6 +3,7 @@
 from math import inf
 
 import pytest
+from gate_samples import measured
 
 from fsw.core.events import Event, Happening
 from fsw.core.fdir import fdir
@@ -14,7 +15,6 @@ from fsw.core.fdir.sensors.cells import CellWatch
 from fsw.core.fdir.sensors.health import SensorHealth, Watch
 from fsw.core.fdir.sensors.pair import Pair, Standing
 from fsw.core.fdir.sensors.plausibility import Findings, Memory
-from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import reference_at
 
 FROZEN, SILENT = SensorFault.FROZEN, SensorFault.SILENT
@@ -85,26 +85,30 @@ def test_a_restarted_plant_leaves_faults_and_doubts_and_takes_the_proof():
 class TestTrusted:
     """What the filter gets."""
 
-    BOTH = NOTHING._replace(field="field", sun="sun")
     FINE = Findings(0, 0, None, None, False, False, Memory())
 
+    def trusted(self, health, findings):
+        """Whether field and Sun are."""
+        sent = measured()
+        fdir.judge_samples(sent, health, findings)
+        return sent.field_trusted, sent.sun_trusted
+
     def test_all_that_nothing_speaks_against(self):
-        assert fdir.trusted(self.BOTH, Health(), self.FINE) == self.BOTH
+        assert self.trusted(Health(), self.FINE) == (True, True)
 
     @pytest.mark.parametrize(
         ("health", "findings", "left"),
         [
-            (sensors(field=FROZEN), FINE, (None, "sun")),
-            (sensors(sun=SILENT), FINE, ("field", None)),
-            (Health(), FINE._replace(field_cause=FROZEN), (None, "sun")),
-            (Health(), FINE._replace(sun_cause=FROZEN), ("field", None)),
-            (sensors(pair=Pair(Standing.DISPUTED)), FINE, ("field", None)),
-            (sensors(pair=Pair(Standing.ON_TRIAL)), FINE, ("field", "sun")),
+            (sensors(field=FROZEN), FINE, (False, True)),
+            (sensors(sun=SILENT), FINE, (True, False)),
+            (Health(), FINE._replace(field_cause=FROZEN), (False, True)),
+            (Health(), FINE._replace(sun_cause=FROZEN), (True, False)),
+            (sensors(pair=Pair(Standing.DISPUTED)), FINE, (True, False)),
+            (sensors(pair=Pair(Standing.ON_TRIAL)), FINE, (True, True)),
         ],
     )
     def test_without_what_is_isolated_implausible_or_disputed(self, health, findings, left):
-        trusted = fdir.trusted(self.BOTH, health, findings)
-        assert (trusted.field, trusted.sun) == left
+        assert self.trusted(health, findings) == left
 
 
 class TestJudgement:
@@ -115,7 +119,7 @@ class TestJudgement:
         world.fly_until_valid()
         state, config = world.state, world.config
         reference = reference_at(state.ephemeris, state.tick, config.ephemeris)
-        findings = fdir.examine(NOTHING, state.health, reference, config.fdir)
+        findings = fdir.examine(measured(), state.health, reference, config.fdir)
         used = fdir.Used(False, False, False)
         evidence = Evidence(state.tick, findings, state.coil, reference, used)
 
@@ -176,7 +180,7 @@ class TestJudgement:
         world.fly_until_valid()
         state, config = world.state, world.config
         reference = reference_at(state.ephemeris, state.tick, config.ephemeris)
-        findings = fdir.examine(NOTHING, state.health, reference, config.fdir)
+        findings = fdir.examine(measured(), state.health, reference, config.fdir)
         stuck = CoilHealth(faults=(0, CoilFault.STUCK, 0), strange_ticks=90, stray_ma=40, stuck=True)
         evidence = Evidence(state.tick, findings, state.coil, reference, fdir.Used(field, True, False))
         before = Health(sensors(pair=PROVEN).sensors, stuck)
@@ -245,7 +249,7 @@ class TestJudgement:
         world.fly_until_valid()
         state, config = world.state, world.config
         reference = reference_at(state.ephemeris, state.tick, config.ephemeris)
-        findings = fdir.examine(NOTHING, state.health, reference, config.fdir)
+        findings = fdir.examine(measured(), state.health, reference, config.fdir)
         used = fdir.Used(True, True, False)
         evidence = Evidence(state.tick, findings, state.coil, reference, used, settled=False)
         monkeypatch.setattr(fdir.sensor_health, "judge", None)

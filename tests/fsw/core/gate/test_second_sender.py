@@ -3,9 +3,9 @@
 from random import Random
 
 import pytest
+from gate_samples import measured
 
 from fsw.core.events import Event
-from fsw.core.gate.readings import NOTHING
 from fsw.core.gate.second_sender import NO_SIGNS, SIGNS, SecondSenderConfig, watch
 from fsw.core.monitors import Monitor
 from fsw.wire.frame import Frame
@@ -30,11 +30,11 @@ FIRE = CoilFire(3, 1, 77, 0, 3000, 5).encode()
 
 
 def under(can_id):
-    return NOTHING._replace(under_own_id=can_id)
+    return measured(under_own_id=can_id)
 
 
 def refusal(seq, reason=CoilRefusedReason.LOCKOUT):
-    return NOTHING._replace(refused=CoilRefused(1, seq & 0xFF, reason, 0))
+    return measured(refused=CoilRefused(1, seq & 0xFF, reason, 0))
 
 
 def watched(heard, pulsed=True):
@@ -76,8 +76,8 @@ class TestNamed:
 
     def test_any_sign_keeps_it_named_until_it_has_been_away_for_long_enough(self):
         named = {tick: under(CoilFire.ID) for tick in range(3)} | {122: under(NavRate.ID)}
-        assert watched(named | {242: NOTHING}).detected
-        assert watched(named | {243: NOTHING}) == NO_SIGNS
+        assert watched(named | {242: measured()}).detected
+        assert watched(named | {243: measured()}) == NO_SIGNS
         assert not watched(named | {243: under(CoilFire.ID)}).detected
 
 

@@ -4,11 +4,11 @@ from dataclasses import replace
 from math import copysign
 
 import pytest
+from gate_samples import measured
 
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.fdir.coils.currents import judge_current
 from fsw.core.fdir.coils.health import CoilHealth
-from fsw.core.gate.readings import NOTHING
 from fsw.core.laws.plan.pulse_model import Pulse
 from fsw.wire.messages import CoilStatus
 
@@ -26,7 +26,7 @@ def judged_at(make_world):
         config, found = replace(limits, pulses=pulses), []
         for after in range(1, pulse_ticks + 3):
             left_ms = remaining(duration_ms - round(1000.0 * after * tick_s))
-            readings = NOTHING._replace(coil=CoilStatus(-3, 1, left_ms, 0, 0, 1))
+            readings = measured(coil=CoilStatus(-3, 1, left_ms, 0, 0, 1))
             health = judge_current(CoilHealth(), FIRED, readings, False, TICK + after, config)
             if health.nats != CoilHealth().nats:
                 assert health.nats == (0.0, 0.5 * limits.weak.threshold, 0.0)
@@ -74,7 +74,7 @@ def test_it_is_judged_by_the_current_of_its_level_and_its_sign(make_world, level
     limits = make_world().config.fdir.coils
     nominal_ma = copysign(limits.current_ma[abs(level) - 1], level)
     view = CoilView(fired_tick=TICK, fired=Pulse(1, level))
-    said = NOTHING._replace(coil=CoilStatus(level, 1, 1000, round(part * nominal_ma), 0, 1))
+    said = measured(coil=CoilStatus(level, 1, 1000, round(part * nominal_ma), 0, 1))
     before = CoilHealth(nats=(0.0, 1.0, 0.0))
     after = judge_current(before, view, said, False, TICK + limits.pulses.pulse_ticks - 1, limits)
     assert after.nats[1] == (1.0 + 0.5 * limits.weak.threshold if speaks_against else 0.0)

@@ -3,6 +3,7 @@
 from math import acos, degrees
 
 import pytest
+from gate_samples import measured
 
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.fdir.coils.currents import judge_current
@@ -10,7 +11,6 @@ from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.fdir.coils.weak_test import NOTHING_OLDER
 from fsw.core.fdir.faults import CoilFault
 from fsw.core.fdir.sensors.pair import Pair
-from fsw.core.gate.readings import NOTHING
 from fsw.core.telemetry import Event
 from fsw.wire.messages import CoilFire, CoilStatus, FswEvent, Mode, TcClear
 
@@ -154,7 +154,7 @@ def test_a_coil_that_was_not_fired_is_not_judged(make_world):
     """Before the first request, after one that was refused, and after a plant has started anew."""
     config = make_world().config
     pulses, health = config.coils.pulses, CoilHealth()
-    off = NOTHING._replace(coil=CoilStatus(0, 0, 0, 0, 0, 0))
+    off = measured(coil=CoilStatus(0, 0, 0, 0, 0, 0))
     for view in (CoilView(), CoilView(fired_tick=700)):
         for age in range(pulses.pulse_ticks + 1):
             tick = view.fired_tick + age

@@ -5,12 +5,12 @@ from math import cos, nan, radians, sin
 
 import pytest
 from cell_samples import CELLS
+from gate_samples import measured
 
 from fsw.core.algebra.vector import add, norm, scale
 from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.plausibility import SHADOW_M, Memory, PlausibilityConfig, examine
 from fsw.core.fdir.sensors.standstill import Moved, Steps
-from fsw.core.gate.readings import NOTHING
 from fsw.core.orbit.ephemeris import reference_at
 from fsw.wire.messages import CoilStatus, MagField, SunCells, SunVector
 
@@ -42,7 +42,7 @@ def readings(reference):
             "sun": SunVector(1, *s, counter=0),
             "coil": IDLE,
         }
-        return NOTHING._replace(**(sound | changed))
+        return measured(**(sound | changed))
 
     return make
 
@@ -80,7 +80,7 @@ def test_the_sun_vector_has_the_length_of_one(reference, readings, part):
 def test_a_field_marked_as_not_valid_counts_while_no_coil_drives(reference, readings):
     saturated = readings(field=MagField(0, 1.0, 2.0, 3.0, counter=0))
     assert causes(examine(Memory(), saturated, reference, LIMITS)) == (SensorFault.SATURATED, 0)
-    driven = saturated._replace(coil=IDLE.replace(level=2))
+    driven = readings(field=MagField(0, 1.0, 2.0, 3.0, counter=0), coil=IDLE.replace(level=2))
     assert causes(examine(Memory(), driven, reference, LIMITS)) == (0, 0)
 
 
@@ -88,8 +88,8 @@ def test_a_field_marked_as_not_valid_counts_while_no_coil_drives(reference, read
 def test_an_axis_at_the_end_of_its_range_is_no_fault_in_a_field_that_may_be_beyond_it(reference, readings):
     strength = norm(reference.b_eci_t)
     narrow, wide = (LIMITS._replace(in_range_t=part * strength) for part in (0.99, 1.01))
-    invalid = readings(field=MagField(0, 1.0, 2.0, 3.0, counter=0))
-    at_the_end = invalid._replace(saturated=((0.0, 1.0, 0.0),))
+    sample = MagField(0, 1.0, 2.0, 3.0, counter=0)
+    invalid, at_the_end = readings(field=sample), readings(field=sample, saturated=((0.0, 1.0, 0.0),))
     assert causes(examine(Memory(), at_the_end, reference, narrow)) == (0, 0)
     assert causes(examine(Memory(), at_the_end, reference, wide)) == (SensorFault.SATURATED, 0)
     assert causes(examine(Memory(), invalid, reference, narrow)) == (SensorFault.SATURATED, 0), "a self-test"
