@@ -27,12 +27,12 @@ def restarted(state: FlightState, tick: int, config: FlightConfig) -> FlightStat
     """
     other, events = state.second_sender, state.events
     reported = tuple(kind._replace(tick=tick - (state.tick - kind.tick)) for kind in events.reported)
+    fdir.discard_proof(state.health)
     return state._replace(
         tick=-1,
         second_sender=SecondSenderWatch(other.signs, tick, other.can_id) if other.signs else other,
         ephemeris=None,
         estimator=anew(state.estimator),
-        health=fdir.plant_restarted(state.health),
         attitude=UNKNOWN,
         modes=ModeState(since_tick=tick, trips=state.modes.trips, held=state.modes.held),
         sample=FieldSample(),

@@ -58,6 +58,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[Flight
     if belief is Belief.IGNORED or belief is Belief.UNANSWERED:
         state = state._replace(ignored_syncs=state.ignored_syncs + 1, syncs=syncs)
         return state, (_done(state, tick),) if belief is Belief.UNANSWERED else ()
+    state = state._replace(health=state.health.copy())
     state, inbox = _begin(state, inbox, belief, config)
     model = with_orbit(config.ephemeris, state.orbit)
     state, measurements = _gate(state, inbox, syncs, config)
@@ -113,6 +114,7 @@ def _gate(
     view = update_view(state.coil, measurements, tick, config.coils)
     view = own_field.subtract_own_field(view, measurements, config.estimator.blank_ticks, config.own_field)
     expected_s = config.epoch_unix_s + tick // config.tick_hz
+    fdir.judge_current(state.health, view, measurements, tick, config.fdir)
     state = state._replace(
         tick=tick,
         syncs=syncs if syncs.strange_tick < 0 else syncs._replace(strange_tick=-1),
@@ -130,7 +132,6 @@ def _gate(
         ),
         coil=view,
         wheel=wheel.seen(state.wheel, measurements, tick, config.wheel),
-        health=fdir.judge_current(state.health, view, measurements, tick, config.fdir),
     )
     return state, measurements
 
@@ -165,8 +166,8 @@ def _predict(
 
 def _without_orbit(state: FlightState) -> FlightState:
     """The state where the orbit has no position: nothing carries the estimate on, so it ends."""
-    health = fdir.plant_restarted(state.health)
-    return state._replace(ephemeris=None, estimator=anew(state.estimator), health=health)
+    fdir.discard_proof(state.health)
+    return state._replace(ephemeris=None, estimator=anew(state.estimator))
 
 
 def _update(
@@ -188,12 +189,13 @@ def _update(
 
 def _judge(state: FlightState, observation: Observation, config: FlightConfig) -> FlightState:
     """Judge sensors and coils by all samples, those of isolated sensors included."""
-    _, reference, estimator, attitude, used, findings = observation
-    tick, health = state.tick, state.health
+    reference, findings, tick = observation.reference, observation.findings, state.tick
+    estimator, attitude = observation.estimator, observation.attitude
     if reference is not None and findings is not None:
-        evidence = Evidence(tick, findings, state.coil, reference, used, state.syncs.settled(tick))
-        health, estimator, attitude = fdir.judge(health, estimator, attitude, evidence, config.fdir)
-    return state._replace(health=health, estimator=estimator, attitude=attitude)
+        settled = state.syncs.settled(tick)
+        evidence = Evidence(tick, findings, state.coil, reference, observation.used, settled)
+        estimator, attitude = fdir.judge(state.health, estimator, attitude, evidence, config.fdir)
+    return state._replace(estimator=estimator, attitude=attitude)
 
 
 def _control(

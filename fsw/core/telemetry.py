@@ -10,7 +10,7 @@ from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.parameters import Layout, component_places
 from fsw.core.events import SEVERITY, Event, Happening, Throttle, throttle_events
-from fsw.core.fdir import fdir
+from fsw.core.fdir import fault_events
 from fsw.core.fdir.observation import Observation
 from fsw.core.gate.measurements import Measurements
 from fsw.core.gate.sync_watch import near
@@ -200,7 +200,8 @@ def happenings(
         found.append(Happening(Event.FILTER_RESTARTED, after.estimator.restarts))
     if before.estimator.estimate is None and after.estimator.estimate is not None:
         found.append(Happening(Event.FILTER_STARTED, after.estimator.restarts))
-    found += fdir.happenings(before.health, after.health)
+    faults_before = fault_events.find_faults(before.health)
+    found += fault_events.happenings(faults_before, fault_events.find_faults(after.health))
     if after.second_sender.detected and not before.second_sender.detected:
         found.append(Happening(Event.SECOND_SENDER, after.second_sender.can_id))
     if measurements.refused is not None:

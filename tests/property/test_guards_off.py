@@ -63,7 +63,7 @@ GUARDS = {
     "sensor health": Off(
         "mag-bias",
         "named or doubted",
-        ("fsw.core.fdir.sensors.health.judge", lambda health, *seen: health),
+        ("fsw.core.fdir.sensors.health.judge_sensors", lambda *seen: None),
         watch_s=100.0,
     ),
     "coil health: current": Off(

@@ -25,8 +25,8 @@ would undo what fits.
 Source: Wald 1945; Page 1954, Continuous inspection schemes (Biometrika 41); Lorden 1971 for the e^A.
 """
 
+from dataclasses import dataclass
 from math import log
-from typing import NamedTuple
 
 from fsw.core.estimation.mekf import LAG_S
 
@@ -43,7 +43,8 @@ SIGMAS = 4.0
 DAY_S = 86400.0
 
 
-class EvidenceWeights(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class EvidenceWeights:
     """The threshold, and what a sample weighs in a tick, nats.
 
     ``against``: a bad sample against a unit, and a good one in its favour; ``fits`` and ``misfits``: a sample
@@ -125,6 +126,7 @@ def mean_misfit(means: tuple[float, ...], weights: EvidenceWeights) -> float:
         means: of field and Sun, three numbers each, in standard deviations.
         weights: of the evidence.
     """
-    (of_field, of_sun), field, sun = weights.lasting, means[:3], means[3:]
-    most = max(sum([mean * mean for mean in field]) / of_field, sum([mean * mean for mean in sun]) / of_sun)
+    b1, b2, b3, s1, s2, s3 = means
+    of_field, of_sun = weights.lasting
+    most = max(sum([b1 * b1, b2 * b2, b3 * b3]) / of_field, sum([s1 * s1, s2 * s2, s3 * s3]) / of_sun)
     return 0.5 * weights.averaged * most / INFLATION

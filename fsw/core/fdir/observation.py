@@ -1,6 +1,6 @@
 """What one tick shows of the satellite, between the measurements and the judgement of them."""
 
-from typing import NamedTuple
+from typing import final
 
 from fsw.core.estimation.attitude import Attitude
 from fsw.core.estimation.estimator import NONE_USED, EstimatorState, Used
@@ -9,7 +9,8 @@ from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.ephemeris import Reference
 
 
-class Observation(NamedTuple):
+@final
+class Observation:
     """What one tick shows of the satellite.
 
     ``measurements`` say what may be trusted; ``reference`` is what the models expect, None without an
@@ -17,9 +18,20 @@ class Observation(NamedTuple):
     filter took.
     """
 
-    measurements: Measurements
-    reference: Reference | None
-    estimator: EstimatorState
-    attitude: Attitude
-    used: Used = NONE_USED
-    findings: Findings | None = None
+    __slots__ = ("attitude", "estimator", "findings", "measurements", "reference", "used")
+
+    def __init__(
+        self,
+        measurements: Measurements,
+        reference: Reference | None,
+        estimator: EstimatorState,
+        attitude: Attitude,
+        used: Used = NONE_USED,
+        findings: Findings | None = None,
+    ) -> None:
+        self.measurements = measurements
+        self.reference = reference
+        self.estimator = estimator
+        self.attitude = attitude
+        self.used = used
+        self.findings = findings

@@ -137,8 +137,8 @@ def test_every_law(name, mode):
 @pytest.mark.parametrize("mode", Mode)
 def test_clearing_reports_isolated_cells_as_readmitted(mode):
     config, state, inboxes = flown("cubesat-cells")
-    isolated = tuple([CellWatch(Watch(fault)) for fault in (0, 4, 0, 2, 0, 0)])
-    health = state.health._replace(sensors=state.health.sensors._replace(cells=isolated))
+    health = state.health.copy()
+    health.sensors.cells = [CellWatch(Watch(fault)) for fault in (0, 4, 0, 2, 0, 0)]
     said = obey((config, state._replace(health=health), inboxes), mode, TcClear())
     readmitted = [e.argument for e in of(FswEvent, said) if e.event == Event.SENSOR_READMITTED]
     assert readmitted == [100 * Sensor.CELL_2 + 4, 100 * Sensor.CELL_4 + 2]

@@ -5,7 +5,7 @@ import pytest
 from fsw.core.estimation.parameters import NOTHING as AS_THE_TABLE
 from fsw.core.estimation.parameters import component_places, with_component
 from fsw.core.fdir.evidence import SIGMAS
-from fsw.core.fdir.sensors.credibility import credible
+from fsw.core.fdir.sensors.credibility import is_credible
 from fsw.core.modes import ModeState
 from fsw.wire.messages import (
     Component,
@@ -112,12 +112,12 @@ class TestParameter:
             inside, beyond = (TcParameter(parameter, -9, edge + step) for step in (-outward, outward))
             after, results = obey(state, inside, config=config)
             assert results == [TcAckResult.ACCEPTED]
-            assert credible(after.estimator.estimate, config.fdir.sensors.credibility)
+            assert is_credible(after.estimator.estimate, config.fdir.sensors.credibility)
             refused(TcAckResult.OUT_OF_RANGE, beyond, start=state, config=config)
             value = 1e-9 * (edge + outward)
             strange = with_component(after.estimator.estimate.parameters, parameter, value)
             off = after.estimator.estimate._replace(parameters=strange)
-            assert not credible(off, config.fdir.sensors.credibility)
+            assert not is_credible(off, config.fdir.sensors.credibility)
 
     @pytest.mark.parametrize("sent", NO_BODY, ids=["products of x and y", "of y and z", "of x and z"])
     @pytest.mark.parametrize("started", [True, False])

@@ -7,7 +7,6 @@ import pytest
 
 from fsw.core.events import Event
 from fsw.core.fdir.faults import CoilFault, SensorFault
-from fsw.core.fdir.fdir import Health
 from fsw.core.fdir.sensors.health import Watch
 from fsw.core.gate.second_sender import SIGNS, SecondSenderWatch
 from fsw.core.gate.sync_watch import LEAP_S
@@ -176,11 +175,12 @@ class TestRepeated:
 
 class TestWhatStays:
     def test_what_the_ground_has_set_and_what_was_found(self, world, snapshot):
-        coils = world.state.health.coils._replace(faults=(0, CoilFault.OPEN, 0))
-        sensors = world.state.health.sensors._replace(sun=Watch(SensorFault.FROZEN))
+        health = world.state.health.copy()
+        health.sensors.sun = Watch(SensorFault.FROZEN)
+        health.coils = coils = health.coils._replace(faults=(0, CoilFault.OPEN, 0))
         modes = request_mode(world.state.modes, Mode.SAFE, LATEST)._replace(trips=2)
         state = world.state._replace(
-            health=Health(sensors, coils),
+            health=health,
             modes=modes,
             second_sender=SecondSenderWatch(SIGNS, LATEST - 9, CoilFire.ID),
             orbit=world.state.upload.values,
@@ -190,7 +190,7 @@ class TestWhatStays:
         for kept in ("gate", "orbit", "upload", "setpoint", "sent", "ignored_syncs", "time_error_s"):
             assert snapshot(getattr(after, kept)) == snapshot(getattr(state, kept))
         assert after.health.coils == coils
-        assert after.health.sensors.sun == sensors.sun
+        assert after.health.sensors.sun == Watch(SensorFault.FROZEN)
         assert after.health.sensors.pair.proof <= 0
         assert (after.modes.mode, after.modes.trips, after.modes.held) == (Mode.SAFE, 2, True)
         assert after.second_sender == SecondSenderWatch(SIGNS, 3, CoilFire.ID)

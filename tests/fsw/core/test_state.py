@@ -8,7 +8,7 @@ import pytest
 from batch_samples import search_under_way
 
 from fsw.core.actuation.wheel import WheelView
-from fsw.core.fdir.sensors.standstill import NO_MOTION, Moved
+from fsw.core.fdir.sensors.standstill import Displacement, Motion
 from fsw.core.orbit.elements import Elements, Upload
 from fsw.core.packing import checksum
 from fsw.core.state import FlightState
@@ -22,8 +22,9 @@ ELEMENTS = Elements(
 
 def with_motion(health, motion):
     """The health with this motion behind readings that stand still, None: of continuous sensors."""
-    sensors = health.sensors
-    return health._replace(sensors=sensors._replace(memory=sensors.memory._replace(motion=motion)))
+    health = health.copy()
+    health.sensors.memory.motion = motion
+    return health
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +37,7 @@ def run(make_world):
     first, batch = state.estimator.estimate.parameters, search_under_way()
     state = state._replace(estimator=state.estimator._replace(first=first, batch=batch))
     state = state._replace(wheel=WheelView(123.5, 229, 2e-4, -3e-4, 2, known=True))
-    motion = (Moved((3e-7, -2e-7, 1e-7), 4e-9), Moved((0.002, 0.003, -0.001), 5e-5))
+    motion = Motion(Displacement((3e-7, -2e-7, 1e-7), 4e-9), Displacement((0.002, 0.003, -0.001), 5e-5))
     state = state._replace(health=with_motion(state.health, motion))
     assert state.coil.fired_tick >= 0
     assert any(state.pulses.owed_impulse_body_nms)
@@ -63,7 +64,7 @@ def test_what_is_not_there_differs_from_what_is(run):
     without_estimate = run._replace(estimator=run.estimator._replace(estimate=None))
     without_first = run._replace(estimator=run.estimator._replace(first=None))
     without_ephemeris = run._replace(ephemeris=None)
-    without_motion, at_rest = (run._replace(health=with_motion(run.health, m)) for m in (None, NO_MOTION))
+    without_motion, at_rest = (run._replace(health=with_motion(run.health, m)) for m in (None, Motion()))
     without_orbit = run._replace(orbit=None)
     without = (without_estimate, without_first, without_ephemeris, without_motion, without_orbit)
     sums = {checksum(state) for state in (run, at_rest, *without)}

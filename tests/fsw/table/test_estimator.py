@@ -1,6 +1,6 @@
 """From the onboard table to the estimator: noise as given, priors and limits from the bounds."""
 
-from dataclasses import fields
+from dataclasses import astuple, fields
 from math import radians, sqrt
 
 import numpy as np
@@ -9,6 +9,7 @@ import pytest
 from fsw.core.algebra.quaternion import normalise
 from fsw.core.estimation import mekf
 from fsw.core.estimation.parameters import NAMES, OF_CELLS
+from fsw.core.fdir.sensors.standstill import Steps
 from fsw.input.schema import merge
 from fsw.table.estimator import (
     GATE_NIS,
@@ -135,12 +136,12 @@ class TestLimitsOfThePair:
         table = table_with(uncertainty=EXACT, estimator=self.SENSORS | steps, time={"tick_hz": 4})
         limits = plausibility_config(table)
         assert plain.steps is None
-        assert limits.steps == pytest.approx((600e-9, 0.03, 0.25))
+        assert astuple(limits.steps) == pytest.approx((600e-9, 0.03, 0.25))
         assert limits.field_t == pytest.approx(sqrt(3.0 * GATE_NIS * (150e-9**2 + 600e-9**2 / 12.0)))
         assert limits.sun_norm == pytest.approx(sqrt(GATE_NIS * (radians(0.3) ** 2 + 0.03**2 / 12.0)))
         assert limits.sun_norm > sqrt(3.0) * 0.03 / 2.0, "the length that rounding alone may give"
         one = plausibility_config(table_with(estimator={"sun_quantum": 0.03}))
-        assert one.steps == (0.0, 0.03, 1.0)
+        assert one.steps == Steps(field_t=0.0, sun=0.03, tick_s=1.0)
 
     def test_of_an_exact_table_are_the_noise_s(self):
         limits = plausibility_config(table_with(uncertainty=EXACT, estimator=self.SENSORS))

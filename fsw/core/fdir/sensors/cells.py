@@ -21,8 +21,8 @@ Two cells are not taken to fail under one estimate, but a wrong estimate is cont
 another as the satellite turns. What speaks against a second cell that is lit speaks against the estimate.
 """
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import final
 
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import dot
@@ -36,7 +36,8 @@ from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import COMPONENTS, NAMES, Parameters, component_places
 from fsw.core.fdir.evidence import SIGMAS, EvidenceWeights
 from fsw.core.fdir.faults import SensorFault
-from fsw.core.fdir.sensors.watch import Watch, accused, readmitted
+from fsw.core.fdir.sensors.cell_evidence import CellEvidence
+from fsw.core.fdir.sensors.watch import Watch, accuse, readmit
 
 STILL = 0.06
 """Fraction of full sunlight by which a still current should have moved: eight steps of it on the bus."""
@@ -45,151 +46,162 @@ GAIN_1, EXCESS_1 = (COMPONENTS.index((NAMES.index(name), 0)) for name in ("cell_
 """Numbers of these components of the first cell; those of the others follow."""
 
 
-class CellWatch(NamedTuple):
-    """One cell: the evidence, what it has shown since its last change, and what was predicted then.
+@final
+@dataclass(slots=True)
+class CellWatch:
+    """One cell: the evidence, its current since the last change of it, and what was predicted then.
 
     ``still``: the prediction has moved since, and the current has not. ``by_this``: it is isolated because of
     what the estimate in use predicts for it in the light.
     """
 
-    watch: Watch = Watch()
-    shown: float = NO_CURRENT
+    watch: Watch = field(default_factory=Watch)
+    current: float = NO_CURRENT
     predicted: float = 0.0
     still: bool = False
     by_this: bool = False
 
-
-CellsHealth = tuple[CellWatch, ...]
-
-
-class CellEvidence(NamedTuple):
-    """What one tick shows of all cells.
-
-    ``currents`` are of isolated cells too; ``seen`` is None in the shadow, and ``shadow`` says that this is
-    certain. ``sure``: the estimate is proven, and the field confirms it; ``begun``: there is none yet, or it
-    began in this tick.
-    """
-
-    currents: Sequence[float | None]
-    used: CellsUsed
-    estimate: Estimate | None
-    seen: Light | None
-    shadow: bool
-    sure: bool
-    begun: bool
+    def copy(self) -> "CellWatch":
+        """A watch of its own with the same evidence."""
+        return replace(self, watch=self.watch.copy())
 
 
-def judge(
+CellsHealth = list[CellWatch]
+"""By cell; empty before the first evidence, and without cells."""
+
+
+def judge_cells(
     health: CellsHealth, evidence: CellEvidence, weights: EvidenceWeights, config: MekfConfig
-) -> CellsHealth:
-    """The cells after a tick; none where the satellite has none."""
-    cells = config.cells
-    if evidence.begun:  # with the board silent, too
-        health = tuple([watch._replace(by_this=False) for watch in health])
-    if cells is None or not evidence.currents:
-        return health
-    watches = health or (CellWatch(),) * len(cells.normals_body)
-    return tuple(
-        [
-            _watched(watch, cell, current, evidence, weights, config, cells)
-            for cell, (watch, current) in enumerate(zip(watches, evidence.currents, strict=True))
-        ]
-    )
+) -> None:
+    """Judge the cells by a tick; there are none where the satellite has none."""
+    cells, currents = config.cells, evidence.currents
+    if evidence.new:  # with the board silent, too
+        for one in health:
+            one.by_this = False
+    if cells is None or not currents:
+        return
+    if not health:
+        health.extend([CellWatch() for _ in cells.normals_body])
+    for cell in range(len(health)):
+        current = currents[cell]
+        if current is not None:
+            _judge_cell(health[cell], cell, current, evidence, weights, config, cells)
 
 
-def contradicted(health: CellsHealth) -> bool:
+def is_contradicted(health: CellsHealth) -> bool:
     """Whether the estimate in use has had more than one cell isolated."""
     return sum([one.by_this for one in health]) > 1
 
 
-def doubtful(health: CellsHealth, weights: EvidenceWeights) -> bool:
+def is_doubtful(health: CellsHealth, weights: EvidenceWeights) -> bool:
     """Whether it has had one isolated, and over half of what isolates a cell speaks against another."""
-    accused_too = any(one.watch.nats > 0.5 * weights.threshold and not one.watch.fault for one in health)
-    return accused_too and any(one.by_this for one in health)
+    accused = any(one.watch.nats > 0.5 * weights.threshold and not one.watch.fault for one in health)
+    return accused and any(one.by_this for one in health)
 
 
-def unusable(health: CellsHealth) -> tuple[int, ...]:
+def unusable_cells(health: CellsHealth) -> tuple[int, ...]:
     """Numbers of the cells that the filter is not to take."""
     return tuple([cell for cell, one in enumerate(health) if one.watch.fault or one.still])
 
 
-def faulty(health: CellsHealth) -> tuple[int, ...]:
+def isolated_cells(health: CellsHealth) -> tuple[int, ...]:
     """Numbers of the cells that are isolated."""
     return tuple([cell for cell, one in enumerate(health) if one.watch.fault])
 
 
-def cell_changes(before: CellsHealth, after: CellsHealth) -> list[tuple[int, int, int]]:
+def cell_faults(health: CellsHealth) -> tuple[int, ...]:
+    """The fault of each cell; empty before the first evidence."""
+    return tuple([one.watch.fault for one in health])
+
+
+def cell_changes(before: tuple[int, ...], after: tuple[int, ...]) -> list[tuple[int, int, int]]:
     """(number, fault before, fault after) of each cell whose fault has changed; without a watch, none."""
-    cells = max(len(before), len(after))
-    was, now = (health or (CellWatch(),) * cells for health in (before, after))
-    return [
-        (cell, one.watch.fault, other.watch.fault)
-        for cell, (one, other) in enumerate(zip(was, now, strict=True))
-        if one.watch.fault != other.watch.fault
-    ]
+    found = []
+    for cell in range(max(len(before), len(after))):
+        was = before[cell] if before else 0
+        now = after[cell] if after else 0
+        if was != now:
+            found.append((cell, was, now))
+    return found
 
 
-def without_isolated(
-    state: EstimatorState, before: CellsHealth, after: CellsHealth, config: MekfConfig
+def forget_isolated(
+    state: EstimatorState, before: tuple[int, ...], health: CellsHealth, config: MekfConfig
 ) -> EstimatorState:
-    """The state without gain and excess of the cells that have just been isolated; as it is while frozen."""
-    places = component_places(config.layout)
-    for cell, _, fault in cell_changes(before, after):
+    """The state without gain and excess of the cells isolated in this tick; as it is while frozen.
+
+    Args:
+        state: of the estimator.
+        before: the faults of the tick before.
+        health: of this tick.
+        config: of the filter.
+    """
+    for cell, _, fault in cell_changes(before, cell_faults(health)):
         for number in (GAIN_1 + cell, EXCESS_1 + cell):
-            if fault and number in places and not state.frozen:
+            if fault and number in component_places(config.layout) and not state.frozen:
                 state = forget(state, number, config)
     return state
 
 
-def _watched(
-    before: CellWatch,
-    cell: int,
-    current: float | None,
-    evidence: CellEvidence,
-    weights: EvidenceWeights,
-    config: MekfConfig,
-    cells: CellSet,
-) -> CellWatch:
-    """A cell after a tick, and whether it is isolated because of the estimate in use."""
-    if current is None:
-        return before
-    after = _judged(before, cell, current, evidence, weights, config, cells)
-    by_this = before.by_this if before.watch.fault else evidence.seen is not None
-    return after._replace(by_this=by_this and bool(after.watch.fault))
-
-
-def _judged(
-    before: CellWatch,
+def _judge_cell(
+    one: CellWatch,
     cell: int,
     current: float,
     evidence: CellEvidence,
     weights: EvidenceWeights,
     config: MekfConfig,
     cells: CellSet,
-) -> CellWatch:
-    if evidence.seen is None:
-        verdict = _by_dark(before.watch.fault, current, cells) if evidence.shadow else None
-        return CellWatch(_weighed(before.watch, verdict, False, weights))
-    if evidence.estimate is None or not evidence.sure:
-        return before
-    estimate, seen, normal = evidence.estimate, evidence.seen, cells.normals_body[cell]
-    s = rotate(estimate.q_body_from_eci, seen.s_eci)
+) -> None:
+    """Judge a cell by a tick, and whether it is isolated because of the estimate in use."""
+    was_isolated = one.watch.fault != 0
+    if evidence.light is None:
+        _forget_current(one)
+        if evidence.shadow:
+            _weigh(one.watch, _by_dark(one.watch.fault, current, cells), False, weights)
+    elif evidence.estimate is not None and evidence.sure:
+        _compare(one, cell, current, evidence.estimate, evidence.light, evidence.used, weights, config, cells)
+    if not was_isolated:
+        one.by_this = evidence.light is not None
+    one.by_this = one.by_this and one.watch.fault != 0
+
+
+def _compare(
+    one: CellWatch,
+    cell: int,
+    current: float,
+    estimate: Estimate,
+    light: Light,
+    used: CellsUsed,
+    weights: EvidenceWeights,
+    config: MekfConfig,
+    cells: CellSet,
+) -> None:
+    """Compare a cell with what an estimate that is proven predicts for it."""
+    normal = cells.normals_body[cell]
+    s = rotate(estimate.q_body_from_eci, light.s_eci)
     if cells.shaded(cell, s):
-        return CellWatch(before.watch)
+        _forget_current(one)
+        return
     if dot(normal, s) <= LEAST_COSINE:
-        bright = dot(normal, s) < -LEAST_COSINE and current > most_behind(estimate, normal, seen, cells)
-        return CellWatch(_weighed(before.watch, SensorFault.STRENGTH if bright else None, False, weights))
-    predicted, _ = prediction(_as_by_table(estimate), cell, seen, config, cells)
-    shown = before._replace(still=False)
-    if current != before.shown:
-        shown = CellWatch(before.watch, current, predicted)
-    shown = shown._replace(still=abs(predicted - shown.predicted) > STILL + cells.step)
-    unclear = len(evidence.used.refused) > max(1, len(evidence.used.taken))
-    verdict = _verdict(shown, cell, current, evidence.used, estimate, cells)
-    if verdict is None and before.watch.fault and not evidence.used.refused:
-        fits = taken(estimate, cell, current, seen, config, cells) is not None
+        _forget_current(one)
+        if dot(normal, s) < -LEAST_COSINE and current > most_behind(estimate, normal, light, cells):
+            _weigh(one.watch, SensorFault.STRENGTH, False, weights)
+        return
+    predicted, _ = prediction(_as_by_table(estimate), cell, light, config, cells)
+    if current != one.current:
+        one.current, one.predicted = current, predicted
+    one.still = abs(predicted - one.predicted) > STILL + cells.step
+    unclear = len(used.refused) > max(1, len(used.taken))
+    verdict = _verdict(one, cell, current, used, estimate, cells)
+    if verdict is None and one.watch.fault and not used.refused:
+        fits = taken(estimate, cell, current, light, config, cells) is not None
         verdict = 0 if fits else SensorFault.REFUSED
-    return shown._replace(watch=_weighed(before.watch, verdict, unclear, weights))
+    _weigh(one.watch, verdict, unclear, weights)
+
+
+def _forget_current(one: CellWatch) -> None:
+    """Begin anew to compare how current and prediction move."""
+    one.current, one.predicted, one.still = NO_CURRENT, 0.0, False
 
 
 def _by_dark(fault: int, current: float, cells: CellSet) -> int | None:
@@ -205,34 +217,30 @@ def _as_by_table(estimate: Estimate) -> Estimate:
 
 
 def _verdict(
-    shown: CellWatch,
-    cell: int,
-    current: float,
-    used: CellsUsed,
-    estimate: Estimate,
-    cells: CellSet,
+    one: CellWatch, cell: int, current: float, used: CellsUsed, estimate: Estimate, cells: CellSet
 ) -> int | None:
     """What speaks against a lit cell; 0: it is as predicted, None: the filter neither took nor refused it."""
-    if shown.still:
+    if one.still:
         return SensorFault.FROZEN
-    if current <= cells.dark or _beyond(estimate.parameters, cell, cells):
+    if current <= cells.dark or _is_beyond(estimate.parameters, cell, cells):
         return SensorFault.STRENGTH
     if cell in used.refused:
         return SensorFault.REFUSED
     return 0 if cell in used.taken else None
 
 
-def _beyond(known: Parameters, cell: int, cells: CellSet) -> bool:
+def _is_beyond(parameters: Parameters, cell: int, cells: CellSet) -> bool:
     """Whether excess or gain of a cell is beyond what the table allows."""
-    gain = known.cell_gain[cell] if known.cell_gain else 0.0
-    excess = known.cell_excess[cell]
+    gain = parameters.cell_gain[cell] if parameters.cell_gain else 0.0
+    excess = parameters.cell_excess[cell]
     return abs(excess) > SIGMAS * cells.excess_sigma or abs(gain) > SIGMAS * cells.gain_sigma
 
 
-def _weighed(watch: Watch, verdict: int | None, unclear: bool, weights: EvidenceWeights) -> Watch:
-    """A cell in use may be accused, an isolated one readmitted; without a comparison nothing changes."""
+def _weigh(watch: Watch, verdict: int | None, unclear: bool, weights: EvidenceWeights) -> None:
+    """Accuse a cell in use, or readmit an isolated one; without a comparison nothing changes."""
     if verdict is None:
-        return watch
+        return
     if watch.fault:
-        return readmitted(watch, not verdict, weights)
-    return accused(watch, verdict, unclear, weights)
+        readmit(watch, not verdict, weights)
+    else:
+        accuse(watch, verdict, unclear, weights)

@@ -4,8 +4,8 @@ A parameter is credible within ``SIGMAS`` standard deviations of its prior. The 
 one beyond that: swapped axes of a Sun sensor by a misalignment, a twisting magnetometer by a bias.
 """
 
+from dataclasses import dataclass
 from math import sqrt
-from typing import NamedTuple
 
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
@@ -16,16 +16,17 @@ OF_SENSORS = frozenset({"mag_bias_t", "mag_turn_rad", "mag_scale", "sun_turn_rad
 """Parameters that say how a sensor measures; the others say how the satellite moves."""
 
 
-class CredibilityConfig(NamedTuple):
-    """Place, least and largest credible value of each number that is estimated, among the ``Parameters``.
+Limits = tuple[tuple[int, float, float], ...]
+"""Place, least and largest credible value of each number that is estimated, among the ``Parameters``."""
 
-    ``of_sensors``, ``of_all`` and ``but_coils``: of the parameters of the sensors, of all, and of all but
-    those of the coils.
-    """
 
-    of_sensors: tuple[tuple[int, float, float], ...]
-    of_all: tuple[tuple[int, float, float], ...]
-    but_coils: tuple[tuple[int, float, float], ...]
+@dataclass(frozen=True, slots=True)
+class CredibilityConfig:
+    """The limits of the parameters of the sensors, of all, and of all but those of the coils."""
+
+    of_sensors: Limits
+    of_all: Limits
+    but_coils: Limits
 
 
 def credibility_config(mekf: MekfConfig) -> CredibilityConfig:
@@ -46,21 +47,21 @@ def credibility_config(mekf: MekfConfig) -> CredibilityConfig:
     return CredibilityConfig(tuple(of_sensors), tuple(of_all), tuple(but_coils))
 
 
-def credible(estimate: Estimate, config: CredibilityConfig) -> bool:
+def is_credible(estimate: Estimate, config: CredibilityConfig) -> bool:
     """Whether the satellite that the estimate assumes can be the one of the table."""
-    return _within(estimate, config.of_all)
+    return _is_within(estimate, config.of_all)
 
 
-def credible_but_coils(estimate: Estimate, config: CredibilityConfig) -> bool:
+def is_credible_but_coils(estimate: Estimate, config: CredibilityConfig) -> bool:
     """Whether it can be, apart from its coils: a weak one has a gain that is not credible."""
-    return _within(estimate, config.but_coils)
+    return _is_within(estimate, config.but_coils)
 
 
-def sensors_credible(estimate: Estimate, config: CredibilityConfig) -> bool:
+def are_sensors_credible(estimate: Estimate, config: CredibilityConfig) -> bool:
     """Whether its sensors can be those of the table."""
-    return _within(estimate, config.of_sensors)
+    return _is_within(estimate, config.of_sensors)
 
 
-def _within(estimate: Estimate, limits: tuple[tuple[int, float, float], ...]) -> bool:
+def _is_within(estimate: Estimate, limits: Limits) -> bool:
     numbers = estimate.parameters.floats()
-    return all([low <= numbers[place] <= high for place, low, high in limits])
+    return all(low <= numbers[place] <= high for place, low, high in limits)

@@ -9,13 +9,14 @@ An isolated sensor is readmitted if it shows what the estimate predicts, where t
 both sensors have agreed for long, in which case the estimate is given up, since it did not agree.
 """
 
-from typing import NamedTuple
+import dataclasses
+from dataclasses import dataclass
+from typing import final
 
 import numpy as np
 
 from fsw.core.algebra.vector import Vec3, sub
 from fsw.core.estimation.cells.cell_set import light
-from fsw.core.estimation.cells.update import NO_CELLS
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.kalman import Matrix, inverse
 from fsw.core.estimation.measurement import Prediction, field_prediction, field_sampled, sun_prediction
@@ -23,26 +24,46 @@ from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.evidence import INFLATION, EvidenceWeights
 from fsw.core.fdir.faults import SensorFault
-from fsw.core.fdir.sensors import cells, pair
-from fsw.core.fdir.sensors.cells import CellEvidence, CellsHealth
-from fsw.core.fdir.sensors.credibility import CredibilityConfig, credible
-from fsw.core.fdir.sensors.pair import Observed, Pair
-from fsw.core.fdir.sensors.plausibility import Findings, Memory
-from fsw.core.fdir.sensors.watch import Watch, accused, readmitted
+from fsw.core.fdir.sensors.cell_evidence import CellEvidence
+from fsw.core.fdir.sensors.cells import (
+    CellsHealth,
+    cell_faults,
+    is_contradicted,
+    judge_cells,
+)
+from fsw.core.fdir.sensors.credibility import CredibilityConfig, is_credible
+from fsw.core.fdir.sensors.memory import Memory
+from fsw.core.fdir.sensors.observed import Observed, is_new
+from fsw.core.fdir.sensors.pair import Pair, end_estimate, is_proven, is_valid, judge_pair
+from fsw.core.fdir.sensors.plausibility import Findings
+from fsw.core.fdir.sensors.watch import Watch, accuse, readmit, reset_watch
 from fsw.core.orbit.ephemeris import Reference
 
 
-class SensorHealth(NamedTuple):
+@final
+@dataclass(slots=True)
+class SensorHealth:
     """Each sensor by itself, both together, and their last samples."""
 
-    field: Watch = Watch()
-    sun: Watch = Watch()
-    pair: Pair = Pair()
-    memory: Memory = Memory()
-    cells: CellsHealth = ()
+    field: Watch = dataclasses.field(default_factory=Watch)
+    sun: Watch = dataclasses.field(default_factory=Watch)
+    pair: Pair = dataclasses.field(default_factory=Pair)
+    memory: Memory = dataclasses.field(default_factory=Memory)
+    cells: CellsHealth = dataclasses.field(default_factory=list)
+
+    def copy(self) -> "SensorHealth":
+        """A health of its own."""
+        return SensorHealth(
+            self.field.copy(),
+            self.sun.copy(),
+            self.pair.copy(),
+            self.memory.copy(),
+            [one.copy() for one in self.cells],
+        )
 
 
-class SensorConfig(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class SensorConfig:
     """The weights of evidence, what is credible, and the filter."""
 
     weights: EvidenceWeights
@@ -50,26 +71,31 @@ class SensorConfig(NamedTuple):
     mekf: MekfConfig
 
 
-def faults(health: SensorHealth) -> tuple[int, ...]:
+def sensor_faults(health: SensorHealth) -> tuple[int, ...]:
     """The fault of each sensor and cell."""
-    return (health.field.fault, health.sun.fault, *[one.watch.fault for one in health.cells])
+    return (health.field.fault, health.sun.fault, *cell_faults(health.cells))
 
 
-def suspected(health: SensorHealth) -> bool:
+def is_suspected(health: SensorHealth) -> bool:
     """Whether there is evidence against a sensor in use."""
-    watches = (health.field, health.sun, *[one.watch for one in health.cells])
-    return any(watch.nats > 0.0 and not watch.fault for watch in watches)
+    if _is_accused(health.field) or _is_accused(health.sun):
+        return True
+    return any(_is_accused(one.watch) for one in health.cells)
 
 
-def judge(
+def _is_accused(watch: Watch) -> bool:
+    return watch.nats > 0.0 and not watch.fault
+
+
+def judge_sensors(
     health: SensorHealth,
     findings: Findings,
     used: Used,
     estimate: Estimate | None,
     reference: Reference,
     config: SensorConfig,
-) -> SensorHealth:
-    """The health after the samples of this tick.
+) -> None:
+    """Judge the sensors by the samples of this tick.
 
     Args:
         health: of the tick before.
@@ -79,10 +105,10 @@ def judge(
         reference: field and Sun as modelled.
         config: limits.
     """
-    weights, (field, sun) = config.weights, health[:2]
+    weights, field, sun, both = config.weights, health.field, health.sun, health.pair
     b_fits = _field_fits(findings, estimate, reference, config.mekf) if field.fault else None
     s_fits = _sun_fits(findings, estimate, reference, config.mekf) if sun.fault else None
-    seen = Observed(
+    observed = Observed(
         findings,
         used,
         estimate,
@@ -90,52 +116,64 @@ def judge(
         refused_sun=_sun_compared(used, config.mekf)
         and _refused(findings.sun, findings.sun_cause or sun.fault, used.sun, estimate),
         isolated=bool(field.fault or sun.fault),
-        untold=bool((field.fault and b_fits is None) or (sun.fault and s_fits is None)),
-        shown=min([watch.nats for watch in (field, sun) if watch.fault], default=0.0),
-        sound=estimate is None or credible(estimate, config.credibility),
+        inconclusive=bool((field.fault and b_fits is None) or (sun.fault and s_fits is None)),
+        in_favour=_in_favour(field, sun),
+        credible=estimate is None or is_credible(estimate, config.credibility),
     )
-    both = pair.judge(health.pair, seen, weights, config.credibility)
-    trusted = pair.valid(health.pair)  # an estimate that lags may have been misled
-    sure = trusted and pair.proven(health.pair, weights)
-    by_cell = _cells(health, seen, reference, sure, config)
-    if cells.contradicted(by_cell):
-        both = Pair(ended=True)
+    trusted = is_valid(both)  # as before this tick: an estimate that lags may have been misled
+    sure = trusted and is_proven(both, weights)
+    judge_pair(both, observed, weights, config.credibility)
+    _judge_cells(health, observed, reference, sure, config)
+    if is_contradicted(health.cells):
+        end_estimate(both)
     if both.accord >= weights.threshold:
-        return SensorHealth(Watch(), Watch(), both._replace(accord=0.0), findings.memory, by_cell)
+        reset_watch(field)
+        reset_watch(sun)
+        both.accord = 0.0
+        return
     alone = trusted and findings.sun is None  # dynamics do not jump
-    b_refused = seen.refused_field and (alone or (sure and used.sun))
-    s_refused = seen.refused_sun and sure and used.field
-    common = findings.field_cause and findings.sun_cause and not seen.isolated
-    ambiguous = seen.refused and not (b_refused or s_refused)  # says nothing of one that a check accuses
+    b_refused = observed.refused_field and (alone or (sure and used.sun))
+    s_refused = observed.refused_sun and sure and used.field
+    common = findings.field_cause != 0 and findings.sun_cause != 0 and not observed.isolated
+    ambiguous = observed.refused and not (b_refused or s_refused)  # not of one that a check accuses
     if field.fault:
-        field = readmitted(field, b_fits, weights)
+        readmit(field, b_fits, weights)
     else:
         cause = findings.field_cause or (SensorFault.REFUSED if b_refused else 0)
-        field = accused(field, cause, common or (ambiguous and not findings.field_cause), weights)
+        accuse(field, cause, common or (ambiguous and not findings.field_cause), weights)
     if sun.fault:
-        sun = readmitted(sun, s_fits, weights)
+        readmit(sun, s_fits, weights)
     else:
         cause = findings.sun_cause or (SensorFault.REFUSED if s_refused else 0)
-        sun = accused(sun, cause, common or (ambiguous and not findings.sun_cause), weights)
-    return SensorHealth(field, sun, both, findings.memory, by_cell)
+        accuse(sun, cause, common or (ambiguous and not findings.sun_cause), weights)
 
 
-def _cells(
-    health: SensorHealth, seen: Observed, reference: Reference, sure: bool, config: SensorConfig
-) -> CellsHealth:
-    """Each Sun cell after the samples of this tick."""
+def _in_favour(field: Watch, sun: Watch) -> float:
+    """What estimates have shown in favour of the isolated sensors, nats; of the one with less."""
+    if field.fault and sun.fault:
+        return min(field.nats, sun.nats)
+    if field.fault:
+        return field.nats
+    return sun.nats if sun.fault else 0.0
+
+
+def _judge_cells(
+    health: SensorHealth, observed: Observed, reference: Reference, sure: bool, config: SensorConfig
+) -> None:
+    """Judge the Sun cells, if there are any, by the samples of this tick."""
     if config.mekf.cells is None:
-        return ()
+        return
+    findings, used, estimate = observed.findings, observed.used, observed.estimate
     evidence = CellEvidence(
-        seen.findings.currents,
-        seen.used.cells,
-        seen.estimate,
+        findings.currents,
+        used.cells,
+        estimate,
         light(reference.r_eci_m, reference.sun_eci, config.mekf.cells.albedo),
-        seen.findings.shadow,
-        sure and seen.used.field,
-        seen.estimate is None or seen.begun,
+        findings.shadow,
+        sure and used.field,
+        estimate is None or is_new(estimate, used),
     )
-    return cells.judge(health.cells, evidence, config.weights, config.mekf)
+    judge_cells(health.cells, evidence, config.weights, config.mekf)
 
 
 def _refused(sample: Vec3 | None, fault: int, taken: bool, estimate: Estimate | None) -> bool:
@@ -145,7 +183,7 @@ def _refused(sample: Vec3 | None, fault: int, taken: bool, estimate: Estimate | 
 
 def _sun_compared(used: Used, mekf: MekfConfig) -> bool:
     """Whether the filter looked at the Sun: of cells it leaves out those that it cannot predict well."""
-    return mekf.cells is None or used.cells != NO_CELLS
+    return mekf.cells is None or bool(used.cells.taken or used.cells.refused)
 
 
 def _field_fits(
@@ -154,8 +192,9 @@ def _field_fits(
     sample = findings.field
     if sample is None or estimate is None:
         return None
-    b_eci_t = field_sampled(estimate.parameters, reference.b_eci_t, reference.b_rate_eci_tps)
-    prediction = field_prediction(*estimate[:3], b_eci_t, mekf)
+    q, omega, parameters = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
+    b_eci_t = field_sampled(parameters, reference.b_eci_t, reference.b_rate_eci_tps)
+    prediction = field_prediction(q, omega, parameters, b_eci_t, mekf)
     return not findings.field_cause and _fits(estimate, sample, prediction, mekf.field_noise, mekf)
 
 
@@ -165,7 +204,8 @@ def _sun_fits(
     sample = findings.sun
     if sample is None or estimate is None:
         return None
-    prediction = sun_prediction(*estimate[:3], reference.sun_eci, mekf)
+    q, omega, parameters = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
+    prediction = sun_prediction(q, omega, parameters, reference.sun_eci, mekf)
     return not findings.sun_cause and _fits(estimate, sample, prediction, mekf.sun_noise, mekf)
 
 

@@ -13,13 +13,19 @@ have agreed for long. No attitude is valid before its estimate is proven, nor af
 taken.
 """
 
+from dataclasses import dataclass, replace
 from enum import IntEnum
-from typing import NamedTuple
+from typing import final
 
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.fdir.evidence import PAIR_NUMBERS, EvidenceWeights, mean_misfit, misfit, weigh
-from fsw.core.fdir.sensors.credibility import CredibilityConfig, credible_but_coils, sensors_credible
+from fsw.core.fdir.sensors.credibility import (
+    CredibilityConfig,
+    are_sensors_credible,
+    is_credible_but_coils,
+)
+from fsw.core.fdir.sensors.observed import Observed, is_new
 from fsw.core.fdir.sensors.plausibility import Findings
 
 SUSPICIOUS = 0.25
@@ -43,14 +49,16 @@ class Standing(IntEnum):
     ON_TRIAL = 3
 
 
-class Pair(NamedTuple):
+@final
+@dataclass(slots=True)
+class Pair:
     """The standing of both, and the evidence, nats.
 
     ``proof``: that the estimate is right about both; ``doubt``: that one is wrong; ``accord``: that both are
-    right, while they are disputed, or one is isolated and no estimate can tell; ``strange``: that the
-    estimate has settled on a satellite that the table does not allow and that is not this one either.
-    ``ended``: the filter is to end in this tick; ``blind_ticks``: ticks since it took a sample; ``owed``:
-    what an estimate that lagged, or was blind, still has to prove.
+    right, while they are disputed, or one is isolated and no estimate can tell; ``false_convergence``: that
+    the estimate has settled on a satellite that the table does not allow and that is not this one either.
+    ``ended``: the filter is to end in this tick; ``blind_ticks``: ticks since it took a sample;
+    ``proof_required``: what an estimate that lagged, or was blind, still has to prove.
     """
 
     standing: Standing = Standing.NEW
@@ -59,118 +67,112 @@ class Pair(NamedTuple):
     accord: float = 0.0
     ended: bool = False
     blind_ticks: int = 0
-    owed: float = 0.0
-    strange: float = 0.0
+    proof_required: float = 0.0
+    false_convergence: float = 0.0
+
+    def copy(self) -> "Pair":
+        """A pair of its own with the same evidence."""
+        return replace(self)
 
 
-class Observed(NamedTuple):
-    """What one tick shows of both: the samples, what the filter took, and what it refused of those in use.
-
-    ``isolated``: one of them is, ``untold``: and no estimate is certain enough to show whether it is still
-    faulty; ``shown``: what estimates have shown in its favour so far, nats. ``sound``: the estimate, if there
-    is one, is credible.
-    """
-
-    findings: Findings
-    used: Used
-    estimate: Estimate | None
-    refused_field: bool
-    refused_sun: bool
-    isolated: bool
-    untold: bool
-    shown: float
-    sound: bool
-
-    @property
-    def refused(self) -> bool:
-        """Whether the filter refused any."""
-        return self.refused_field or self.refused_sun
-
-    @property
-    def begun(self) -> bool:
-        """Whether the estimate began with the samples of this tick: they are taken, not compared."""
-        return _begun(self.estimate, self.used)
-
-
-def _begun(estimate: Estimate | None, used: Used) -> bool:
-    return estimate is not None and used.sun and estimate.numbers == 0
-
-
-def proven(pair: Pair, weights: EvidenceWeights) -> bool:
+def is_proven(pair: Pair, weights: EvidenceWeights) -> bool:
     """Whether the estimate has shown for long enough, and lately, that it is right about both sensors.
 
     Not while there is doubt: a slow fault of one may have misled it, so that it refuses the other.
     """
-    shown = pair.proof >= 0.5 * weights.threshold and pair.doubt < SUSPICIOUS * weights.threshold
-    return pair.standing is Standing.TRUSTED and shown
+    enough = pair.proof >= 0.5 * weights.threshold and pair.doubt < SUSPICIOUS * weights.threshold
+    return pair.standing is Standing.TRUSTED and enough
 
 
-def valid(pair: Pair) -> bool:
+def is_valid(pair: Pair) -> bool:
     """Whether an attitude that rests on them may be valid."""
-    return pair.standing is Standing.TRUSTED and not pair.owed
+    return pair.standing is Standing.TRUSTED and not pair.proof_required
 
 
-def judge(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> Pair:
-    """The pair after a tick; an ``accord`` that has reached the threshold readmits an isolated sensor."""
-    threshold, standing, doubt, accord = weights.threshold, pair.standing, 0.0, 0.0
-    if seen.isolated or standing is Standing.DISPUTED:
-        counts = seen.untold or standing is Standing.DISPUTED
-        accord = _accord(pair.accord, seen.findings, weights) if counts else pair.accord
-    if standing is not Standing.DISPUTED:
-        by = weights.against * _misfit(pair, seen, weights, credibility)
+def judge_pair(
+    pair: Pair, observed: Observed, weights: EvidenceWeights, credibility: CredibilityConfig
+) -> None:
+    """Judge the pair by a tick; an ``accord`` that has reached the threshold readmits an isolated sensor."""
+    threshold, estimate, used = weights.threshold, observed.estimate, observed.used
+    disputed, doubt, accord = pair.standing is Standing.DISPUTED, 0.0, 0.0
+    if observed.isolated or disputed:
+        counts = observed.inconclusive or disputed
+        accord = _accord(pair.accord, observed.findings, weights) if counts else pair.accord
+    if not disputed:
+        by = weights.against * _misfit(pair, observed, weights, credibility)
         doubt = weigh(pair.doubt, by, threshold)
-    proof = _proof(pair, seen, weights, credibility)
     if doubt >= threshold:
-        return Pair(Standing.DISPUTED, ended=True)
-    if accord + seen.shown >= threshold:
-        return Pair(Standing.ON_TRIAL, accord=threshold, ended=True)
-    if standing is not Standing.DISPUTED and proof >= threshold:
-        standing = Standing.TRUSTED
-    elif seen.estimate is None or seen.begun:
-        standing = _without_proof(pair)
-    blind_ticks = 0 if seen.used.field or seen.used.sun else pair.blind_ticks + 1
-    owed = _owed(pair.owed, blind_ticks, seen.estimate, seen.used, weights)
-    lost = owed > 0.0 and seen.used.field and seen.used.sun and not seen.sound
+        end_estimate(pair, Standing.DISPUTED)
+        return
+    if accord + observed.in_favour >= threshold:
+        end_estimate(pair, Standing.ON_TRIAL)
+        pair.accord = threshold
+        return
+    proof = _proof(pair, observed, weights, credibility)
+    if not disputed and proof >= threshold:
+        pair.standing = Standing.TRUSTED
+    elif estimate is None or is_new(estimate, used):
+        pair.standing = _without_proof(pair)
+    pair.proof, pair.doubt, pair.accord, pair.ended = proof, doubt, accord, False
+    pair.blind_ticks = 0 if used.field or used.sun else pair.blind_ticks + 1
+    pair.proof_required = _proof_required(pair, estimate, used, weights)
+    lost = pair.proof_required > 0.0 and used.field and used.sun and not observed.credible
     slow = weights.agrees / PAIR_NUMBERS  # a faulty coil, which looks the same at first, is found sooner
-    strange = weigh(pair.strange, slow if lost else -slow, threshold)
-    if strange >= threshold:
-        return Pair(ended=True)
-    return Pair(standing, proof, doubt, accord, False, blind_ticks, owed, strange)
+    pair.false_convergence = weigh(pair.false_convergence, slow if lost else -slow, threshold)
+    if pair.false_convergence >= threshold:
+        end_estimate(pair)
 
 
-def unjudged(pair: Pair, used: Used, estimate: Estimate | None, weights: EvidenceWeights) -> Pair:
-    """The pair after a tick in which field and Sun may be those of another time.
+def skip_judgement(pair: Pair, used: Used, estimate: Estimate | None, weights: EvidenceWeights) -> None:
+    """Carry the pair over a tick in which field and Sun may be those of another time.
 
     What is taken then shows nothing, for the estimate or against a sensor: the time without a sample goes on.
     But an estimate that has begun anew is not the one that was proven, and one that lags has to be.
     """
-    blind_ticks = pair.blind_ticks + 1
-    owed = max(pair.owed, _owed(pair.owed, blind_ticks, estimate, used, weights))
-    if estimate is None or _begun(estimate, used):
-        return pair._replace(
-            standing=_without_proof(pair), proof=0.0, ended=False, blind_ticks=blind_ticks, owed=0.0
-        )
-    return pair._replace(ended=False, blind_ticks=blind_ticks, owed=owed)
+    pair.blind_ticks += 1
+    pair.ended = False
+    if estimate is None or is_new(estimate, used):
+        pair.standing = _without_proof(pair)
+        pair.proof, pair.proof_required = 0.0, 0.0
+    else:
+        pair.proof_required = max(pair.proof_required, _proof_required(pair, estimate, used, weights))
+
+
+def end_estimate(pair: Pair, standing: Standing = Standing.NEW) -> None:
+    """End the filter in this tick: nothing counts of what has been shown so far."""
+    pair.standing, pair.ended, pair.blind_ticks = standing, True, 0
+    pair.proof, pair.doubt, pair.accord = 0.0, 0.0, 0.0
+    pair.proof_required, pair.false_convergence = 0.0, 0.0
+
+
+def discard_proof(pair: Pair) -> None:
+    """Forget what the lost estimate has proved."""
+    if pair.standing is Standing.TRUSTED:
+        pair.standing = Standing.NEW
+    pair.proof = 0.0
 
 
 def _without_proof(pair: Pair) -> Standing:
     """The standing where there is no estimate, or another has begun: a trusted one has ended."""
     if pair.standing is not Standing.TRUSTED:
         return pair.standing
-    return Standing.ON_TRIAL if pair.owed else Standing.NEW
+    return Standing.ON_TRIAL if pair.proof_required else Standing.NEW
 
 
-def _misfit(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> float:
+def _misfit(
+    pair: Pair, observed: Observed, weights: EvidenceWeights, credibility: CredibilityConfig
+) -> float:
     """What this tick weighs against the pair, as a fraction of the most that a tick may.
 
     While one sensor is isolated, only the innovations of the other count: angle and parameters are of both.
     """
-    estimate, wrong = seen.estimate, False
-    if not seen.isolated:
-        if not proven(pair, weights):
-            was_proven = pair.standing is Standing.TRUSTED and seen.findings.pair
-            wrong = seen.findings.apart or (seen.refused and (was_proven or not seen.sound))
-        wrong = wrong or not (seen.sound or estimate is None or sensors_credible(estimate, credibility))
+    estimate, wrong = observed.estimate, False
+    if not observed.isolated:
+        if not is_proven(pair, weights):
+            was_proven = pair.standing is Standing.TRUSTED and observed.findings.pair
+            wrong = observed.findings.apart or (observed.refused and (was_proven or not observed.credible))
+        if not (wrong or observed.credible or estimate is None):
+            wrong = not are_sensors_credible(estimate, credibility)
     if wrong:
         return 1.0
     return -1.0 if estimate is None else _innovations(estimate)
@@ -181,32 +183,34 @@ def _innovations(estimate: Estimate) -> float:
     return misfit(estimate.nis, estimate.numbers) if estimate.numbers else -1.0
 
 
-def _proof(pair: Pair, seen: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> float:
+def _proof(pair: Pair, observed: Observed, weights: EvidenceWeights, credibility: CredibilityConfig) -> float:
     """An estimate gains by each pair that it takes, slowly on trial; a trusted one loses without one.
 
     Its coils need not be credible: a faulty one is found only once the estimate is proven. Of a trusted one
     the sensors alone need be: what turns the satellite may be a coil's fault.
     """
-    if seen.estimate is None or seen.begun:
+    estimate, used = observed.estimate, observed.used
+    if estimate is None or is_new(estimate, used):
         return 0.0
-    trusted = pair.standing is Standing.TRUSTED
-    sound = (sensors_credible if trusted else credible_but_coils)(seen.estimate, credibility)
-    if seen.refused:
+    trusted, by = pair.standing is Standing.TRUSTED, 0.0
+    if observed.refused:
         by = 0.0 if trusted else weights.misfits
-    elif not sound:
+    elif not (
+        are_sensors_credible(estimate, credibility)
+        if trusted
+        else is_credible_but_coils(estimate, credibility)
+    ):
         by = -weights.fits
-    elif seen.used.field and seen.used.sun:
-        by = weights.fits if _innovations(seen.estimate) < 0.0 else 0.0
-    else:
-        by = -weights.fits if trusted else 0.0
+    elif used.field and used.sun:
+        by = weights.fits if _innovations(estimate) < 0.0 else 0.0
+    elif trusted:
+        by = -weights.fits
     slow = PAIR_NUMBERS if pair.standing is Standing.ON_TRIAL else 1
     return weigh(pair.proof, by / slow, weights.threshold)
 
 
-def _owed(
-    owed: float, blind_ticks: int, estimate: Estimate | None, used: Used, weights: EvidenceWeights
-) -> float:
-    """What both sensors have to prove anew.
+def _proof_required(pair: Pair, estimate: Estimate | None, used: Used, weights: EvidenceWeights) -> float:
+    """What both sensors have to prove anew, by the ticks without a sample, this one included.
 
     After a time without a sample, in which pulses may have failed; and if the innovations have a mean that is
     not chance, which contradicts the covariance: sooner with one sensor alone, as in the shadow.
@@ -216,10 +220,10 @@ def _owed(
     alone = used.field != used.sun
     most = ALONE * weights.threshold if alone else weights.threshold
     lags = mean_misfit(estimate.lag, weights) >= most
-    if lags or blind_ticks > weights.blind_ticks:
+    if lags or pair.blind_ticks > weights.blind_ticks:
         return weights.threshold
     both = used.field and used.sun
-    return max(0.0, owed - weights.fits) if both else owed
+    return max(0.0, pair.proof_required - weights.fits) if both else pair.proof_required
 
 
 def _accord(accord: float, findings: Findings, weights: EvidenceWeights) -> float:

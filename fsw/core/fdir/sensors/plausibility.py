@@ -5,17 +5,19 @@ Only a quantised reading repeats itself while all is well: ``standstill`` says f
 Every limit is what the bounds of the table and the noise at the edge of the filter's gate allow in this tick.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from math import acos
-from typing import NamedTuple
+from typing import final
 
-from fsw.core.algebra.vector import ZERO, Vec3, dot, norm
+from fsw.core.algebra.vector import Vec3, dot, norm
 from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.samples import coils_idle, sensed_sun, usable_cells, usable_field
 from fsw.core.fdir.evidence import SIGMAS
-from fsw.core.fdir.faults import Sensor, SensorFault
-from fsw.core.fdir.sensors.standstill import NO_MOTION, Motion, Steps, frozen, moved_on
+from fsw.core.fdir.faults import SensorFault
+from fsw.core.fdir.sensors.memory import Memory, remember
+from fsw.core.fdir.sensors.standstill import Motion, Steps, is_frozen, update_motion
 from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.earth import RADIUS_M
 from fsw.core.orbit.ephemeris import Reference
@@ -24,21 +26,20 @@ from fsw.core.orbit.sun import lit
 SHADOW_M = RADIUS_M - 100e3
 """Radius of what is certainly shadow: the Earth is flattened by 21 km, half the penumbra of a low orbit is
 15 km wide, and the position may be off by tens of km."""
-DARK: Vec3 = (0.0, 0.0, 0.0)
-"""The sample of a Sun sensor without a Sun."""
-MOST_LAMPS, MOST_BEYOND = 2, 1
+MOST_LAMPS, MOST_IMPOSSIBLE = 2, 1
 """Sun cells that may be broken at once: those lit in the shadow, those brighter than anything can make them.
 
 What speaks against more of them in one tick speaks against the board that reads them.
 """
 
 
-class PlausibilityConfig(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class PlausibilityConfig:
     """Largest deviations if all is well: of the field, T and as a fraction of it, and of directions, rad.
 
     ``in_range_t``: in a field up to that strength no axis of the magnetometer saturates; ``sun_norm``: of the
     Sun vector's length; ``late_ticks``: how long a sample may be repeated; ``cells``: those that give the Sun
-    in place of a sensor; ``steps``: of the readings, None if both are continuous.
+    in place of a sensor; ``steps``: of the measurements, None if both are continuous.
     """
 
     field_t: float
@@ -51,80 +52,8 @@ class PlausibilityConfig(NamedTuple):
     steps: Steps | None = None
 
 
-class Memory(NamedTuple):
-    """The last samples as they were sent, and for how many ticks each has been repeated.
-
-    ``motion``: what field and Sun have moved by meanwhile, None if both readings are continuous.
-    """
-
-    field: Vec3 = ZERO
-    sun: Vec3 = ZERO
-    field_still: int = 0
-    sun_still: int = 0
-    motion: Motion | None = None
-
-
-class Seen(NamedTuple):
-    """What the checks look at in one tick: all that the boards sent, and what the models expect.
-
-    ``lamps``: how many Sun cells in use are lit in the shadow; ``beyond``: how many show what no light does.
-    """
-
-    measurements: Measurements
-    field: Vec3 | None
-    sun: Vec3 | None
-    modelled_t: float
-    shadow: bool
-    field_still: bool
-    sun_still: bool
-    limits: PlausibilityConfig
-    lamps: int = 0
-    beyond: int = 0
-
-
-CHECKS: tuple[tuple[Sensor, SensorFault, Callable[[Seen], bool]], ...] = (
-    (Sensor.MAGNETOMETER, SensorFault.SILENT, lambda s: s.measurements.field is None),
-    (
-        Sensor.MAGNETOMETER,
-        SensorFault.SATURATED,
-        lambda s: (
-            s.measurements.field is not None
-            and not s.measurements.field.valid
-            and coils_idle(s.measurements)
-            and not (s.measurements.saturated and s.modelled_t > s.limits.in_range_t)
-        ),
-    ),
-    (Sensor.MAGNETOMETER, SensorFault.FROZEN, lambda s: s.field_still and not s.sun_still),
-    (
-        Sensor.MAGNETOMETER,
-        SensorFault.STRENGTH,
-        lambda s: (
-            s.field is not None
-            and not abs(norm(s.field) - s.modelled_t) <= s.limits.field_t + s.limits.field_part * s.modelled_t
-        ),
-    ),
-    (
-        Sensor.SUN_SENSOR,
-        SensorFault.SILENT,
-        lambda s: s.measurements.sun is None and s.measurements.cells is None,
-    ),
-    (
-        Sensor.SUN_SENSOR,
-        SensorFault.UNLIT,
-        lambda s: s.shadow and (s.sun is not None or s.lamps > MOST_LAMPS),
-    ),
-    (
-        Sensor.SUN_SENSOR,
-        SensorFault.STRENGTH,
-        lambda s: (
-            s.beyond > MOST_BEYOND or (s.sun is not None and not abs(norm(s.sun) - 1.0) <= s.limits.sun_norm)
-        ),
-    ),
-    (Sensor.SUN_SENSOR, SensorFault.FROZEN, lambda s: s.sun_still and not s.field_still),
-)
-
-
-class Findings(NamedTuple):
+@final
+class Findings:
     """What the samples of a tick show by themselves.
 
     ``field_cause`` and ``sun_cause``: what speaks against each, 0 if nothing does; ``field`` and ``sun``: the
@@ -133,15 +62,27 @@ class Findings(NamedTuple):
     and ``shadow`` says if none can see the Sun.
     """
 
-    field_cause: int
-    sun_cause: int
-    field: Vec3 | None
-    sun: Vec3 | None
-    pair: bool
-    apart: bool
-    memory: Memory
-    currents: tuple[float | None, ...] = ()
-    shadow: bool = False
+    __slots__ = ("apart", "currents", "field", "field_cause", "pair", "shadow", "sun", "sun_cause")
+
+    def __init__(
+        self,
+        field_cause: int,
+        sun_cause: int,
+        field: Vec3 | None,
+        sun: Vec3 | None,
+        pair: bool,
+        apart: bool,
+        currents: tuple[float | None, ...] = (),
+        shadow: bool = False,
+    ) -> None:
+        self.field_cause = field_cause
+        self.sun_cause = sun_cause
+        self.field = field
+        self.sun = sun
+        self.pair = pair
+        self.apart = apart
+        self.currents = currents
+        self.shadow = shadow
 
 
 def examine(
@@ -152,7 +93,7 @@ def examine(
     estimate: Estimate | None = None,
     isolated: Sequence[int] = (),
 ) -> Findings:
-    """Apply the checks to the samples of this tick.
+    """Apply the checks to the samples of this tick, and remember them.
 
     Args:
         memory: of the tick before.
@@ -162,74 +103,111 @@ def examine(
         estimate: predicted to this tick, if it is valid; only quantised readings are judged by it.
         isolated: Sun cells of which it is known that they are faulty.
     """
-    memory, late = _remember(memory, measurements), limits.late_ticks
-    field_still, sun_still = still = memory.field_still > late, memory.sun_still > late
-    if limits.steps is not None:
-        motion = moved_on(memory.motion or NO_MOTION, still, estimate, reference, limits.steps)
-        memory, (field_still, sun_still) = memory._replace(motion=motion), frozen(motion, still, limits.steps)
+    remember(memory, measurements)
+    field_still, sun_still = memory.field_still > limits.late_ticks, memory.sun_still > limits.late_ticks
+    steps = limits.steps
+    if steps is not None:
+        if memory.motion is None:
+            memory.motion = Motion()
+        update_motion(memory.motion, field_still, sun_still, estimate, reference, steps)
+        field_still = is_frozen(memory.motion.of_field, field_still, steps.field_t)
+        sun_still = is_frozen(memory.motion.of_sun, sun_still, steps.sun)
     field, sun = usable_field(measurements), sensed_sun(measurements, limits.cells)
     currents = usable_cells(measurements, limits.cells)
-    shadow = (sun is not None or bool(currents)) and _in_shadow(reference)
-    lamps, beyond = NOWHERE if limits.cells is None else _wrong(currents, shadow, isolated, limits.cells)
-    modelled_t, still = norm(reference.b_eci_t), (field_still, sun_still)
-    seen = Seen(measurements, field, sun, modelled_t, shadow, *still, limits, len(lamps), len(beyond))
-    causes = {Sensor.MAGNETOMETER: 0, Sensor.SUN_SENSOR: 0}
-    for sensor, cause, speaks_against in CHECKS:
-        if not causes[sensor] and speaks_against(seen):
-            causes[sensor] = int(cause)
-    b_cause, s_cause = causes[Sensor.MAGNETOMETER], causes[Sensor.SUN_SENSOR]
-    pair = field is not None and sun is not None and not (b_cause or s_cause)
-    apart = pair and _apart(seen, reference)
-    if limits.cells is None:
-        return Findings(b_cause, s_cause, field, sun, pair, apart, memory)
-    if len(lamps) > MOST_LAMPS or len(beyond) > MOST_BEYOND:
+    shadow = (sun is not None or bool(currents)) and _is_in_shadow(reference)
+    modelled_t = norm(reference.b_eci_t)
+    lamps, impossible = _wrong_cells(currents, shadow, isolated, limits.cells)
+    field_cause = _against_field(measurements, field, modelled_t, field_still and not sun_still, limits)
+    sun_cause = _against_sun(
+        measurements, sun, shadow, len(lamps), len(impossible), sun_still and not field_still, limits
+    )
+    pair = apart = False
+    if field is not None and sun is not None and not (field_cause or sun_cause):
+        pair, apart = True, _are_apart(field, sun, modelled_t, reference, limits)
+    if len(lamps) > MOST_LAMPS or len(impossible) > MOST_IMPOSSIBLE:
         currents = (None,) * len(currents)
-    elif beyond:  # a message with an impossible current in it shows nothing about the other cells
-        currents = tuple([current if cell in beyond else None for cell, current in enumerate(currents)])
-    return Findings(b_cause, s_cause, field, sun, pair, apart, memory, currents, shadow)
+    elif impossible:  # a message with an impossible current in it shows nothing about the other cells
+        currents = tuple([current if cell in impossible else None for cell, current in enumerate(currents)])
+    return Findings(field_cause, sun_cause, field, sun, pair, apart, currents, shadow)
 
 
-Wrong = tuple[tuple[int, ...], tuple[int, ...]]
-"""Cells lit in the shadow, and cells that are brighter than anything can make them."""
-NOWHERE: Wrong = ((), ())
+def _against_field(
+    measurements: Measurements,
+    field: Vec3 | None,
+    modelled_t: float,
+    frozen: bool,
+    limits: PlausibilityConfig,
+) -> int:
+    """What speaks against the magnetometer; 0: nothing."""
+    message = measurements.field
+    if message is None:
+        return SensorFault.SILENT
+    strong = measurements.saturated and modelled_t > limits.in_range_t
+    if not message.valid and coils_idle(measurements) and not strong:
+        return SensorFault.SATURATED
+    if frozen:
+        return SensorFault.FROZEN
+    most_t = limits.field_t + limits.field_part * modelled_t
+    if field is not None and not abs(norm(field) - modelled_t) <= most_t:
+        return SensorFault.STRENGTH
+    return 0
 
 
-def _wrong(currents: Sequence[float | None], shadow: bool, isolated: Sequence[int], cells: CellSet) -> Wrong:
-    """The cells in use that are wrong by themselves: without an attitude, and whatever the table allows."""
-    used = [
-        (cell, current)
-        for cell, current in enumerate(currents)
-        if current is not None and cell not in isolated
-    ]
+def _against_sun(
+    measurements: Measurements,
+    sun: Vec3 | None,
+    shadow: bool,
+    lamps: int,
+    impossible: int,
+    frozen: bool,
+    limits: PlausibilityConfig,
+) -> int:
+    """What speaks against the Sun sensor, or the board that reads the cells; 0: nothing."""
+    if measurements.sun is None and measurements.cells is None:
+        return SensorFault.SILENT
+    if shadow and (sun is not None or lamps > MOST_LAMPS):
+        return SensorFault.UNLIT
+    if impossible > MOST_IMPOSSIBLE or (sun is not None and not abs(norm(sun) - 1.0) <= limits.sun_norm):
+        return SensorFault.STRENGTH
+    return SensorFault.FROZEN if frozen else 0
+
+
+def _wrong_cells(
+    currents: Sequence[float | None], shadow: bool, isolated: Sequence[int], cells: CellSet | None
+) -> tuple[list[int], list[int]]:
+    """The cells in use that are lit in the shadow, and those brighter than anything can make them.
+
+    Both are wrong by themselves: without an attitude, and whatever the table allows.
+    """
+    lamps: list[int] = []
+    impossible: list[int] = []
+    if cells is None:
+        return lamps, impossible
     most = 1.0 + cells.albedo + SIGMAS * cells.model_sigma
-    lamps = tuple([cell for cell, current in used if shadow and current > cells.dark])
-    return lamps, tuple([cell for cell, current in used if current > most])
+    for cell, current in enumerate(currents):
+        if current is None or cell in isolated:
+            continue
+        if shadow and current > cells.dark:
+            lamps.append(cell)
+        if current > most:
+            impossible.append(cell)
+    return lamps, impossible
 
 
-def _remember(memory: Memory, measurements: Measurements) -> Memory:
-    field, sun, field_still, sun_still, motion = memory
-    if measurements.field is not None:
-        sample = measurements.field.b_body_nt
-        field, field_still = sample, field_still + 1 if sample == field else 0
-    if measurements.sun is not None:
-        sample = measurements.sun.s_body if measurements.sun.valid else DARK
-        sun, sun_still = sample, sun_still + 1 if sample == sun and sample is not DARK else 0
-    return Memory(field, sun, field_still, sun_still, motion)
-
-
-def _in_shadow(reference: Reference) -> bool:
+def _is_in_shadow(reference: Reference) -> bool:
     """Whether the satellite is certainly in shadow, beyond all errors of the model."""
     return not (reference.lit or lit(reference.r_eci_m, reference.sun_eci, SHADOW_M))
 
 
-def _apart(seen: Seen, reference: Reference) -> bool:
+def _are_apart(
+    field: Vec3, sun: Vec3, modelled_t: float, reference: Reference, limits: PlausibilityConfig
+) -> bool:
     """Whether field and Sun are not at the modelled angle; errors of the field turn a weak one most."""
-    field, sun, limits = seen.field, seen.sun, seen.limits
-    if field is None or sun is None or not norm(field) * norm(sun) > 0.0:
+    if not norm(field) * norm(sun) > 0.0:
         return False
     measured = dot(field, sun) / (norm(field) * norm(sun))
-    expected = dot(reference.b_eci_t, reference.sun_eci) / seen.modelled_t
-    limit_rad = limits.angle_rad + limits.field_t / seen.modelled_t
+    expected = dot(reference.b_eci_t, reference.sun_eci) / modelled_t
+    limit_rad = limits.angle_rad + limits.field_t / modelled_t
     return not abs(_angle(measured) - _angle(expected)) <= limit_rad
 
 

@@ -13,8 +13,9 @@ more is frozen:
     |sum dv| > sqrt 3 q + ``SIGMAS`` sum sigma |v| dt.
 """
 
+from dataclasses import dataclass, field, replace
 from math import sqrt
-from typing import NamedTuple
+from typing import final
 
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, norm, scale, sub
@@ -23,7 +24,8 @@ from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.orbit.ephemeris import Reference
 
 
-class Steps(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Steps:
     """Steps of the readings, T and of the Sun's unit vector, 0: continuous; and the length of a tick, s."""
 
     field_t: float
@@ -31,64 +33,73 @@ class Steps(NamedTuple):
     tick_s: float
 
 
-class Moved(NamedTuple):
+@final
+@dataclass(slots=True)
+class Displacement:
     """What a vector has moved by while its reading stood still, body axes, and one sigma of its error."""
 
     by_body: Vec3 = ZERO
     sigma: float = 0.0
 
-    def beyond(self, step: float) -> bool:
+    def exceeds(self, step: float) -> bool:
         """Whether a sound reading with this step, in the vector's unit, would have changed."""
         return norm(self.by_body) > sqrt(3.0) * step + SIGMAS * self.sigma
 
 
-NOT_MOVED = Moved()
-Motion = tuple[Moved, Moved]
-"""Of the field, T, and of the Sun's unit vector."""
-NO_MOTION: Motion = (NOT_MOVED, NOT_MOVED)
+@final
+@dataclass(slots=True)
+class Motion:
+    """Of the field, T, and of the Sun's unit vector."""
+
+    of_field: Displacement = field(default_factory=Displacement)
+    of_sun: Displacement = field(default_factory=Displacement)
+
+    def copy(self) -> "Motion":
+        """A motion of its own."""
+        return Motion(replace(self.of_field), replace(self.of_sun))
 
 
-def moved_on(
+def update_motion(
     motion: Motion,
-    still: tuple[bool, bool],
+    field_still: bool,
+    sun_still: bool,
     estimate: Estimate | None,
     reference: Reference,
     steps: Steps,
-) -> Motion:
-    """The motion after a tick.
+) -> None:
+    """Carry the motion over a tick.
 
     Args:
         motion: after the tick before.
-        still: whether the readings of field and Sun have stood still for longer than they may be late.
+        field_still: whether the reading of the field has stood still for longer than it may be late.
+        sun_still: the same of the Sun.
         estimate: predicted to this tick; None: how the satellite turns is not known, which counts as rest.
         reference: field and Sun as modelled.
         steps: of the readings.
     """
-    (field, sun), (field_still, sun_still) = motion, still
     if not field_still or not steps.field_t:
-        field = NOT_MOVED
+        _reset(motion.of_field)
     elif estimate is not None:
-        field = _further(field, reference.b_eci_t, reference.b_rate_eci_tps, estimate, steps.tick_s)
+        _move(motion.of_field, reference.b_eci_t, reference.b_rate_eci_tps, estimate, steps.tick_s)
     if not sun_still or not steps.sun:
-        sun = NOT_MOVED
+        _reset(motion.of_sun)
     elif estimate is not None:
-        sun = _further(sun, reference.sun_eci, ZERO, estimate, steps.tick_s)
-    return field, sun
+        _move(motion.of_sun, reference.sun_eci, ZERO, estimate, steps.tick_s)
 
 
-def frozen(motion: Motion, still: tuple[bool, bool], steps: Steps) -> tuple[bool, bool]:
-    """Whether the readings of field and Sun stand still and should not; a continuous one never should."""
-    (field, sun), (field_still, sun_still) = motion, still
-    return (
-        field_still and (not steps.field_t or field.beyond(steps.field_t)),
-        sun_still and (not steps.sun or sun.beyond(steps.sun)),
-    )
+def is_frozen(displacement: Displacement, still: bool, step: float) -> bool:
+    """Whether a reading with this step stands still and should not; a continuous one never should."""
+    return still and (not step or displacement.exceeds(step))
 
 
-def _further(moved: Moved, v_eci: Vec3, rate_eci: Vec3, estimate: Estimate, tick_s: float) -> Moved:
-    """What a vector has moved by after one more tick."""
+def _reset(displacement: Displacement) -> None:
+    displacement.by_body, displacement.sigma = ZERO, 0.0
+
+
+def _move(moved: Displacement, v_eci: Vec3, rate_eci: Vec3, estimate: Estimate, tick_s: float) -> None:
+    """Add what a vector has moved by in one more tick."""
     q, omega = estimate.q_body_from_eci, estimate.omega_body_radps
     rate_body = sub(rotate(q, rate_eci), cross(omega, rotate(q, v_eci)))
     sigma_radps = sqrt(sum(estimate.covariance.diagonal()[3:6].tolist()))
-    sigma = moved.sigma + sigma_radps * norm(v_eci) * tick_s
-    return Moved(add(moved.by_body, scale(tick_s, rate_body)), sigma)
+    moved.by_body = add(moved.by_body, scale(tick_s, rate_body))
+    moved.sigma += sigma_radps * norm(v_eci) * tick_s

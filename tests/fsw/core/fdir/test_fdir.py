@@ -1,11 +1,13 @@
 """The interface of the fault detection: its events, and what it does to estimate and attitude."""
 
+from copy import deepcopy
+from dataclasses import fields, is_dataclass
 from math import inf
 
 import pytest
 from gate_samples import measured
+from with_values import with_values
 
-from fsw.core.events import Event, Happening
 from fsw.core.fdir import fdir
 from fsw.core.fdir.coils.health import NONE_OLDER, CoilHealth
 from fsw.core.fdir.coils.weak_test import NOTHING_OLDER, Older, PartSum
@@ -14,7 +16,8 @@ from fsw.core.fdir.fdir import Evidence, Health
 from fsw.core.fdir.sensors.cells import CellWatch
 from fsw.core.fdir.sensors.health import SensorHealth, Watch
 from fsw.core.fdir.sensors.pair import Pair, Standing
-from fsw.core.fdir.sensors.plausibility import Findings, Memory
+from fsw.core.fdir.sensors.plausibility import Findings
+from fsw.core.fdir.sensors.standstill import Displacement, Motion
 from fsw.core.orbit.ephemeris import reference_at
 
 FROZEN, SILENT = SensorFault.FROZEN, SensorFault.SILENT
@@ -27,65 +30,40 @@ def sensors(field=0, sun=0, **changes):
     return Health(sensors=SensorHealth(Watch(fault=field), Watch(fault=sun), **changes))
 
 
-def coils(*faults):
-    return Health(coils=CoilHealth(faults=faults))
-
-
-class TestHappenings:
-    @pytest.mark.parametrize(
-        ("before", "after", "event", "argument"),
-        [
-            (sensors(), sensors(field=FROZEN), Event.SENSOR_ISOLATED, 100 + FROZEN),
-            (sensors(), sensors(sun=SILENT), Event.SENSOR_ISOLATED, 200 + SILENT),
-            (sensors(field=SILENT), sensors(field=FROZEN), Event.SENSOR_ISOLATED, 100 + FROZEN),
-            (sensors(field=FROZEN), sensors(), Event.SENSOR_READMITTED, 100 + FROZEN),
-            (sensors(), sensors(pair=Pair(Standing.DISPUTED)), Event.SENSORS_DISAGREE, 0),
-            (coils(0, 0, 0), coils(0, WEAK, 0), Event.COIL_FAULT, 200 + WEAK),
-            (coils(0, WEAK, 0), coils(0, OPEN, 0), Event.COIL_FAULT, 200 + OPEN),
-            (coils(0, WEAK, OPEN), coils(0, WEAK, 0), Event.COIL_READMITTED, 300 + OPEN),
-        ],
-    )
-    def test_each_change_is_an_event(self, before, after, event, argument):
-        assert fdir.happenings(before, after) == [Happening(event, argument)]
-
-    @pytest.mark.parametrize(
-        ("before", "after"),
-        [
-            (sensors(field=FROZEN, sun=SILENT), sensors(field=FROZEN, sun=SILENT)),
-            (sensors(pair=Pair(Standing.DISPUTED)), sensors(pair=Pair(Standing.DISPUTED))),
-            (sensors(pair=Pair(Standing.DISPUTED)), sensors()),
-            (coils(OPEN, 0, WEAK), coils(OPEN, 0, WEAK)),
-        ],
-    )
-    def test_what_lasts_and_a_dispute_that_ends_is_none(self, before, after):
-        assert fdir.happenings(before, after) == []
-
-    def test_they_are_in_a_fixed_order(self):
-        found = Health(
-            SensorHealth(Watch(FROZEN), Watch(SILENT), Pair(Standing.DISPUTED)), CoilHealth((1, 2, 3))
-        )
-        assert fdir.happenings(Health(), found) == [
-            (Event.SENSOR_ISOLATED, 100 + FROZEN),
-            (Event.SENSOR_ISOLATED, 200 + SILENT),
-            (Event.SENSORS_DISAGREE, 0),
-            *((Event.COIL_FAULT, 100 * number + number) for number in (1, 2, 3)),
-        ]
-
-
 def test_a_restarted_plant_leaves_faults_and_doubts_and_takes_the_proof():
     pair = Pair(Standing.TRUSTED, proof=12.0, doubt=3.0)
-    before = Health(SensorHealth(Watch(FROZEN), pair=pair), CoilHealth((OPEN, 0, 0)))
-    after = fdir.plant_restarted(before)
-    assert after.sensors.pair == pair._replace(standing=Standing.NEW, proof=0.0)
-    disputed = before._replace(sensors=before.sensors._replace(pair=Pair(Standing.DISPUTED)))
-    assert fdir.plant_restarted(disputed).sensors.pair.standing is Standing.DISPUTED
-    assert after._replace(sensors=after.sensors._replace(pair=before.sensors.pair)) == before
+    health = Health(SensorHealth(Watch(FROZEN), pair=pair), CoilHealth((OPEN, 0, 0)))
+    fdir.discard_proof(health)
+    left = Pair(Standing.NEW, doubt=3.0)
+    assert health == Health(SensorHealth(Watch(FROZEN), pair=left), CoilHealth((OPEN, 0, 0)))
+    disputed = sensors(pair=Pair(Standing.DISPUTED))
+    fdir.discard_proof(disputed)
+    assert disputed.sensors.pair.standing is Standing.DISPUTED
+
+
+def test_a_copy_shares_nothing_that_changes():
+    health = sensors(field=FROZEN, pair=PROVEN, cells=[CellWatch(Watch(SILENT, 2.0))])
+    health.sensors.memory.motion = Motion(Displacement((1.0, 2.0, 3.0), 0.5))
+    copied = health.copy()
+    assert copied == health
+    for mine, other in zip(objects(copied), objects(health), strict=True):
+        assert mine is not other
+        assert type(mine) is type(other)
+
+
+def objects(value):
+    """All that can be changed in place in a state, itself included."""
+    if isinstance(value, list):
+        return [value, *[below for part in value for below in objects(part)]]
+    if not is_dataclass(value):
+        return []
+    return [value, *[below for part in vars_of(value).values() for below in objects(part)]]
 
 
 class TestTrusted:
     """What the filter gets."""
 
-    FINE = Findings(0, 0, None, None, False, False, Memory())
+    FINE = Findings(0, 0, None, None, False, False)
 
     def trusted(self, health, findings):
         """Whether field and Sun are."""
@@ -101,14 +79,28 @@ class TestTrusted:
         [
             (sensors(field=FROZEN), FINE, (False, True)),
             (sensors(sun=SILENT), FINE, (True, False)),
-            (Health(), FINE._replace(field_cause=FROZEN), (False, True)),
-            (Health(), FINE._replace(sun_cause=FROZEN), (True, False)),
+            (Health(), with_values(FINE, field_cause=FROZEN), (False, True)),
+            (Health(), with_values(FINE, sun_cause=FROZEN), (True, False)),
             (sensors(pair=Pair(Standing.DISPUTED)), FINE, (True, False)),
             (sensors(pair=Pair(Standing.ON_TRIAL)), FINE, (True, True)),
         ],
     )
     def test_without_what_is_isolated_implausible_or_disputed(self, health, findings, left):
         assert self.trusted(health, findings) == left
+
+
+def judgement_of(found):
+    """A judgement of the sensors that finds this, whatever they have sent."""
+
+    def judge_sensors(health, *of_this_tick):
+        for name, value in vars_of(deepcopy(found)).items():
+            setattr(health, name, value)
+
+    return judge_sensors
+
+
+def vars_of(state):
+    return {field.name: getattr(state, field.name) for field in fields(state)}
 
 
 class TestJudgement:
@@ -124,7 +116,9 @@ class TestJudgement:
         evidence = Evidence(state.tick, findings, state.coil, reference, used)
 
         def judge(health, estimator=state.estimator):
-            return fdir.judge(health, estimator, state.attitude, evidence, config.fdir), state
+            health = deepcopy(health)
+            estimator, attitude = fdir.judge(health, estimator, state.attitude, evidence, config.fdir)
+            return (health, estimator, attitude), state
 
         return judge
 
@@ -142,7 +136,7 @@ class TestJudgement:
     ):
         """A coil that is tried again has half against it, and costs no attitude in the shadow."""
         threshold = make_world().config.fdir.sensors.weights.threshold
-        pair = PROVEN._replace(proof=proof * threshold)
+        pair = with_values(PROVEN, proof=proof * threshold)
         shown = CoilHealth(older=(NOTHING_OLDER, Older(kept=part * threshold), NOTHING_OLDER))
         (_, _, attitude), _ = judged(Health(sensors(pair=pair).sensors, shown))
         assert attitude.valid is valid
@@ -154,8 +148,8 @@ class TestJudgement:
             sensors(pair=Pair(Standing.NEW)),
             sensors(pair=Pair(Standing.DISPUTED)),
             sensors(pair=Pair(Standing.ON_TRIAL)),
-            sensors(pair=PROVEN._replace(blind_ticks=120)),
-            sensors(pair=PROVEN._replace(owed=0.1)),
+            sensors(pair=with_values(PROVEN, blind_ticks=120)),
+            sensors(pair=with_values(PROVEN, proof_required=0.1)),
         ],
         ids=[
             "a current in an unknown coil",
@@ -168,7 +162,7 @@ class TestJudgement:
     )
     def test_an_attitude_is_not_valid_with(self, judged, health):
         (_, _, attitude), state = judged(health)
-        assert attitude == state.attitude._replace(valid=False)
+        assert attitude == with_values(state.attitude, valid=False)
 
     @pytest.mark.parametrize(
         ("inertia_percent", "field", "valid"), [(0.0, False, True), (10.0, False, False), (10.0, True, True)]
@@ -183,23 +177,23 @@ class TestJudgement:
         findings = fdir.examine(measured(), state.health, reference, config.fdir)
         stuck = CoilHealth(faults=(0, CoilFault.STUCK, 0), strange_ticks=90, stray_ma=40, stuck=True)
         evidence = Evidence(state.tick, findings, state.coil, reference, fdir.Used(field, True, False))
-        before = Health(sensors(pair=PROVEN).sensors, stuck)
-        _, _, attitude = fdir.judge(before, state.estimator, state.attitude, evidence, config.fdir)
+        health = Health(sensors(pair=deepcopy(PROVEN)).sensors, stuck)
+        _, attitude = fdir.judge(health, state.estimator, state.attitude, evidence, config.fdir)
         assert attitude.valid is valid
 
     def test_what_the_filter_knows_of_a_cell_that_is_isolated_is_forgotten_once(self, judged, monkeypatch):
         """Whoever judges the sensors; of which cells, and how, is the cells' own."""
-        named = (CellWatch(Watch(SensorFault.STRENGTH)), CellWatch())
-        seen = []
+        named = [CellWatch(Watch(SensorFault.STRENGTH)), CellWatch()]
+        forgotten = []
         monkeypatch.setattr(
-            fdir.sensor_health, "judge", lambda *of_this_tick: SensorHealth(pair=PROVEN, cells=named)
+            fdir.sensor_health, "judge_sensors", judgement_of(SensorHealth(pair=PROVEN, cells=named))
         )
         monkeypatch.setattr(
-            fdir, "without_isolated", lambda state, *change: (seen.append(change[:2]), state)[1]
+            fdir, "forget_isolated", lambda state, *change: (forgotten.append(change[:2]), state)[1]
         )
-        (health, _, _), _ = judged(sensors(pair=PROVEN, cells=(CellWatch(), CellWatch())))
+        (health, _, _), _ = judged(sensors(pair=PROVEN, cells=[CellWatch(), CellWatch()]))
         judged(health)
-        assert seen == [((CellWatch(), CellWatch()), named)]
+        assert forgotten == [((0, 0), named)]
 
     @pytest.mark.parametrize(
         "judgement",
@@ -215,16 +209,16 @@ class TestJudgement:
         before = Health(SensorHealth(pair=PROVEN), shown)
         (health, _, _), _ = judged(before)
         assert health.coils == shown
-        monkeypatch.setattr(fdir.sensor_health, "judge", lambda *of_this_tick: judgement)
+        monkeypatch.setattr(fdir.sensor_health, "judge_sensors", judgement_of(judgement))
         (health, _, _), _ = judged(before)
-        assert health.coils == shown._replace(older=NONE_OLDER)
+        assert health.coils == with_values(shown, older=NONE_OLDER)
 
     @pytest.mark.parametrize(
         ("pair", "believed"),
         [
             (PROVEN, (WEAK_PART, WEAK_PART)),
-            (PROVEN._replace(owed=5.0), (OPEN_PART, 0.5)),
-            (PROVEN._replace(proof=0.0), (-inf, -inf)),
+            (with_values(PROVEN, proof_required=5.0), (OPEN_PART, 0.5)),
+            (with_values(PROVEN, proof=0.0), (-inf, -inf)),
         ],
         ids=["proven", "lagged", "not proven"],
     )
@@ -252,10 +246,12 @@ class TestJudgement:
         findings = fdir.examine(measured(), state.health, reference, config.fdir)
         used = fdir.Used(True, True, False)
         evidence = Evidence(state.tick, findings, state.coil, reference, used, settled=False)
-        monkeypatch.setattr(fdir.sensor_health, "judge", None)
+        monkeypatch.setattr(fdir.sensor_health, "judge_sensors", None)
 
         def judge(health):
-            return fdir.judge(health, state.estimator, state.attitude, evidence, config.fdir), state
+            health = deepcopy(health)
+            estimator, attitude = fdir.judge(health, state.estimator, state.attitude, evidence, config.fdir)
+            return (health, estimator, attitude), state
 
         return judge
 
@@ -274,22 +270,22 @@ class TestJudgement:
     def test_while_the_time_is_in_doubt_no_sensor_is_judged(self, in_doubt, before, valid):
         (health, estimator, attitude), state = in_doubt(before)
         assert (health.sensors.field, health.sensors.sun) == (before.sensors.field, before.sensors.sun)
-        assert health.coils is before.coils
-        assert attitude == state.attitude._replace(valid=valid)
+        assert health.coils == before.coils
+        assert attitude == with_values(state.attitude, valid=valid)
         assert estimator.estimate.trace is None
 
     def test_nor_does_what_is_taken_show_the_attitude(self, in_doubt, make_world):
         limit = make_world().config.fdir.sensors.weights.blind_ticks
         for blind_ticks, valid in ((limit - 1, True), (limit, False)):
-            (health, _, attitude), _ = in_doubt(sensors(pair=PROVEN._replace(blind_ticks=blind_ticks)))
+            (health, _, attitude), _ = in_doubt(sensors(pair=with_values(PROVEN, blind_ticks=blind_ticks)))
             assert health.sensors.pair.blind_ticks == blind_ticks + 1
             assert attitude.valid is valid
 
     def test_enough_doubt_ends_the_filter(self, judged, monkeypatch):
         disputed = SensorHealth(pair=Pair(Standing.DISPUTED, ended=True))
-        monkeypatch.setattr(fdir.sensor_health, "judge", lambda *of_this_tick: disputed)
+        monkeypatch.setattr(fdir.sensor_health, "judge_sensors", judgement_of(disputed))
         (health, estimator, attitude), state = judged(Health())
-        assert health.sensors is disputed
+        assert health.sensors == disputed
         assert (estimator.estimate, estimator.restarts) == (None, state.estimator.restarts + 1)
         assert not attitude.valid
         (_, again, _), _ = judged(Health(), estimator)

@@ -1,10 +1,12 @@
 """Which sensor: what the filter refuses counts against one alone, and what it predicts clears it."""
 
+from copy import deepcopy
 from functools import partial
 
 import numpy as np
 import pytest
 from cell_samples import Q_BODY_FROM_ECI, REFERENCE, cell_filter
+from with_values import with_values
 
 from fsw.core.algebra.quaternion import normalise, rotate
 from fsw.core.algebra.vector import add, sub
@@ -15,9 +17,9 @@ from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.fdir.evidence import weights
 from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.credibility import credibility_config
-from fsw.core.fdir.sensors.health import SensorConfig, SensorHealth, judge, suspected
+from fsw.core.fdir.sensors.health import SensorConfig, SensorHealth, is_suspected, judge_sensors
 from fsw.core.fdir.sensors.pair import Pair, Standing
-from fsw.core.fdir.sensors.plausibility import Findings, Memory
+from fsw.core.fdir.sensors.plausibility import Findings
 from fsw.core.fdir.sensors.watch import Watch
 
 MEKF = mekf_config(
@@ -33,7 +35,9 @@ MEKF = mekf_config(
 )
 WEIGHTS = weights(40.0, 1.0)
 CONFIG = SensorConfig(WEIGHTS, credibility_config(MEKF), MEKF)
-ESTIMATE = mekf.start(normalise((0.6, -0.4, 0.5, 0.3)), (0.0, 0.0, 0.0), MEKF)._replace(nis=5.0, numbers=6)
+ESTIMATE = with_values(
+    mekf.start(normalise((0.6, -0.4, 0.5, 0.3)), (0.0, 0.0, 0.0), MEKF), nis=5.0, numbers=6
+)
 TRUSTED = SensorHealth(pair=Pair(Standing.TRUSTED, proof=WEIGHTS.threshold))
 FIELD, SUN, TOOK_BOTH = Used(True, False, False), Used(False, True, False), Used(True, True, False)
 NEITHER = Used(False, False, False)
@@ -47,12 +51,14 @@ class Models:
 
 
 B, S = (rotate(ESTIMATE.q_body_from_eci, v) for v in (Models.b_eci_t, Models.sun_eci))
-SEEN = Findings(0, 0, B, S, True, False, Memory())
+SEEN = Findings(0, 0, B, S, True, False)
 
 
 def after(health, used, ticks=1, findings=SEEN, estimate=ESTIMATE):
+    """A copy of the health after these ticks."""
+    health = deepcopy(health)
     for _ in range(ticks):
-        health = judge(health, findings, used, estimate, Models, CONFIG)
+        judge_sensors(health, findings, used, estimate, Models, CONFIG)
     return health
 
 
@@ -68,9 +74,9 @@ class TestRefused:
         assert faults(after(TRUSTED, FIELD, 29)) == (0, SensorFault.REFUSED)
 
     def test_the_magnetometer_alone_in_eclipse_but_not_the_sun_sensor_alone(self):
-        dark = SEEN._replace(sun=None, pair=False)
+        dark = with_values(SEEN, sun=None, pair=False)
         assert faults(after(TRUSTED, NEITHER, 29, dark)) == (SensorFault.REFUSED, 0)
-        blanked = SEEN._replace(field=None, pair=False)
+        blanked = with_values(SEEN, field=None, pair=False)
         assert faults(after(TRUSTED, NEITHER, 60, blanked)) == (0, 0)
 
     @pytest.mark.parametrize("standing", [Standing.NEW, Standing.ON_TRIAL])
@@ -102,41 +108,41 @@ class TestRefused:
 def test_cells_speak_against_their_board_where_the_filter_refused_them(cells, fault):
     mekf_with_cells = cell_filter()
     config = SensorConfig(WEIGHTS, credibility_config(mekf_with_cells), mekf_with_cells)
-    estimate = mekf.start(Q_BODY_FROM_ECI, (0.0, 0.0, 0.0), mekf_with_cells)._replace(nis=3.0, numbers=3)
-    reference, used = REFERENCE, FIELD._replace(cells=cells)
+    estimate = with_values(mekf.start(Q_BODY_FROM_ECI, (0.0, 0.0, 0.0), mekf_with_cells), nis=3.0, numbers=3)
+    reference, used = REFERENCE, with_values(FIELD, cells=cells)
     field, sun = (rotate(Q_BODY_FROM_ECI, one) for one in (reference.b_eci_t, reference.sun_eci))
-    seen, health = Findings(0, 0, field, sun, True, False, Memory(), currents=(0.1,) * 6), TRUSTED
+    seen, health = Findings(0, 0, field, sun, True, False, currents=(0.1,) * 6), deepcopy(TRUSTED)
     for _ in range(29):
-        health = judge(health, seen, used, estimate, reference, config)
+        judge_sensors(health, seen, used, estimate, reference, config)
     assert faults(health) == (0, fault)
 
 
 @pytest.mark.parametrize(
     "findings",
     [
-        SEEN._replace(field_cause=SensorFault.SILENT, sun_cause=SensorFault.SILENT, field=None, sun=None),
-        SEEN._replace(field_cause=SensorFault.STRENGTH, sun_cause=SensorFault.UNLIT),
+        with_values(SEEN, field_cause=SensorFault.SILENT, sun_cause=SensorFault.SILENT, field=None, sun=None),
+        with_values(SEEN, field_cause=SensorFault.STRENGTH, sun_cause=SensorFault.UNLIT),
     ],
     ids=["the bus loses both", "the clock is wrong"],
 )
 def test_what_speaks_against_both_at_once_speaks_against_neither(findings):
-    seen = findings._replace(pair=False)
+    seen = with_values(findings, pair=False)
     assert faults(after(TRUSTED, NEITHER, 300, seen)) == (0, 0)
-    dead = TRUSTED._replace(sun=Watch(SensorFault.SILENT))
+    dead = with_values(TRUSTED, sun=Watch(SensorFault.SILENT))
     assert faults(after(dead, NEITHER, 300, seen))[0] == findings.field_cause, "of one that is left it does"
 
 
 def test_a_check_isolates_though_no_filter_is_proven():
-    strong = SEEN._replace(field_cause=SensorFault.STRENGTH, pair=False)
+    strong = with_values(SEEN, field_cause=SensorFault.STRENGTH, pair=False)
     assert faults(after(SensorHealth(), SUN, 29, strong)) == (SensorFault.STRENGTH, 0)
-    assert suspected(after(SensorHealth(), SUN, 1, strong))
+    assert is_suspected(after(SensorHealth(), SUN, 1, strong))
 
 
 @pytest.mark.parametrize(
     ("findings", "named"),
     [
-        (SEEN._replace(field_cause=SensorFault.STRENGTH, pair=False), (SensorFault.STRENGTH, 0)),
-        (SEEN._replace(sun_cause=SensorFault.STRENGTH, pair=False), (0, SensorFault.STRENGTH)),
+        (with_values(SEEN, field_cause=SensorFault.STRENGTH, pair=False), (SensorFault.STRENGTH, 0)),
+        (with_values(SEEN, sun_cause=SensorFault.STRENGTH, pair=False), (0, SensorFault.STRENGTH)),
     ],
 )
 def test_a_check_isolates_though_a_filter_that_is_not_proven_refuses_the_other(findings, named):
@@ -151,15 +157,15 @@ def test_a_check_isolates_though_a_filter_that_is_not_proven_refuses_the_other(f
 
 @pytest.mark.requirement("REQ-SENSOR-05")
 def test_silence_weighs_half_since_the_bus_may_be_the_cause():
-    silent = SEEN._replace(sun_cause=SensorFault.SILENT, sun=None, pair=False)
+    silent = with_values(SEEN, sun_cause=SensorFault.SILENT, sun=None, pair=False)
     assert faults(after(TRUSTED, FIELD, 57, silent)) == (0, 0)
     assert faults(after(TRUSTED, FIELD, 58, silent)) == (0, SensorFault.SILENT)
 
 
 @pytest.mark.requirement("REQ-SENSOR-06")
 class TestReadmitted:
-    FIELD_OUT = TRUSTED._replace(field=Watch(SensorFault.STRENGTH))
-    SUN_OUT = TRUSTED._replace(sun=Watch(SensorFault.REFUSED))
+    FIELD_OUT = with_values(TRUSTED, field=Watch(SensorFault.STRENGTH))
+    SUN_OUT = with_values(TRUSTED, sun=Watch(SensorFault.REFUSED))
 
     @pytest.mark.parametrize(("health", "used"), [(FIELD_OUT, SUN), (SUN_OUT, FIELD)])
     def test_once_it_is_for_long_what_the_estimate_predicts(self, health, used):
@@ -170,28 +176,28 @@ class TestReadmitted:
 
     def test_not_while_it_is_off_by_more_than_the_gate_allows(self):
         for step, ticks in ((6e-7, 129), (1.2e-6, 1000)):
-            moved = SEEN._replace(field=add(B, (step, 0.0, 0.0)))
+            moved = with_values(SEEN, field=add(B, (step, 0.0, 0.0)))
             assert faults(after(self.FIELD_OUT, SUN, ticks, moved)) == (
                 (0, 0) if step < 1e-6 else (SensorFault.STRENGTH, 0)
             )
 
     def test_by_the_field_where_the_satellite_was_when_the_sample_was_taken(self):
         """As the filter compares it, whose samples are a second old here; the field of now is another."""
-        old = ESTIMATE._replace(parameters=ESTIMATE.parameters._replace(delay_s=(1.0, 0.0)))
+        old = with_values(ESTIMATE, parameters=with_values(ESTIMATE.parameters, delay_s=(1.0, 0.0)))
         b_then = rotate(old.q_body_from_eci, sub(Models.b_eci_t, Models.b_rate_eci_tps))
-        then = SEEN._replace(field=b_then)
+        then = with_values(SEEN, field=b_then)
         assert faults(after(self.FIELD_OUT, SUN, 129, then, old)) == (0, 0)
         assert faults(after(self.FIELD_OUT, SUN, 1000, SEEN, old)) == (SensorFault.STRENGTH, 0)
         assert faults(after(self.FIELD_OUT, SUN, 1000, then)) == (SensorFault.STRENGTH, 0)
 
     def test_not_by_an_estimate_that_is_less_certain_than_the_sensor(self):
-        vague = ESTIMATE._replace(covariance=1000.0 * np.asarray(ESTIMATE.covariance))
+        vague = with_values(ESTIMATE, covariance=1000.0 * np.asarray(ESTIMATE.covariance))
         fly = partial(after, self.SUN_OUT, FIELD, estimate=vague)
         assert fly(ticks=400).sun.nats == 0.0
         assert fly(ticks=400).pair.accord > 0.0
 
     def test_what_an_estimate_has_shown_counts_when_it_can_tell_no_longer(self):
-        vague = ESTIMATE._replace(covariance=1000.0 * np.asarray(ESTIMATE.covariance))
+        vague = with_values(ESTIMATE, covariance=1000.0 * np.asarray(ESTIMATE.covariance))
         half = after(self.SUN_OUT, FIELD, 64)
         assert faults(after(self.SUN_OUT, FIELD, 300, estimate=vague)) == (0, SensorFault.REFUSED)
         back = after(half, FIELD, 300, estimate=vague)

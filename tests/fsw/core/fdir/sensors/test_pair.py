@@ -4,14 +4,23 @@ from itertools import count
 
 import pytest
 from estimator_samples import tuned
+from with_values import with_values
 
 from fsw.core.estimation import mekf
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.evidence import weights
 from fsw.core.fdir.sensors.credibility import credibility_config
-from fsw.core.fdir.sensors.pair import Observed, Pair, Standing, judge, proven, unjudged, valid
-from fsw.core.fdir.sensors.plausibility import Findings, Memory
+from fsw.core.fdir.sensors.observed import Observed
+from fsw.core.fdir.sensors.pair import (
+    Pair,
+    Standing,
+    is_proven,
+    is_valid,
+    judge_pair,
+    skip_judgement,
+)
+from fsw.core.fdir.sensors.plausibility import Findings
 
 NINE = (0.0,) * 9
 CONFIG = tuned(
@@ -20,35 +29,38 @@ CONFIG = tuned(
     coil_error=Prior((0.03,) * 9, NINE),
 )
 LIMITS, WEIGHTS = credibility_config(CONFIG), weights(40.0, 1.0)
-ESTIMATE = mekf.start((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), CONFIG)._replace(nis=5.0, numbers=6)
-TURNED = ESTIMATE._replace(parameters=ESTIMATE.parameters._replace(mag_bias_t=(2e-6, 0.0, 0.0)))
-WEAK = ESTIMATE._replace(
-    parameters=ESTIMATE.parameters._replace(coil_error=(0.0, 0.0, 0.0, 0.0, -0.6, 0.0, 0.0, 0.0, 0.0))
+ESTIMATE = with_values(mekf.start((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), CONFIG), nis=5.0, numbers=6)
+TURNED = with_values(ESTIMATE, parameters=with_values(ESTIMATE.parameters, mag_bias_t=(2e-6, 0.0, 0.0)))
+WEAK = with_values(
+    ESTIMATE,
+    parameters=with_values(ESTIMATE.parameters, coil_error=(0.0, 0.0, 0.0, 0.0, -0.6, 0.0, 0.0, 0.0, 0.0)),
 )
 """An estimate by which a coil does 0.4 of what it should."""
-DIPOLE = ESTIMATE._replace(parameters=ESTIMATE.parameters._replace(dipole_body_am2=(0.0, 0.05, 0.0)))
+DIPOLE = with_values(ESTIMATE, parameters=with_values(ESTIMATE.parameters, dipole_body_am2=(0.0, 0.05, 0.0)))
 B, S = (2e-5, 1e-5, -3e-5), (1.0, 0.0, 0.0)
-BOTH = Findings(0, 0, B, S, True, False, Memory())
-ECLIPSE = BOTH._replace(sun=None, pair=False)
+BOTH = Findings(0, 0, B, S, True, False)
+ECLIPSE = with_values(BOTH, sun=None, pair=False)
 TAKEN = Observed(BOTH, Used(True, True, False), ESTIMATE, False, False, False, False, 0.0, True)
 """A tick in which all is well."""
-WITHOUT = TAKEN._replace(estimate=None, used=Used(False, False, False))
-REFUSED = TAKEN._replace(used=Used(True, False, False), refused_sun=True)
-LARGE = TAKEN._replace(estimate=ESTIMATE._replace(nis=20.0))
-BEGUN = TAKEN._replace(estimate=ESTIMATE._replace(nis=0.0, numbers=0))
+WITHOUT = with_values(TAKEN, estimate=None, used=Used(False, False, False))
+REFUSED = with_values(TAKEN, used=Used(True, False, False), refused_sun=True)
+LARGE = with_values(TAKEN, estimate=with_values(ESTIMATE, nis=20.0))
+BEGUN = with_values(TAKEN, estimate=with_values(ESTIMATE, nis=0.0, numbers=0))
 """The tick in which an estimate begins: both are taken, and nothing is compared."""
 TRUSTED = Pair(Standing.TRUSTED, proof=WEIGHTS.threshold)
 
 
-def after(pair, seen, ticks=1):
+def after(pair, observed, ticks=1):
+    """A copy of the pair after these ticks."""
+    pair = pair.copy()
     for _ in range(ticks):
-        pair = judge(pair, seen, WEIGHTS, LIMITS)
+        judge_pair(pair, observed, WEIGHTS, LIMITS)
     return pair
 
 
-def ticks_until(pair, seen, standing, most=3000):
+def ticks_until(pair, observed, standing, most=3000):
     for ticks in count(1):
-        pair = after(pair, seen)
+        pair = after(pair, observed)
         if pair.standing is standing:
             return ticks, pair
         if ticks >= most:
@@ -59,16 +71,16 @@ class TestProof:
     def test_an_estimate_is_trusted_once_it_has_taken_both_for_long(self):
         ticks, pair = ticks_until(Pair(), TAKEN, Standing.TRUSTED)
         assert 120 < ticks < 140
-        assert proven(pair, WEIGHTS)
+        assert is_proven(pair, WEIGHTS)
 
     @pytest.mark.parametrize(
-        "seen",
+        "observed",
         [
-            TAKEN._replace(estimate=TURNED, sound=False),
-            TAKEN._replace(estimate=DIPOLE, sound=False),
+            with_values(TAKEN, estimate=TURNED, credible=False),
+            with_values(TAKEN, estimate=DIPOLE, credible=False),
             LARGE,
             WITHOUT,
-            TAKEN._replace(used=Used(True, False, False)),
+            with_values(TAKEN, used=Used(True, False, False)),
         ],
         ids=[
             "by sensors that cannot be",
@@ -78,18 +90,18 @@ class TestProof:
             "one alone",
         ],
     )
-    def test_it_proves_nothing(self, seen):
-        assert after(Pair(), seen, 25).proof == 0.0
+    def test_it_proves_nothing(self, observed):
+        assert after(Pair(), observed, 25).proof == 0.0
 
     @pytest.mark.parametrize("standing", [Standing.NEW, Standing.ON_TRIAL])
     def test_a_coil_that_cannot_be_keeps_it_from_nothing(self, standing):
         """Which coil is faulty is judged by a proven estimate alone; a sensor is not forgiven beside it."""
-        weak = TAKEN._replace(estimate=WEAK, sound=False)
+        weak = with_values(TAKEN, estimate=WEAK, credible=False)
         ticks, pair = ticks_until(Pair(standing), weak, Standing.TRUSTED)
         assert ticks == ticks_until(Pair(standing), TAKEN, Standing.TRUSTED)[0]
-        assert valid(pair)
-        parameters = WEAK.parameters._replace(mag_bias_t=TURNED.parameters.mag_bias_t)
-        turned = weak._replace(estimate=WEAK._replace(parameters=parameters))
+        assert is_valid(pair)
+        parameters = with_values(WEAK.parameters, mag_bias_t=TURNED.parameters.mag_bias_t)
+        turned = with_values(weak, estimate=with_values(WEAK, parameters=parameters))
         assert ticks_until(Pair(standing), turned, Standing.TRUSTED)[0] is None
 
     def test_what_it_refuses_sets_back_a_young_one_by_far(self):
@@ -97,18 +109,18 @@ class TestProof:
         assert after(young, REFUSED).proof < 0.3 * young.proof
 
     def test_a_trusted_one_is_proven_for_a_minute_after_it_has_last_taken_both(self):
-        alone = TAKEN._replace(findings=ECLIPSE, used=Used(True, False, False))
-        assert proven(after(TRUSTED, alone, 60), WEIGHTS)
+        alone = with_values(TAKEN, findings=ECLIPSE, used=Used(True, False, False))
+        assert is_proven(after(TRUSTED, alone, 60), WEIGHTS)
         later = after(TRUSTED, alone, 80)
         assert later.standing is Standing.TRUSTED
-        assert not proven(later, WEIGHTS)
+        assert not is_proven(later, WEIGHTS)
 
     def test_an_estimate_in_doubt_is_not_and_what_it_then_refuses_counts_against_the_pair(self):
         """A slow fault has led it away: the other sensor is the one that it refuses."""
-        little, much = (TRUSTED._replace(doubt=part * WEIGHTS.threshold) for part in (0.2, 0.3))
-        assert proven(little, WEIGHTS)
-        assert not proven(much, WEIGHTS)
-        refused = TAKEN._replace(refused_sun=True, used=Used(True, False, False))
+        little, much = (with_values(TRUSTED, doubt=part * WEIGHTS.threshold) for part in (0.2, 0.3))
+        assert is_proven(little, WEIGHTS)
+        assert not is_proven(much, WEIGHTS)
+        refused = with_values(TAKEN, refused_sun=True, used=Used(True, False, False))
         assert after(little, refused).doubt < little.doubt
         assert after(much, refused).doubt > much.doubt
 
@@ -123,17 +135,17 @@ class TestProof:
         ticks, _ = ticks_until(begun, TAKEN, Standing.TRUSTED)
         assert 120 < ticks < 140
 
-    @pytest.mark.parametrize("seen", [WITHOUT, BEGUN], ids=["without one", "with another"])
-    def test_where_it_had_contradicted_them_until_it_ended_the_next_is_on_trial(self, seen):
+    @pytest.mark.parametrize("observed", [WITHOUT, BEGUN], ids=["without one", "with another"])
+    def test_where_it_had_contradicted_them_until_it_ended_the_next_is_on_trial(self, observed):
         """One of them may be wrong, and what begins with both then agrees with the wrong one."""
-        lagged = after(TRUSTED._replace(owed=0.3), seen)
+        lagged = after(with_values(TRUSTED, proof_required=0.3), observed)
         assert lagged.standing is Standing.ON_TRIAL
         ticks, _ = ticks_until(after(lagged, BEGUN), TAKEN, Standing.TRUSTED)
         assert 480 < ticks < 560
 
     def test_without_a_sample_or_with_the_field_alone_nothing_begins(self):
         for used in (Used(False, False, True), Used(True, False, False)):
-            assert after(TRUSTED, BEGUN._replace(used=used)).standing is Standing.TRUSTED
+            assert after(TRUSTED, with_values(BEGUN, used=used)).standing is Standing.TRUSTED
 
 
 class TestValidity:
@@ -141,59 +153,59 @@ class TestValidity:
 
     @pytest.mark.parametrize("standing", Standing)
     def test_only_while_the_pair_is_trusted(self, standing):
-        assert valid(Pair(standing, proof=WEIGHTS.threshold)) is (standing is Standing.TRUSTED)
+        assert is_valid(Pair(standing, proof=WEIGHTS.threshold)) is (standing is Standing.TRUSTED)
 
     def test_not_once_nothing_was_taken_for_two_minutes_and_again_when_both_have_borne_it_out(self):
-        blind = TAKEN._replace(
-            findings=ECLIPSE, used=Used(False, False, False), estimate=ESTIMATE._replace(numbers=0)
+        blind = with_values(
+            TAKEN, findings=ECLIPSE, used=Used(False, False, False), estimate=with_values(ESTIMATE, numbers=0)
         )
         pair = after(TRUSTED, blind, WEIGHTS.blind_ticks)
         assert WEIGHTS.blind_ticks == 120
-        assert valid(pair)
+        assert is_valid(pair)
         pair = after(pair, blind)
         assert pair.standing is Standing.TRUSTED
-        assert not valid(pair)
+        assert not is_valid(pair)
         self.bear_out(pair)
 
     def test_not_while_innovations_have_a_mean_and_again_when_both_have_borne_it_out(self):
-        lagging = TAKEN._replace(estimate=ESTIMATE._replace(lag=(0.0, 1.1, 0.0, 0.0, 0.0, 0.0)))
+        lagging = with_values(TAKEN, estimate=with_values(ESTIMATE, lag=(0.0, 1.1, 0.0, 0.0, 0.0, 0.0)))
         pair = after(TRUSTED, lagging)
         assert pair.standing is Standing.TRUSTED
-        assert not valid(pair)
+        assert not is_valid(pair)
         self.bear_out(pair)
 
     def test_a_mean_that_may_be_chance_is_none(self):
-        slight = TAKEN._replace(estimate=ESTIMATE._replace(lag=(0.5, 0.6, -0.5, 0.5, 0.6, -0.5)))
-        assert valid(after(TRUSTED, slight, 500))
+        slight = with_values(TAKEN, estimate=with_values(ESTIMATE, lag=(0.5, 0.6, -0.5, 0.5, 0.6, -0.5)))
+        assert is_valid(after(TRUSTED, slight, 500))
 
     @pytest.mark.parametrize("used", [Used(True, False, False), Used(False, True, False)])
     def test_a_smaller_one_counts_that_a_sensor_shows_alone(self, used):
         for lag, holds in (((0.0, 0.8, 0.0, 0.0, 0.8, 0.0), False), ((0.0, 0.5, 0.0, 0.0, 0.5, 0.0), True)):
-            lagging = TAKEN._replace(estimate=ESTIMATE._replace(lag=lag))
-            assert valid(after(TRUSTED, lagging)), "with both it may be chance"
-            assert valid(after(TRUSTED, lagging._replace(findings=ECLIPSE, used=used))) is holds
+            lagging = with_values(TAKEN, estimate=with_values(ESTIMATE, lag=lag))
+            assert is_valid(after(TRUSTED, lagging)), "with both it may be chance"
+            assert is_valid(after(TRUSTED, with_values(lagging, findings=ECLIPSE, used=used))) is holds
 
     def bear_out(self, pair):
         alone = (Used(True, False, False), Used(False, True, False))
         for used in alone:
-            assert not valid(after(pair, TAKEN._replace(findings=ECLIPSE, used=used), 1000))
+            assert not is_valid(after(pair, with_values(TAKEN, findings=ECLIPSE, used=used), 1000))
         ticks = round(WEIGHTS.threshold / WEIGHTS.fits)
-        assert not valid(after(pair, TAKEN, ticks - 1))
-        assert valid(after(pair, TAKEN, ticks + 1))
+        assert not is_valid(after(pair, TAKEN, ticks - 1))
+        assert is_valid(after(pair, TAKEN, ticks + 1))
 
     def test_while_one_sensor_sees_it_lasts(self):
-        alone = TAKEN._replace(findings=ECLIPSE, used=Used(True, False, False))
-        assert valid(after(TRUSTED, alone, 2000))
+        alone = with_values(TAKEN, findings=ECLIPSE, used=Used(True, False, False))
+        assert is_valid(after(TRUSTED, alone, 2000))
 
 
-APART = BOTH._replace(apart=True)
+APART = with_values(BOTH, apart=True)
 DOUBTS = {
     "large innovations": (TRUSTED, LARGE),
-    "parameters beyond their bounds": (TRUSTED, TAKEN._replace(estimate=TURNED, sound=False)),
-    "the wrong angle, without an estimate": (Pair(), WITHOUT._replace(findings=APART)),
-    "the wrong angle, with a young one": (Pair(), TAKEN._replace(findings=APART)),
-    "a refusal by one that is not credible": (Pair(), REFUSED._replace(sound=False)),
-    "a refusal after a long time with one alone": (TRUSTED._replace(proof=1.0), REFUSED),
+    "parameters beyond their bounds": (TRUSTED, with_values(TAKEN, estimate=TURNED, credible=False)),
+    "the wrong angle, without an estimate": (Pair(), with_values(WITHOUT, findings=APART)),
+    "the wrong angle, with a young one": (Pair(), with_values(TAKEN, findings=APART)),
+    "a refusal by one that is not credible": (Pair(), with_values(REFUSED, credible=False)),
+    "a refusal after a long time with one alone": (with_values(TRUSTED, proof=1.0), REFUSED),
 }
 
 
@@ -201,20 +213,20 @@ DOUBTS = {
 class TestDoubt:
     @pytest.mark.parametrize("name", DOUBTS)
     def test_speaks_against_the_pair_and_ends_the_filter(self, name):
-        pair, seen = DOUBTS[name]
-        ticks, pair = ticks_until(pair, seen, Standing.DISPUTED)
+        pair, observed = DOUBTS[name]
+        ticks, pair = ticks_until(pair, observed, Standing.DISPUTED)
         assert 25 < ticks < 35
         assert pair == Pair(Standing.DISPUTED, ended=True)
-        assert not valid(pair)
+        assert not is_valid(pair)
         assert not after(pair, WITHOUT).ended, "once"
 
     @pytest.mark.parametrize(
-        ("pair", "seen"),
+        ("pair", "observed"),
         [
             (TRUSTED, TAKEN),
             (TRUSTED, REFUSED),
             (Pair(), REFUSED),
-            (TRUSTED, TAKEN._replace(findings=APART)),
+            (TRUSTED, with_values(TAKEN, findings=APART)),
         ],
         ids=[
             "all is well",
@@ -223,71 +235,74 @@ class TestDoubt:
             "an angle it explains",
         ],
     )
-    def test_does_not_arise(self, pair, seen):
-        assert after(pair, seen, 25).doubt == 0.0
+    def test_does_not_arise(self, pair, observed):
+        assert after(pair, observed, 25).doubt == 0.0
 
     def test_of_an_isolated_sensor_neither_angle_nor_parameters_dispute_the_other(self):
-        alone = TAKEN._replace(isolated=True, used=Used(False, True, False))
-        assert after(Pair(), alone._replace(findings=APART), 100).standing is Standing.NEW
-        assert after(TRUSTED, alone._replace(estimate=TURNED), 100).standing is Standing.TRUSTED
-        large = ESTIMATE._replace(nis=15.0, numbers=3)
-        assert after(TRUSTED, alone._replace(estimate=large), 35).standing is Standing.DISPUTED
+        alone = with_values(TAKEN, isolated=True, used=Used(False, True, False))
+        assert after(Pair(), with_values(alone, findings=APART), 100).standing is Standing.NEW
+        assert after(TRUSTED, with_values(alone, estimate=TURNED), 100).standing is Standing.TRUSTED
+        large = with_values(ESTIMATE, nis=15.0, numbers=3)
+        assert after(TRUSTED, with_values(alone, estimate=large), 35).standing is Standing.DISPUTED
 
 
-class TestUnjudged:
+class TestSkippedJudgement:
     """While the time is in doubt: nothing is shown, but what ends or lags is not trusted."""
 
     def after(self, pair, estimate=ESTIMATE, used=TAKEN.used, ticks=1):
+        pair = pair.copy()
         for _ in range(ticks):
-            pair = unjudged(pair, used, estimate, WEIGHTS)
+            skip_judgement(pair, used, estimate, WEIGHTS)
         return pair
 
     def test_an_estimate_that_goes_on_keeps_its_standing_for_two_minutes(self):
-        assert self.after(TRUSTED, ticks=120) == TRUSTED._replace(blind_ticks=120)
-        assert not valid(self.after(TRUSTED, ticks=121))
+        assert self.after(TRUSTED, ticks=120) == with_values(TRUSTED, blind_ticks=120)
+        assert not is_valid(self.after(TRUSTED, ticks=121))
 
     def test_what_it_owes_is_not_paid(self):
-        owes = TRUSTED._replace(owed=3.0)
-        assert self.after(owes, ticks=50).owed == 3.0
+        owes = with_values(TRUSTED, proof_required=3.0)
+        assert self.after(owes, ticks=50).proof_required == 3.0
 
     @pytest.mark.parametrize("estimate", [None, BEGUN.estimate], ids=["none", "begun"])
-    @pytest.mark.parametrize(("owed", "standing"), [(0.0, Standing.NEW), (1.0, Standing.ON_TRIAL)])
-    def test_one_that_has_ended_was_proven_in_vain(self, estimate, owed, standing):
-        pair = self.after(TRUSTED._replace(owed=owed), estimate)
-        assert (pair.standing, pair.proof, pair.owed) == (standing, 0.0, 0.0)
+    @pytest.mark.parametrize(("proof_required", "standing"), [(0.0, Standing.NEW), (1.0, Standing.ON_TRIAL)])
+    def test_one_that_has_ended_was_proven_in_vain(self, estimate, proof_required, standing):
+        pair = self.after(with_values(TRUSTED, proof_required=proof_required), estimate)
+        assert (pair.standing, pair.proof, pair.proof_required) == (standing, 0.0, 0.0)
 
     @pytest.mark.parametrize("standing", [Standing.NEW, Standing.DISPUTED, Standing.ON_TRIAL])
     def test_any_other_standing_stays(self, standing):
         assert self.after(Pair(standing), None).standing is standing
 
     def test_one_that_lags_is_not_valid(self):
-        lagging = ESTIMATE._replace(lag=(0.0, 2.0, 0.0, 0.0, 0.0, 0.0))
-        assert not valid(self.after(TRUSTED, lagging))
+        lagging = with_values(ESTIMATE, lag=(0.0, 2.0, 0.0, 0.0, 0.0, 0.0))
+        assert not is_valid(self.after(TRUSTED, lagging))
 
 
-class TestStrange:
+class TestFalseConvergence:
     """An estimate that has settled on a satellite that cannot be begins anew, if it does not fit either."""
 
-    LOST = TAKEN._replace(sound=False, estimate=ESTIMATE._replace(lag=(0.0, 1.1, 0.0, 0.0, 0.0, 0.0)))
+    LOST = with_values(
+        TAKEN, credible=False, estimate=with_values(ESTIMATE, lag=(0.0, 1.1, 0.0, 0.0, 0.0, 0.0))
+    )
 
     def test_it_ends_after_long_and_nobody_is_blamed(self):
         pair = after(TRUSTED, self.LOST, 2000)
         assert pair.standing is Standing.TRUSTED
         pair = after(pair, self.LOST, 100)
         assert pair.standing is Standing.NEW
-        assert pair.strange < 0.1 * WEIGHTS.threshold
+        assert pair.false_convergence < 0.1 * WEIGHTS.threshold
 
     @pytest.mark.parametrize(
-        "seen",
+        "observed",
         [
-            LOST._replace(sound=True),
-            LOST._replace(estimate=ESTIMATE),
-            LOST._replace(used=Used(True, False, False)),
+            with_values(LOST, credible=True),
+            with_values(LOST, estimate=ESTIMATE),
+            with_values(LOST, used=Used(True, False, False)),
         ],
         ids=["of the table", "that fits", "of one sensor alone"],
     )
-    def test_one_goes_on(self, seen):
-        assert after(TRUSTED, seen, 600).strange == 0.0
+    def test_one_goes_on(self, observed):
+        assert after(TRUSTED, observed, 600).false_convergence == 0.0
 
 
 class TestAccord:
@@ -296,21 +311,21 @@ class TestAccord:
     def test_a_disputed_pair_that_agrees_is_tried_and_then_trusted(self):
         ticks, pair = ticks_until(self.DISPUTED, WITHOUT, Standing.ON_TRIAL)
         assert 500 < ticks < 530
-        assert not valid(pair)
-        ticks, pair = ticks_until(pair._replace(accord=0.0), TAKEN, Standing.TRUSTED)
+        assert not is_valid(pair)
+        ticks, pair = ticks_until(with_values(pair, accord=0.0), TAKEN, Standing.TRUSTED)
         assert 500 < ticks < 530
-        assert valid(pair)
+        assert is_valid(pair)
 
     def test_one_wrong_angle_undoes_minutes(self):
         pair = after(self.DISPUTED, WITHOUT, 300)
-        apart = WITHOUT._replace(findings=APART)
+        apart = with_values(WITHOUT, findings=APART)
         assert pair.accord - after(pair, apart).accord > 150 * WEIGHTS.agrees
 
     def test_in_eclipse_nothing_is_won_or_lost(self):
         pair = after(self.DISPUTED, WITHOUT, 300)
-        assert after(pair, WITHOUT._replace(findings=ECLIPSE), 100).accord == pair.accord
+        assert after(pair, with_values(WITHOUT, findings=ECLIPSE), 100).accord == pair.accord
 
     def test_an_isolated_sensor_is_judged_so_only_while_no_estimate_can_tell(self):
-        isolated = TAKEN._replace(isolated=True)
+        isolated = with_values(TAKEN, isolated=True)
         assert after(TRUSTED, isolated, 100).accord == 0.0
-        assert after(TRUSTED, isolated._replace(untold=True), 100).accord > 0.0
+        assert after(TRUSTED, with_values(isolated, inconclusive=True), 100).accord > 0.0

@@ -6,11 +6,13 @@ from math import cos, nan, radians, sin
 import pytest
 from cell_samples import CELLS
 from gate_samples import measured
+from with_values import with_values
 
 from fsw.core.algebra.vector import add, norm, scale
 from fsw.core.fdir.faults import SensorFault
-from fsw.core.fdir.sensors.plausibility import SHADOW_M, Memory, PlausibilityConfig, examine
-from fsw.core.fdir.sensors.standstill import Moved, Steps
+from fsw.core.fdir.sensors.memory import Memory
+from fsw.core.fdir.sensors.plausibility import SHADOW_M, PlausibilityConfig, examine
+from fsw.core.fdir.sensors.standstill import Displacement, Steps
 from fsw.core.orbit.ephemeris import reference_at
 from fsw.wire.messages import CoilStatus, MagField, SunCells, SunVector
 
@@ -87,7 +89,7 @@ def test_a_field_marked_as_not_valid_counts_while_no_coil_drives(reference, read
 @pytest.mark.requirement("REQ-SENSOR-01")
 def test_an_axis_at_the_end_of_its_range_is_no_fault_in_a_field_that_may_be_beyond_it(reference, readings):
     strength = norm(reference.b_eci_t)
-    narrow, wide = (LIMITS._replace(in_range_t=part * strength) for part in (0.99, 1.01))
+    narrow, wide = (with_values(LIMITS, in_range_t=part * strength) for part in (0.99, 1.01))
     sample = MagField(0, 1.0, 2.0, 3.0, counter=0)
     invalid, at_the_end = readings(field=sample), readings(field=sample, saturated=((0.0, 1.0, 0.0),))
     assert causes(examine(Memory(), at_the_end, reference, narrow)) == (0, 0)
@@ -119,7 +121,7 @@ def behind_the_earth(reference):
 class TestCells:
     """What speaks against several cells in one tick speaks against the board that reads them."""
 
-    LIMITS = LIMITS._replace(cells=CELLS, sun_norm=0.5)
+    LIMITS = with_values(LIMITS, cells=CELLS, sun_norm=0.5)
     BEYOND = 1.0 + CELLS.albedo + 4.0 * CELLS.model_sigma
 
     def found(self, reference, readings, currents, isolated=()):
@@ -177,9 +179,8 @@ class TestFrozen:
         for tick in range(ticks):
             b = reference.b_eci_t if still_field else scale(1.0 + 1e-4 * tick, reference.b_eci_t)
             s = reference.sun_eci if still_sun else scale(1.0 + 1e-4 * tick, reference.sun_eci)
-            limits = LIMITS._replace(late_ticks=late_ticks)
+            limits = with_values(LIMITS, late_ticks=late_ticks)
             findings = examine(memory, readings(b, s), reference, limits)
-            memory = findings.memory
         return findings
 
     def test_a_sample_that_is_repeated_while_the_other_moves(self, reference, readings):
@@ -200,37 +201,39 @@ class TestFrozen:
         world = make_world()
         world.fly_until_valid()
         known = world.state.estimator.estimate
-        limits = LIMITS._replace(steps=Steps(field_t=2e-7, sun=0.0, tick_s=1.0), late_ticks=1)
+        limits = with_values(LIMITS, steps=Steps(field_t=2e-7, sun=0.0, tick_s=1.0), late_ticks=1)
         found = {}
         for name, estimate in (("unknown", None), ("known", known)):
             memory, causes_found = Memory(), []
             for tick in range(60):
                 moving = scale(1.0 + 1e-4 * tick, reference.sun_eci)
                 findings = examine(memory, readings(sun_eci=moving), reference, limits, estimate)
-                memory = findings.memory
                 causes_found.append(findings.field_cause)
             found[name] = causes_found
         assert found["unknown"] == [0] * 60
         first = found["known"].index(SensorFault.FROZEN)
         assert 3 < first < 20
         assert set(found["known"][first:]) == {SensorFault.FROZEN}
-        assert memory.motion == (memory.motion[0], Moved())
+        assert memory.motion.of_field.sigma > 0.0
+        assert memory.motion.of_sun == Displacement()
 
     def test_a_continuous_sample_needs_no_estimate(self, reference, readings):
-        limits = LIMITS._replace(steps=Steps(field_t=0.0, sun=4e-3, tick_s=1.0))
-        memory = examine(Memory(), readings(), reference, limits).memory
+        limits = with_values(LIMITS, steps=Steps(field_t=0.0, sun=4e-3, tick_s=1.0))
+        memory = Memory()
+        examine(memory, readings(), reference, limits)
         moving = readings(sun_eci=scale(1.0001, reference.sun_eci))
         assert causes(examine(memory, moving, reference, limits)) == (SensorFault.FROZEN, 0)
 
     def test_without_steps_there_is_no_motion_to_remember(self, reference, readings):
-        memory = examine(Memory(), readings(), reference, LIMITS).memory
+        memory = Memory()
+        examine(memory, readings(), reference, LIMITS)
         assert memory.motion is None
 
     def test_darkness_is_not_frozen(self, reference, readings):
         memory = Memory()
         for _ in range(5):
             dark = readings(sun=SunVector(0, 0.0, 0.0, 0.0, counter=0))
-            memory = examine(memory, dark, reference, LIMITS).memory
+            examine(memory, dark, reference, LIMITS)
         assert memory.sun_still == 0
 
 

@@ -5,13 +5,14 @@ from math import hypot, sqrt
 
 import numpy as np
 import pytest
+from with_values import with_values
 
 from fsw.core.algebra.quaternion import from_small_rotation, multiply, normalise, rotate
 from fsw.core.algebra.vector import scale, sub
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.fdir.evidence import SIGMAS
-from fsw.core.fdir.sensors.standstill import NO_MOTION, NOT_MOVED, Moved, Steps, frozen, moved_on
+from fsw.core.fdir.sensors.standstill import Displacement, Motion, Steps, is_frozen, update_motion
 
 STEPS = Steps(field_t=2e-7, sun=4e-3, tick_s=0.5)
 OMEGA = (0.002, -0.003, 0.001)
@@ -57,52 +58,70 @@ def attitude(time_s):
     return multiply(Q_BODY_FROM_ECI, from_small_rotation(scale(time_s, OMEGA)))
 
 
-def after(ticks, motion=NO_MOTION, still=BOTH, steps=STEPS, **estimate):
+def after(ticks, motion=None, still=BOTH, steps=STEPS, **estimate):
+    """The motion after these ticks, by default from rest."""
+    motion = Motion() if motion is None else motion
     for tick in range(ticks):
         time_s = (tick + 0.5) * steps.tick_s
-        motion = moved_on(motion, still, estimated(attitude(time_s), **estimate), At(time_s), steps)
+        update_motion(motion, *still, estimated(attitude(time_s), **estimate), At(time_s), steps)
     return motion
+
+
+def frozen(motion, still, steps):
+    """Of field and Sun."""
+    field_still, sun_still = still
+    of_field, of_sun = motion.of_field, motion.of_sun
+    return is_frozen(of_field, field_still, steps.field_t), is_frozen(of_sun, sun_still, steps.sun)
 
 
 def test_the_motion_is_the_difference_of_what_is_measured_at_both_ends():
     """Of the rotation and of the field's own change."""
     ticks = 40
-    field, sun = after(ticks)
+    motion = after(ticks)
     time_s = ticks * STEPS.tick_s
     q = attitude(time_s)
     of_field = sub(rotate(q, At(time_s).b_eci_t), rotate(Q_BODY_FROM_ECI, Models.b_eci_t))
     of_sun = sub(rotate(q, Models.sun_eci), rotate(Q_BODY_FROM_ECI, Models.sun_eci))
-    np.testing.assert_allclose(field.by_body, of_field, atol=0.02 * np.linalg.norm(of_field))
-    np.testing.assert_allclose(sun.by_body, of_sun, atol=0.02 * np.linalg.norm(of_sun))
+    np.testing.assert_allclose(motion.of_field.by_body, of_field, atol=0.02 * np.linalg.norm(of_field))
+    np.testing.assert_allclose(motion.of_sun.by_body, of_sun, atol=0.02 * np.linalg.norm(of_sun))
 
 
 def test_its_error_is_the_rate_s_for_all_the_time():
-    field, sun = after(8, sigma_radps=3e-4)
+    motion = after(8, sigma_radps=3e-4)
     sigma_rad = sqrt(3.0) * 3e-4 * 8 * STEPS.tick_s
     strengths = [np.linalg.norm(At((tick + 0.5) * STEPS.tick_s).b_eci_t) for tick in range(8)]
-    assert field.sigma == pytest.approx(sigma_rad * np.mean(strengths))
-    assert sun.sigma == pytest.approx(sigma_rad)
+    assert motion.of_field.sigma == pytest.approx(sigma_rad * np.mean(strengths))
+    assert motion.of_sun.sigma == pytest.approx(sigma_rad)
 
 
 def test_a_reading_that_changes_begins_anew():
-    field, sun = moved_on(after(5), (False, True), estimated(), Models, STEPS)
-    assert field is NOT_MOVED
-    assert sun != NOT_MOVED
-    field, sun = moved_on(after(5), (True, False), estimated(), Models, STEPS)
-    assert field != NOT_MOVED
-    assert sun is NOT_MOVED
+    motion = after(5)
+    update_motion(motion, False, True, estimated(), Models, STEPS)
+    assert motion.of_field == Displacement()
+    assert motion.of_sun != Displacement()
+    motion = after(5)
+    update_motion(motion, True, False, estimated(), Models, STEPS)
+    assert motion.of_field != Displacement()
+    assert motion.of_sun == Displacement()
 
 
 def test_what_is_not_known_counts_as_rest():
     motion = after(5)
-    assert moved_on(motion, BOTH, None, Models, STEPS) == motion
+    update_motion(motion, *BOTH, None, Models, STEPS)
+    assert motion == after(5)
+
+
+def test_a_copy_moves_by_itself():
+    motion = after(5)
+    update_motion(motion.copy(), *BOTH, estimated(), Models, STEPS)
+    assert motion == after(5)
 
 
 @pytest.mark.parametrize("step", [0.1, 3e-7])
 def test_a_step_hides_its_length_on_each_axis_and_the_rate_s_error_some_more(step):
     limit = sqrt(3.0) * step + SIGMAS * 0.2 * step
-    assert not Moved((0.99 * limit, 0.0, 0.0), 0.2 * step).beyond(step)
-    assert Moved((0.0, -1.01 * limit, 0.0), 0.2 * step).beyond(step)
+    assert not Displacement((0.99 * limit, 0.0, 0.0), 0.2 * step).exceeds(step)
+    assert Displacement((0.0, -1.01 * limit, 0.0), 0.2 * step).exceeds(step)
 
 
 def test_what_rounds_to_the_same_never_looks_frozen():
@@ -110,23 +129,23 @@ def test_what_rounds_to_the_same_never_looks_frozen():
     for _ in range(1000):
         cell = random.integers(-9, 9, 3)
         a, b = (STEPS.sun * (cell + random.uniform(-0.5, 0.5, 3)) for _ in range(2))
-        assert not Moved(tuple(b - a)).beyond(STEPS.sun)
+        assert not Displacement(tuple(b - a)).exceeds(STEPS.sun)
 
 
 def test_only_what_stands_still_and_should_not_is_frozen():
-    far, near = (Moved((part, 0.0, 0.0)) for part in (1.0, 1e-12))
-    assert frozen((far, far), BOTH, STEPS) == (True, True)
-    assert frozen((far, near), BOTH, STEPS) == (True, False)
-    assert frozen((near, far), BOTH, STEPS) == (False, True)
-    assert frozen((far, far), (False, False), STEPS) == (False, False)
+    far, near = (Displacement((part, 0.0, 0.0)) for part in (1.0, 1e-12))
+    assert frozen(Motion(far, far), BOTH, STEPS) == (True, True)
+    assert frozen(Motion(far, near), BOTH, STEPS) == (True, False)
+    assert frozen(Motion(near, far), BOTH, STEPS) == (False, True)
+    assert frozen(Motion(far, far), (False, False), STEPS) == (False, False)
 
 
 def test_a_continuous_reading_never_stands_still():
-    of_field, of_sun = STEPS._replace(sun=0.0), STEPS._replace(field_t=0.0)
-    assert frozen(NO_MOTION, BOTH, of_field) == (False, True)
-    assert frozen(NO_MOTION, BOTH, of_sun) == (True, False)
-    assert after(3, steps=of_field)[1] is NOT_MOVED
-    assert after(3, steps=of_sun)[0] is NOT_MOVED
+    of_field, of_sun = with_values(STEPS, sun=0.0), with_values(STEPS, field_t=0.0)
+    assert frozen(Motion(), BOTH, of_field) == (False, True)
+    assert frozen(Motion(), BOTH, of_sun) == (True, False)
+    assert after(3, steps=of_field).of_sun == Displacement()
+    assert after(3, steps=of_sun).of_field == Displacement()
 
 
 def test_a_rate_that_is_hardly_known_shows_nothing():
