@@ -1,5 +1,6 @@
 # make sil    make the environment .venv and fly the default scenario
-# make test   the tests, but for the long ones: some four minutes
+# make test   the tests, but for the long ones, those that need it interpreted: some four minutes
+# TORQUER_INTERPRETED=1 make ...   nothing is compiled, all runs interpreted
 # make test-long   those of over a second: many orbits, processes, waits in real time; on a CAN interface where there is one: a quarter of an hour
 # make lint   style, types, layers, generated code, pages and pictures
 # make validate   compute every claim and reference figure, into docs/validation.md: some hours; stopped, it goes on where it was
@@ -37,6 +38,8 @@ PYTHONS ?=
 bin := .venv/bin
 installed := .venv/.installed
 kernel := .venv/.kernel
+compiled := .venv/.compiled
+pip := TORQUER_INTERPRETED=1 $(bin)/pip install --quiet --disable-pip-version-check
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
 .PHONY: help venv sil test test-long lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate validate-recorded same-flights fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
@@ -44,17 +47,22 @@ export PATH := $(CURDIR)/$(bin):$(PATH)
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
 
-venv: $(installed) $(kernel)
+venv: $(installed) $(kernel) $(if $(TORQUER_INTERPRETED),,$(compiled))
 
 $(installed): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit("torquer needs Python 3.11 or newer: make PYTHON=python3.11 ..." if sys.version_info < (3, 11) else 0)'
 	@echo 'Making the environment .venv (a minute or two the first time)'
 	@$(PYTHON) -m venv .venv
-	@$(bin)/pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@$(pip) --editable '.[dev]'
 	@touch $@
 
 $(kernel): fsw/core/estimation/kalman_kernel.c hatch_build.py $(installed)
 	$(bin)/python hatch_build.py
+	@touch $@
+
+# which of these have changed, and whether any is of the group, is seen at once
+$(compiled): tools/compile_group.py $(shell find fsw hil_stub sim -name '*.py') $(installed)
+	@$(bin)/python tools/compile_group.py
 	@touch $@
 
 sil: venv
@@ -65,6 +73,7 @@ test test-long: export OPENBLAS_NUM_THREADS = 1
 
 test: venv
 	$(bin)/pytest $(PYTEST_FLAGS)
+	TORQUER_INTERPRETED=1 $(bin)/pytest $(PYTEST_FLAGS) -m 'interpreted and not long'
 
 test-long: venv
 	$(bin)/pytest $(PYTEST_FLAGS) -m long
@@ -86,7 +95,7 @@ docs_installed := .venv/.docs-installed
 sphinx := $(bin)/sphinx-build -W -n --keep-going --quiet -b html
 
 $(docs_installed): $(installed)
-	$(bin)/pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	$(pip) --editable '.[docs]'
 	@touch $@
 
 docs: $(docs_installed)
@@ -177,6 +186,8 @@ validate-planted: venv
 
 mutation: venv
 	$(bin)/python tools/mutate.py $(MUTATE)
+
+coverage: export TORQUER_INTERPRETED = 1
 
 coverage: venv
 	$(bin)/coverage erase

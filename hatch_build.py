@@ -1,9 +1,12 @@
-"""Builds the filter's kernel: when the package is installed, and by ``python hatch_build.py`` after a change.
+"""Builds what is compiled: the filter's kernel, and the flight code by tools/compile_group.py.
 
-Without a C compiler or Python's headers the package is installed all the same, and filterpy computes.
+Both are built when the package is installed; after a change, the kernel by ``python hatch_build.py``. Without
+a C compiler or Python's headers the package is installed all the same: filterpy computes, and the flight code
+runs interpreted. With TORQUER_INTERPRETED=1 the flight code is not compiled.
 """
 
 import hashlib
+import os
 import shlex
 import subprocess
 import sys
@@ -57,20 +60,38 @@ def build_kernel(root: Path) -> Path:
 
 
 class CustomBuildHook(BuildHookInterface):  # type: ignore[misc]  # hatchling is not there where tools run
-    """Compiles the kernel when a wheel is built or the sources are installed in place."""
+    """Compiles when a wheel is built or the sources are installed in place."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Build, and add the binary to the wheel of this platform."""
+        """Build, and add the binaries to the wheel of this platform."""
         if self.target_name != "wheel":
             return
+        built = [*self._kernel(), *self._flight_code()]
+        if built:
+            build_data["pure_python"] = False
+            build_data["infer_tag"] = True
+            build_data["artifacts"] += built
+
+    def _kernel(self) -> list[str]:
         try:
             build_kernel(Path(self.root))
         except KernelError as error:
             self.app.display_warning(f"the filter's kernel is not built, filterpy computes: {error}")
-            return
-        build_data["pure_python"] = False
-        build_data["infer_tag"] = True
-        build_data["artifacts"].append(TARGET)
+            return []
+        return [TARGET]
+
+    def _flight_code(self) -> list[str]:
+        if os.environ.get("TORQUER_INTERPRETED", "0") not in ("", "0"):
+            return []
+        sys.path.insert(0, str(Path(self.root, "tools")))
+        from compile_group import FOLDER, CompileError, build  # noqa: PLC0415  (of the sources that are built)
+
+        try:
+            build(self.app.display_info, Path(self.root))
+        except CompileError as error:
+            self.app.display_warning(f"the flight code is not compiled, and runs interpreted: {error}")
+            return []
+        return [f"{FOLDER}/*"]
 
 
 def main() -> int:

@@ -1,5 +1,7 @@
 """Torquer flight software: node, core, onboard table, and its way onto the bus."""
 
+from fsw.compiled import install
 from fsw.kernel import refuse_stale_kernel
 
+install()
 refuse_stale_kernel()

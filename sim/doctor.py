@@ -9,10 +9,13 @@ import time
 from collections.abc import Callable, Iterator
 from enum import StrEnum
 from importlib.metadata import PackageNotFoundError, requires, version
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import NamedTuple
 
+from fsw.compiled import ROOT, SWITCH, standing
+from fsw.kernel import KERNEL
 from sim.console import answer, say
 
 SYSTEM = Path("/sys/class/net")
@@ -124,6 +127,26 @@ def _numbers(text: str) -> tuple[int, ...]:
     return tuple(map(int, re.findall(r"\d+", text)[:3]))
 
 
+def _flight_code() -> Iterator[Finding]:
+    """Whether it runs compiled, to the same bits in less time, and whether the filter's kernel is there."""
+    found = standing()
+    build = (
+        "make venv" if (ROOT / "Makefile").is_file() else "pip install --force-reinstall --no-deps torquer"
+    )
+    remedy = f"unset {SWITCH}" if os.environ.get(SWITCH) else f"{build}, where there is a C compiler"
+    if found.reason:
+        yield Finding("flight code", Presence.OPTIONAL, str(found), remedy)
+    else:
+        yield Finding("flight code", Presence.OK, str(found))
+    if find_spec(KERNEL) is None:
+        remedy = f"{build}, where there is a C compiler"
+        yield Finding(
+            "filter's kernel", Presence.OPTIONAL, "not built of this source: filterpy flies", remedy
+        )
+    else:
+        yield Finding("filter's kernel", Presence.OK, "built")
+
+
 def _can() -> Iterator[Finding]:
     try:
         socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW).close()
@@ -196,6 +219,7 @@ def _overshoot_ms() -> float:
 _LOOKS: tuple[Callable[[], Iterator[Finding]], ...] = (
     _python,
     _packages,
+    _flight_code,
     _can,
     _permissions,
     _folders,

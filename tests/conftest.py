@@ -10,7 +10,10 @@ from pathlib import Path
 from shutil import which
 
 import pytest
+from compiled_guard import refuse_patches
 from hypothesis import settings
+
+from fsw.compiled import SWITCH, standing
 
 settings.register_profile("ci", derandomize=True, deadline=None, print_blob=True)
 settings.register_profile("dev", deadline=None, print_blob=True)
@@ -27,6 +30,15 @@ LONG = "pytest.mark.long"
 """It stands in the very file that has long tests: see ``test_house.py``."""
 
 
+INTERPRETED = "pytest.mark.interpreted"
+
+refuse_patches(standing().modules)
+
+
+def pytest_report_header():
+    return f"flight code {standing()}"
+
+
 def pytest_configure(config):
     """Who does not say which tests to run gets those that are not long; who names a file gets all of it."""
     chosen = any(config.getoption(name, None) for name in ("markexpr", "keyword", "lf", "ff"))
@@ -35,11 +47,12 @@ def pytest_configure(config):
 
 
 def pytest_ignore_collect(collection_path, config):
-    """Who wants the long tests alone need not import files that have none, three of four."""
-    if config.option.markexpr != "long" or not collection_path.name.startswith("test_"):
+    """Who wants the long or the interpreted tests alone need not import files that have none."""
+    mark = {"long": LONG, "interpreted": INTERPRETED}.get(config.option.markexpr.partition(" ")[0])
+    if mark is None or not collection_path.name.startswith("test_"):
         return None
-    has_long = collection_path.is_relative_to(EXAMPLES) or LONG in collection_path.read_text(encoding="utf-8")
-    return None if has_long else True
+    has_some = mark in collection_path.read_text(encoding="utf-8")
+    return None if has_some or (mark == LONG and collection_path.is_relative_to(EXAMPLES)) else True
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -49,6 +62,8 @@ def pytest_collection_modifyitems(items):
             item.add_marker("chromium")
         if item.path.is_relative_to(EXAMPLES):
             item.add_marker("long")
+        if standing().modules and item.get_closest_marker("interpreted"):
+            item.add_marker(pytest.mark.skip(f"make test runs it with {SWITCH}=1"))
 
 
 @pytest.fixture(scope="module")

@@ -183,7 +183,11 @@ def _prepare(folder: Path) -> None:
         report_multiple_bugs=False,
         phases=[Phase.explicit, Phase.generate],
     )
-    os.environ |= {"PYTHONPATH": str(folder), "HYPOTHESIS_PROFILE": "mutation"}
+    os.environ |= {
+        "PYTHONPATH": str(folder),
+        "HYPOTHESIS_PROFILE": "mutation",
+        "TORQUER_INTERPRETED": "1",  # in compiled code no tool sees which lines a test runs
+    }
     settings.load_profile("mutation")
     sys.path.insert(0, str(folder))
 

@@ -14,6 +14,7 @@ from typing import Any, Final
 import numpy as np
 import tomli_w
 
+from fsw.compiled import standing
 from fsw.core.estimation.kalman import Algebra, available
 from fsw.input import gzip_text
 from fsw.input.schema import Nested, TableError
@@ -108,6 +109,7 @@ def begin(
                 "pace": "lockstep" if pace.factor is None else "realtime",
                 "pace_factor": pace.factor,
                 "compressed": compress,
+                "code": standing().code,
                 "platform": fingerprint(),
                 "algebra": available(Algebra(flight_table(scenario).estimator.algebra)),
                 DIGESTS: {},

@@ -67,8 +67,8 @@ class SenderRecord(TypedDict):
 class RunRecord(FlightRecord):
     """run.json.
 
-    ``algebra``: what computed the filter's matrices; ``ended``: why a flight was not completed, where the
-    plant knows.
+    ``code``: whether the flight code ran compiled; ``algebra``: what computed the filter's matrices;
+    ``ended``: why a flight was not completed, where the plant knows.
     """
 
     schema_version: int
@@ -83,6 +83,7 @@ class RunRecord(FlightRecord):
     platform: Platform
     complete: bool
     compressed: NotRequired[bool]
+    code: NotRequired[Literal["compiled", "interpreted"]]
     digests: NotRequired[dict[Name, Digest]]
     algebra: NotRequired[Text]
     second_senders: NotRequired[list[SenderRecord]]

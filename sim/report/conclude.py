@@ -131,7 +131,6 @@ def _write_results(path: Path, scenario: Scenario, replayed: _Replayed) -> Json:
     report = audit_flight(_tally_entries(read_log(log), tally), limits, scenario, expect_end=True)
     summary = summarise(scenario, run, replayed.performance, report, tally)
     summary["replay"] = _replay_json(replayed.result)
-    senders = run.get("second_senders")
     failed_checks = failures(
         run,
         summary["ticks"],
@@ -140,9 +139,13 @@ def _write_results(path: Path, scenario: Scenario, replayed: _Replayed) -> Json:
         check_against_index(log),
         summary["requirements"],
     )
-    summary |= {
-        key: found for key, found in (("second_senders", senders), ("failures", failed_checks)) if found
+    noted = {
+        "code": run.get("code"),
+        "algebra": run.get("algebra"),
+        "second_senders": run.get("second_senders"),
+        "failures": failed_checks,
     }
+    summary |= {key: found for key, found in noted.items() if found}
     flight_is_bound = run_dir.BUS_LOG in binding.digests(run)
     if flight_is_bound:
         binding.release(path, run_dir.SUMMARY)

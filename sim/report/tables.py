@@ -43,6 +43,7 @@ _FLIGHT = (
     ("Ticks", ("ticks",), "{:d}"),
     ("Speed", ("realtime_factor",), "{:.0f} × real time"),
     ("Slips", ("slips",), "{:d}"),
+    ("Flight code", ("code",), "{}"),
 )
 _KNOWLEDGE = {"filter": "filter on the sensors", "perfect": "perfect, from the plant"}
 

@@ -48,10 +48,11 @@ def test_every_test_is_of_a_module_or_says_what_it_specifies(path):
     assert any(module.exists() for module in modules) or ast.get_docstring(ast.parse(path.read_text()))
 
 
-def test_the_mark_of_long_tests_stands_in_their_own_file():
-    """Of a file without it ``pytest -m long`` imports nothing."""
+@pytest.mark.parametrize("mark", ["long", "interpreted"])
+def test_a_mark_that_is_looked_for_stands_in_the_file_of_its_tests(mark):
+    """Of a file without it ``pytest -m MARK`` imports nothing."""
     files = set((ROOT / "tests").rglob("*.py")) - {ROOT / "tests" / "conftest.py"}
-    marking = [relative(path) for path in files if "mark.long" in path.read_text(encoding="utf-8")]
+    marking = [relative(path) for path in files if f"mark.{mark}" in path.read_text(encoding="utf-8")]
     assert [path for path in marking if not Path(path).name.startswith("test_")] == []
 
 

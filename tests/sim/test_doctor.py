@@ -1,9 +1,12 @@
 """``torquer doctor``: what is there, what is missing, what to type."""
 
+from importlib.machinery import ModuleSpec
 from pathlib import Path
 
 import pytest
 
+from fsw.compiled import SWITCH, Standing
+from fsw.kernel import KERNEL
 from sim import doctor
 from sim.console import Console, speaking
 from sim.doctor import Finding, Presence, can_interfaces, examine, report
@@ -22,6 +25,33 @@ def test_this_machine_has_what_the_tests_need():
     for name in ("Python", "packages", "folder", "disk"):
         assert found[name].presence is Presence.OK, found[name]
     assert "numpy" in found["packages"].found
+
+
+@pytest.mark.parametrize(
+    ("found", "presence", "remedy"),
+    [
+        (Standing(frozenset({"a"}), ""), Presence.OK, ""),
+        (Standing(frozenset(), "nothing is built"), Presence.OPTIONAL, "where there is a C compiler"),
+    ],
+)
+def test_how_the_flight_code_runs(found, presence, remedy, monkeypatch):
+    monkeypatch.delenv(SWITCH, raising=False)
+    monkeypatch.setattr(doctor, "standing", lambda: found)
+    code = {finding.name: finding for finding in examine()}["flight code"]
+    assert (code.presence, code.found) == (presence, str(found))
+    assert remedy in code.remedy
+
+
+def test_who_switched_compiled_code_off_is_told_how_to_switch_it_on(monkeypatch):
+    monkeypatch.setenv(SWITCH, "1")
+    monkeypatch.setattr(doctor, "standing", lambda: Standing(frozenset(), f"{SWITCH} is set"))
+    assert {finding.name: finding for finding in examine()}["flight code"].remedy == f"unset {SWITCH}"
+
+
+def test_the_filters_kernel_is_there_or_how_to_get_it(monkeypatch):
+    for spec, presence in ((ModuleSpec(KERNEL, None), Presence.OK), (None, Presence.OPTIONAL)):
+        monkeypatch.setattr(doctor, "find_spec", {KERNEL: spec}.get)
+        assert {finding.name: finding for finding in examine()}["filter's kernel"].presence is presence
 
 
 @pytest.mark.parametrize(("findings", "code"), [(FOUND, 0), ([*FOUND, MISSING], 1)])

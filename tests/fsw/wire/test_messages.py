@@ -47,6 +47,11 @@ def raw_values(message, word):
     return values
 
 
+def number(signal):
+    """The type of a quantity."""
+    return int if signal.unit in ("ms", "mA", "s") else float
+
+
 def physical(message, values):
     return {name: value * message.get_signal_by_name(name).scale for name, value in values.items()}
 
@@ -91,7 +96,7 @@ class TestAgainstCantools:
         for message in dbc.messages:
             values = raw_values(message, word)
             between = {
-                signal.name: (values[signal.name] + off) * signal.scale
+                signal.name: values[signal.name] * signal.scale + number(signal)(off * signal.scale)
                 for signal in message.signals
                 if signal.unit and (message.name, signal.name) != ("SYNC", "unix_time_s")
             }
@@ -106,16 +111,15 @@ class TestAgainstCantools:
         quantities = [signal for signal in message.signals if signal.unit]
         rest = {s.name: 1 for s in message.signals if not s.unit and s.name != "crc"}
         for signal in quantities:
-            others = {other.name: 0.0 for other in quantities}
+            others = {other.name: number(other)(0) for other in quantities}
+            no_integers = [(inf, signal.maximum), (-inf, signal.minimum), (nan, signal.minimum)]
             for value, limit in (
                 (1e30, signal.maximum),
-                (inf, signal.maximum),
                 (-1e30, signal.minimum),
-                (-inf, signal.minimum),
-                (nan, signal.minimum),
                 (signal.maximum + 0.4 * signal.scale, signal.maximum),
+                *(no_integers if number(signal) is float else ()),
             ):
-                frame = BY_NAME[name](**{**rest, **others, signal.name: value}).encode()
+                frame = BY_NAME[name](**{**rest, **others, signal.name: number(signal)(value)}).encode()
                 decoded = message.decode(frame.data, decode_choices=False)
                 assert decoded.pop(signal.name) == pytest.approx(limit, rel=1e-12)
                 assert {key: decoded[key] for key in rest} == rest

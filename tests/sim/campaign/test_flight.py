@@ -33,7 +33,7 @@ OVERRIDES = {
 }
 ORBITS = 300 / (86400.0 / 14.30166407)
 COMBINED = ("median", "mean", "worst")
-UNTIMED = {"wall_seconds", "realtime_factor", "replay"}
+UNTIMED = {"wall_seconds", "realtime_factor", "replay", "code", "algebra"}
 
 
 def final_row(scenario, truth, estimates):

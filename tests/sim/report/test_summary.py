@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from fsw.compiled import standing
 from fsw.wire.messages import CoilFire, Mode
 from sim.record import run_dir
 from sim.record.candump import read_log
@@ -126,6 +127,9 @@ class TestRealFlight:
     def test_what_makes_no_sense_is_absent(self, summary):
         """Five minutes are too short to converge, and no spin is wanted."""
         assert not {"estimate_deg", "converged_at_s", "nees_mean", "spin_radps"} & set(summary)
+
+    def test_how_the_flight_code_ran_is_told(self, summary, concluded):
+        assert summary["code"] == standing().code == run_dir.read_run(concluded)["code"]
 
     def test_the_replay_that_was_made_on_the_way_is_told(self, summary):
         assert summary["replay"] == {"bit_exact": True, "command_exact": True, "ticks": 300}

@@ -1,0 +1,178 @@
+"""Compiled code flies only if it was built from the sources that are there; else all runs interpreted."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fsw import compiled
+from fsw.compiled import FOLDER, MANIFEST, ROOT, SWITCH, Build, BuildError, Finder, Standing, standing
+
+SAY = "import {}; from fsw.compiled import standing; print(standing()); print({}.__spec__.loader)"
+MODULE = "fsw.core.algebra.vector"
+
+
+def why_none():
+    """Why there is no build of these sources here; empty where there is one."""
+    try:
+        Build().check()
+    except BuildError as error:
+        return str(error)
+    return ""
+
+
+needs_build = pytest.mark.skipif(bool(why_none()), reason=why_none())
+
+
+def answer(root, module=MODULE, **environment):
+    """What a process of its own on the packages of a folder says: its standing, and who loaded the module."""
+    done = subprocess.run(
+        [sys.executable, "-c", SAY.format(module, module)],
+        cwd=root,
+        env={**os.environ, SWITCH: "0", "PYTHONPATH": str(root), "PYTHONSAFEPATH": "1", **environment},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    said, loader = done.stdout.splitlines()
+    return said, "SourceFileLoader" if "SourceFileLoader" in loader else "compiled"
+
+
+@pytest.fixture(scope="module")
+def packages(tmp_path_factory):
+    """The packages as they are built here."""
+    folder = tmp_path_factory.mktemp("packages")
+    for name in compiled.PACKAGES:
+        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    return folder
+
+
+@pytest.fixture
+def tree(packages, tmp_path):
+    """The same, to be spoilt: a folder of links, whose ``fsw`` is a copy."""
+    shutil.copytree(packages / "fsw", tmp_path / "fsw")
+    for name in ("hil_stub", "sim"):
+        (tmp_path / name).symlink_to(packages / name)
+    return tmp_path
+
+
+def manifest_of(tree):
+    return json.loads((tree / FOLDER / MANIFEST).read_text())
+
+
+def rewrite(tree, **values):
+    (tree / FOLDER / MANIFEST).write_text(json.dumps(manifest_of(tree) | values))
+
+
+@needs_build
+class TestWhatIsBuilt:
+    def test_flies_compiled(self, tree):
+        assert answer(tree) == (f"compiled: {len(manifest_of(tree)['modules'])} modules", "compiled")
+
+    @pytest.mark.parametrize("module", ["sim.plant.rotation", "fsw.core.algebra.vector"])
+    def test_whichever_package_comes_first(self, tree, module):
+        assert answer(tree, module)[1] == "compiled"
+
+    def test_is_not_used_where_the_environment_says_so(self, tree):
+        assert answer(tree, **{SWITCH: "1"}) == (f"interpreted: {SWITCH} is set", "SourceFileLoader")
+
+    def test_is_not_used_once_a_source_has_changed(self, tree):
+        source = tree / "fsw" / "wire" / "frame.py"
+        source.write_text(source.read_text() + "\n")
+        said = "interpreted: fsw/wire/frame.py has changed since the build"
+        assert answer(tree) == (said, "SourceFileLoader")
+
+    def test_nor_where_one_is_missing(self, tree):
+        """One that nothing imports here."""
+        rewrite(tree, sources=manifest_of(tree)["sources"] | {"fsw/absent.py": "0" * 64})
+        said = "interpreted: fsw/absent.py has changed since the build"
+        assert answer(tree) == (said, "SourceFileLoader")
+
+    def test_is_used_with_a_source_that_is_newer_and_the_same(self, tree):
+        for path in manifest_of(tree)["sources"]:
+            os.utime(tree / path)
+        assert answer(tree)[1] == "compiled"
+
+    @pytest.mark.parametrize(
+        "text", ["", "{", "[]", "{}", '{"modules": ["fsw.core.algebra.vector"]}', '{"modules": 7}', "\xff"]
+    )
+    def test_is_not_used_with_a_manifest_that_is_damaged(self, tree, text):
+        (tree / FOLDER / MANIFEST).write_text(text, encoding="latin-1")
+        said, loader = answer(tree)
+        assert said.startswith(f"interpreted: {FOLDER}/{MANIFEST} is damaged")
+        assert loader == "SourceFileLoader"
+
+    def test_nor_by_another_python(self, tree):
+        rewrite(tree, abi=".cpython-39-other.so")
+        said, loader = answer(tree)
+        assert said.startswith("interpreted: built for .cpython-39-other.so, and this Python loads ")
+        assert loader == "SourceFileLoader"
+
+    def test_nor_where_the_library_is_cut(self, tree):
+        library = tree / FOLDER / manifest_of(tree)["library"]
+        library.write_bytes(library.read_bytes()[:-1])
+        assert answer(tree) == (
+            f"interpreted: {FOLDER}/{library.name} is not what was built",
+            "SourceFileLoader",
+        )
+
+    def test_nor_where_it_cannot_be_loaded(self, tree):
+        library = tree / FOLDER / manifest_of(tree)["library"]
+        library.write_bytes(bytes(library.stat().st_size))
+        said, loader = answer(tree)
+        assert said.startswith(f"interpreted: {FOLDER}/{library.name} cannot be loaded")
+        assert loader == "SourceFileLoader"
+
+    def test_is_not_missed_where_there_is_none(self, tree):
+        shutil.rmtree(tree / FOLDER)
+        assert answer(tree) == ("interpreted: nothing is built", "SourceFileLoader")
+
+
+def test_other_modules_are_none_of_the_finders_concern():
+    assert Finder().find_spec("json") is None
+    assert Finder().find_spec("fsw.compiled") is None
+    assert Finder().find_spec("fsw.no_such_module") is None
+
+
+def test_a_standing_in_words():
+    assert str(Standing(frozenset("ab"), "")) == "compiled: 2 modules"
+    assert Standing(frozenset("ab"), "").code == "compiled"
+    assert str(Standing(frozenset(), "nothing is built")) == "interpreted: nothing is built"
+    assert Standing(frozenset(), "nothing is built").code == "interpreted"
+
+
+@pytest.mark.skipif(not standing().modules, reason="nothing is compiled in this run")
+class TestGuardOfTests:
+    """A patch that no compiled caller would see proves nothing."""
+
+    def test_a_patch_of_a_compiled_function_is_refused(self, monkeypatch):
+        from fsw.core.algebra import vector
+
+        with pytest.raises(TypeError, match="mark the test 'interpreted'"):
+            monkeypatch.setattr(vector, "cross", None)
+        with pytest.raises(TypeError, match=r"^fsw\.core\.algebra\.vector is compiled"):
+            monkeypatch.setattr("fsw.core.algebra.vector.cross", None)
+        with pytest.raises(TypeError, match=r"^fsw\.core\.algebra\.vector is compiled"):
+            monkeypatch.delattr("fsw.core.algebra.vector.cross")
+
+    def test_any_other_is_not(self, monkeypatch):
+        monkeypatch.setattr(compiled, "SWITCH", "ANOTHER")
+        monkeypatch.setattr(f"{__name__}.SAY", "")
+
+
+@pytest.mark.interpreted
+def test_an_interpreted_test_patches_what_it_likes(monkeypatch):
+    from fsw.core.algebra import vector
+
+    monkeypatch.setattr(vector, "cross", None)
+    assert vector.cross is None
+
+
+def test_a_compiled_module_names_its_source():
+    from fsw.core.algebra import vector
+
+    assert Path(vector.__file__) == ROOT / "fsw" / "core" / "algebra" / "vector.py"
