@@ -18,13 +18,12 @@ from fsw.wire.messages import (
     Sync,
     intact,
 )
+from sim.plant.coil_drive import OFF, CoilDrive
 from sim.plant.config import PlantConfig
-from sim.plant.hardware.actuators import Board, CoilDrive
+from sim.plant.hardware.actuators import Actuator
 from sim.plant.own_effects import NO_EFFECTS, OwnEffects
 from sim.plant.plant import Plant
-from sim.plant.rotation import ZERO
 
-OFF = CoilDrive(ZERO, 0.0)
 SENSORS = {MagField.ID: "magnetometer", SunVector.ID: "sun", SunCells.ID: "cells"}
 """By the message that they send."""
 Line = Callable[[bytes], None]
@@ -65,7 +64,7 @@ class SyncOnly:
         self._tick += 1
 
 
-class ReportedDrive:
+class ReportedDrive(Actuator):
     """The plant's actuator where the coil board is a process or hardware: what its COIL_STATUS reports.
 
     Args:
@@ -74,7 +73,6 @@ class ReportedDrive:
 
     def __init__(self, config: PlantConfig) -> None:
         coils = config.coils
-        self.board: Board = self
         self._tick_ms = 1000.0 / config.tick_hz
         self._level_a = [0.0, *(dipole / coils.dipole_per_ampere_am2 for dipole in coils.levels_am2)]
         self._continuous = coils.continuous

@@ -10,15 +10,16 @@ from hil_stub.coils.coil_driver import Pin
 from sim.fault_rig.currents import CurrentPulse
 from sim.fault_rig.rig import Rig
 from sim.faults.faulty_plant import FaultyPlant
+from sim.plant.coil_drive import OFF, CoilDrive
 from sim.plant.config import PlantConfig
-from sim.plant.hardware.actuators import OFF, Board, CoilDrive
+from sim.plant.hardware.actuators import Actuator
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario
 
 REPEATED_EVERY_MS = 500
 
 
-class BenchActuator:
+class BenchActuator(Actuator):
     """A coil driver on a bench in place of the plant's own, with nominal currents.
 
     Args:
@@ -28,7 +29,6 @@ class BenchActuator:
     def __init__(self, config: PlantConfig) -> None:
         coils, limits = config.coils, config.limits
         low_a, middle_a, high_a = (dipole / coils.dipole_per_ampere_am2 for dipole in coils.levels_am2)
-        self.board: Board = self
         self._level_a = (0.0, low_a, middle_a, high_a)
         self._period_ms = Fraction(1000, config.tick_hz)
         self._bench = Bench(lambda: CoilBoard(limits, (low_a, middle_a, high_a)), DEADMAN_MS, has_clock=True)

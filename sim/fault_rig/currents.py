@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import isclose
 
-from sim.plant.hardware.actuators import CoilDrive
+from sim.plant.coil_drive import CoilDrive
 
 PER_TICK = 1_000_000
 """Resolution of a fraction of a tick."""

@@ -18,7 +18,7 @@ from fsw.wire.messages import (
     intact,
 )
 from sim.fault_rig.currents import CurrentPulse
-from sim.plant.hardware.actuators import CoilDrive
+from sim.plant.coil_drive import CoilDrive
 from sim.plant.truth_row import TruthRow
 from sim.record.candump import LogEntry
 

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 from fsw.wire.frame import Frame
 from sim.faults.fault import Fault
+from sim.plant.coil_drive import CoilDrive
 from sim.plant.config import PlantConfig
-from sim.plant.hardware.actuators import Actuator, CoilDrive
+from sim.plant.hardware.actuators import Actuator
 from sim.plant.interference import Interference
 from sim.plant.own_effects import NO_EFFECTS, OwnEffects
 from sim.plant.plant import Plant

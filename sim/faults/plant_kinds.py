@@ -9,7 +9,7 @@ from typing import Literal
 from fsw.wire.frame import Frame
 from fsw.wire.messages import SENDERS, MagField, SunCells, SunVector
 from sim.faults.fault import Fault, Parameters
-from sim.plant.hardware.actuators import CoilDrive
+from sim.plant.coil_drive import CoilDrive
 from sim.plant.plant import Plant
 from sim.plant.rotation import ZERO, Vec3, from_vector, matrix, transform
 
@@ -183,9 +183,10 @@ class CoilOpen(Fault):
 
     def coil_drive(self, drive: CoilDrive) -> CoilDrive:
         """Without this coil's current."""
-        return drive._replace(
-            current_a=replace_axis(drive.current_a, self.parameters, 0.0),
-            held_a=replace_axis(drive.held_a, self.parameters, 0.0),
+        return CoilDrive(
+            replace_axis(drive.current_a, self.parameters, 0.0),
+            drive.fraction,
+            replace_axis(drive.held_a, self.parameters, 0.0),
         )
 
 

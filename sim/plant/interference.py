@@ -1,9 +1,14 @@
 """Interface by which a fault acts on the plant: between physics and boards."""
 
-from sim.plant.hardware.actuators import CoilDrive
+from typing import Final
+
+from mypy_extensions import mypyc_attr
+
+from sim.plant.coil_drive import CoilDrive
 from sim.plant.rotation import Vec3
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class Interference:
     """Replaces the readings that boards get and the currents that flow. This one changes nothing."""
 
@@ -24,4 +29,4 @@ class Interference:
         return drive
 
 
-NO_INTERFERENCE = Interference()
+NO_INTERFERENCE: Final = Interference()

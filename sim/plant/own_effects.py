@@ -7,8 +7,9 @@ until the next tick.
 
 from collections.abc import Callable, Sequence
 from math import isfinite
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple, final
 
+from fsw.wire.value import Value
 from sim.plant.errors import PlantError
 from sim.plant.interference import Interference
 from sim.plant.rotation import ZERO, Quaternion, Vec3
@@ -18,21 +19,52 @@ ACTIONS = ("torque_body_nm", "field_body_t", "sun_body")
 ``sun_body(sun_body, moment)``, which replace what magnetometer and Sun sensor give."""
 
 
-class Moment(NamedTuple):
-    """What an effect sees of the instant of a tick; directions are unit vectors, ``eci`` is TEME of date."""
+@final
+class Moment(Value):
+    """What an effect sees of the instant of a tick; directions are unit vectors, ``eci`` is TEME of date.
 
-    t_s: float = 0.0
-    """Since tick 0."""
-    q_body_from_eci: Quaternion = (1.0, 0.0, 0.0, 0.0)
-    omega_body_radps: Vec3 = ZERO
-    """Inertial rate."""
-    b_body_t: Vec3 = ZERO
-    sun_body: Vec3 = ZERO
-    """From the satellite to the Sun."""
-    lit: float = 1.0
-    """Visible fraction of the Sun's disc."""
-    r_eci_m: Vec3 = ZERO
-    v_eci_mps: Vec3 = ZERO
+    Args:
+        t_s: since tick 0.
+        q_body_from_eci: attitude.
+        omega_body_radps: inertial rate.
+        b_body_t: field.
+        sun_body: from the satellite to the Sun.
+        lit: visible fraction of the Sun's disc.
+        r_eci_m: position.
+        v_eci_mps: velocity.
+    """
+
+    FIELDS = (
+        "t_s",
+        "q_body_from_eci",
+        "omega_body_radps",
+        "b_body_t",
+        "sun_body",
+        "lit",
+        "r_eci_m",
+        "v_eci_mps",
+    )
+    __slots__ = FIELDS
+
+    def __init__(
+        self,
+        t_s: float = 0.0,
+        q_body_from_eci: Quaternion = (1.0, 0.0, 0.0, 0.0),
+        omega_body_radps: Vec3 = ZERO,
+        b_body_t: Vec3 = ZERO,
+        sun_body: Vec3 = ZERO,
+        lit: float = 1.0,
+        r_eci_m: Vec3 = ZERO,
+        v_eci_mps: Vec3 = ZERO,
+    ) -> None:
+        self.t_s = t_s
+        self.q_body_from_eci = q_body_from_eci
+        self.omega_body_radps = omega_body_radps
+        self.b_body_t = b_body_t
+        self.sun_body = sun_body
+        self.lit = lit
+        self.r_eci_m = r_eci_m
+        self.v_eci_mps = v_eci_mps
 
 
 class OwnEffect(NamedTuple):
@@ -48,6 +80,7 @@ class OwnEffect(NamedTuple):
         return found
 
 
+@final
 class OwnEffects(Interference):
     """All effects of a plant, in their order."""
 
@@ -97,4 +130,4 @@ class OwnEffects(Interference):
         return (x, y, z)
 
 
-NO_EFFECTS = OwnEffects()
+NO_EFFECTS: Final = OwnEffects()

@@ -3,17 +3,20 @@
 from typing import Literal
 from zlib import crc32
 
+from mypy_extensions import mypyc_attr
+
 from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot, PlantEnd, PlantHeartbeat, RefAttitude, RefRate, Sync
 from hil_stub.node import CONTRACT_VERSION, HEARTBEAT_S
 from hil_stub.sensors.magnetometer import Magnetometer
+from sim.plant.coil_drive import OFF
 from sim.plant.config import PlantConfig
 from sim.plant.dynamics import torques
-from sim.plant.dynamics.disturbances import bias_torque, effects, residual_dipole, torque_noise
-from sim.plant.dynamics.rigid_body import Motion, RigidBody, Torque
+from sim.plant.dynamics.disturbances import TorqueNoise, bias_torque, effects, residual_dipole
+from sim.plant.dynamics.rigid_body import Motion, RigidBody
 from sim.plant.dynamics.substeps import Substeps, lost
-from sim.plant.environment.surroundings import Surroundings
-from sim.plant.hardware.actuators import Actuator, CoilDrive, make_actuator
+from sim.plant.dynamics.wheel import WheelStep
+from sim.plant.hardware.actuators import Actuator, make_actuator
 from sim.plant.hardware.coils import Coils
 from sim.plant.hardware.sensors import MagnetometerPhysics
 from sim.plant.hardware.sun_sensing import SunView, make_sun_sensing
@@ -24,6 +27,7 @@ from sim.plant.rotation import (
     ZERO,
     Quaternion,
     Vec3,
+    add,
     canonical,
     conjugate,
     from_matrix,
@@ -38,6 +42,7 @@ _REF_RATE_RANGE_RADPS = 0.125
 """Range of ``REF_RATE``; beyond it the rate is sent as not valid."""
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class Plant:
     """Satellite, environment and boards.
 
@@ -57,7 +62,7 @@ class Plant:
     def __init__(
         self, config: PlantConfig, actuator: Actuator | None = None, own: OwnEffects = NO_EFFECTS
     ) -> None:
-        self._config = config
+        self._config, self._disturbance = config, config.disturbance
         self.tick_hz = config.tick_hz
         """Ticks a second."""
         self._substeps = Substeps(config)
@@ -65,14 +70,13 @@ class Plant:
         inertia, wheel = config.body.inertia_kgm2, config.wheel
         own_inertia = inertia if wheel is None else wheel.rest_of(inertia)
         self._body = RigidBody(own_inertia, config.body.wheel_body_nms)
-        effect_by_name, self._noise = effects(config), torque_noise(config)
+        self._inertia = inertia
+        effect_by_name = effects(config)
         self._effects, self._own = tuple(effect_by_name.values()), own
-        last = (
-            *(("noise",) if self._noise else ()),
-            *(("wheel",) if wheel is not None else ()),
-            *own.torque_sources,
-        )
-        self.torque_sources = (*torques.SOURCES, *effect_by_name, *last)
+        root_density = config.disturbance.torque_noise_nm_rts
+        self._noise = TorqueNoise(root_density, config.seed, config.tick_hz) if root_density else None
+        last = [*(["noise"] if root_density else []), *(["wheel"] if wheel is not None else [])]
+        self.torque_sources = (*torques.SOURCES, *effect_by_name, *last, *own.torque_sources)
         """Names of the torques, in the order of ``TruthRow.torque_body_nm``."""
         self._coils = Coils(config.coils)
         self._magnetometer = MagnetometerPhysics(config.magnetometer, config.seed, config.tick_hz)
@@ -81,15 +85,14 @@ class Plant:
         self._magnetometer_board = Magnetometer(config.tick_hz)
         self.interference: Interference = own if own.any else NO_INTERFERENCE
         """The effect of faults between physics and boards."""
-        self.coil_drive = CoilDrive(ZERO, 0.0)
+        self.coil_drive = OFF
         """The currents that flowed over the last complete tick."""
         self._tick = 0
-        self._mean_dipole_am2 = self._noise_body_nm = ZERO
+        self._mean_dipole_am2 = self._noise_body_nm = self._reaction_nm = ZERO
         self.motion = self._initial_motion()
         """Attitude and rate relative to the inertial frame at the instant of the tick."""
         omega = self.motion.omega_body_radps
         self._wheel = None if wheel is None else WheelUnit(wheel, config.tick_hz, omega)
-        self._reactions_nm: tuple[Vec3, ...] = () if wheel is None else (ZERO,)  # on the body, in a substep
         self._observe()
         self.slips = 0
         """Deadlines missed since boot: counted by the real-time loop, reported in the heartbeat."""
@@ -110,23 +113,24 @@ class Plant:
         Magnetometer, Sun sensor or cells, coil driver, wheel, the plant itself, and ``SYNC`` last; at tick 0
         each node begins with its boot message.
         """
-        tick, coils = self._tick, self._coils
-        faulty = self.interference
-        b_t, b_valid = faulty.field(*self._magnetometer.measure(self._b_body_t, coils.dipole_body_am2))
-        sample = self._sample
+        tick, coils, wheel = self._tick, self._coils, self._wheel
+        faulty, sample = self.interference, self._sample
+        b_t, b_valid = self._magnetometer.measure(self._b_body_t, coils.dipole_body_am2)
+        b_t, b_valid = faulty.field(b_t, b_valid)
         view = SunView(self._body_from_eci, sample.r_eci_m, sample.sun_eci, self._sun_body, sample.lit)
-        return [
-            *self._magnetometer_board.begin_tick(tick, b_t, b_valid),
-            *self._sun.begin_tick(tick, view, faulty),
-            *self._actuator.board.begin_tick(tick, coils.readback_a),
-            *(self._wheel.begin_tick(tick, self.motion.omega_body_radps) if self._wheel else ()),
-            *self._own_frames(),
-            Sync(tick, self._config.epoch_unix_s + tick // self._config.tick_hz).encode(),
-        ]
+        frames: list[Frame] = []
+        frames += self._magnetometer_board.begin_tick(tick, b_t, b_valid)
+        frames += self._sun.begin_tick(tick, view, faulty)
+        frames += self._actuator.begin_tick(tick, coils.readback_a)
+        if wheel is not None:
+            frames += wheel.begin_tick(tick, self.motion.omega_body_radps)
+        self._add_own_frames(frames)
+        frames.append(Sync(tick, self._config.epoch_unix_s + tick // self.tick_hz).encode())
+        return frames
 
     def receive(self, frame: Frame) -> None:
         """Hand a frame of this tick's answer to the boards that take requests."""
-        self._actuator.board.receive(frame)
+        self._actuator.receive(frame)
         if self._wheel is not None:
             self._wheel.receive(frame)
 
@@ -157,98 +161,93 @@ class Plant:
         Raises:
             PlantError: the motion is not finite, or the orbit or field model ends.
         """
-        self.coil_drive = self.interference.coil_drive(self._actuator.drive())
-        driven_a, fraction, held_a = self.coil_drive
-        if self._noise:
-            self._noise_body_nm = next(self._noise)
-        motion, wheel = self.motion, self._wheel
+        drive = self.interference.coil_drive(self._actuator.drive())
+        self.coil_drive = drive
+        if self._noise is not None:
+            self._noise_body_nm = self._noise.next()
+        tick, motion, wheel = self._tick, self.motion, self._wheel
         wheel_nms = 0.0
+        driven: WheelStep | None = None
         if wheel is not None:
             wheel.drive()
             wheel_nms = wheel.momentum_nms(motion.omega_body_radps)
-        substeps, step_s, stages = self._substeps.of(self._tick, motion.omega_body_radps, wheel_nms)
+        steps = self._substeps.of(tick, motion.omega_body_radps, wheel_nms)
+        number, step_s, stages = steps.number, steps.step_s, steps.stages
         sx = sy = sz = 0.0
-        for substep in range(substeps):
-            on_s = step_s * min(max(fraction * substeps - substep, 0.0), 1.0)
-            mx, my, mz = self._coils.advance(driven_a, on_s, step_s, held_a)
-            sx, sy, sz = sx + mx, sy + my, sz + mz
-            momenta = None
+        for substep in range(number):
+            on_s = step_s * min(max(drive.fraction * number - substep, 0.0), 1.0)
+            m_body_am2 = self._coils.advance(drive.current_a, on_s, step_s, drive.held_a)
+            sx, sy, sz = sx + m_body_am2[0], sy + m_body_am2[1], sz + m_body_am2[2]
             if wheel is not None:
-                momenta, reaction_nm = wheel.advance(motion.omega_body_radps, step_s)
-                self._reactions_nm = (reaction_nm,)
-            torque, around = self._torque((mx, my, mz)), stages[2 * substep : 2 * substep + 3]
-            motion = self._body.step(motion, torque, around, step_s, momenta)
-            if not motion.sound(step_s):
-                raise lost(self._tick)
+                driven = wheel.advance(motion.omega_body_radps, step_s)
+                self._reaction_nm = driven.reaction_nm
+            first = 2 * substep
+            motion = self._body.step(
+                motion,
+                self._torque(m_body_am2),
+                step_s,
+                stages[first],
+                stages[first + 1],
+                stages[first + 2],
+                driven=driven,
+            )
+            if not motion.is_sound(step_s):
+                raise lost(tick)
         self.motion = motion
-        self._mean_dipole_am2 = (sx / substeps, sy / substeps, sz / substeps)
-        self._tick += 1
+        self._mean_dipole_am2 = (sx / number, sy / number, sz / number)
+        self._tick = tick + 1
         self._observe()
 
     def truth(self) -> TruthRow:
         """The truth at t_k, k the tick that has begun."""
-        sample, disturbance = self._sample, self._config.disturbance
+        sample, around, omega = self._sample, self._around, self.motion.omega_body_radps
         q_body_from_orbit, omega_body_orbit_radps = self._relative()
-        b_body_t, inertia = self._b_body_t, self._config.body.inertia_kgm2
-        around = self._around
-        e_body = transform(self._body_from_eci, around.e_eci)
+        body_from_eci, b_body_t = self._body_from_eci, self._b_body_t
+        e_body = transform(body_from_eci, around.e_eci)
+        residual = residual_dipole(self._disturbance, sample.lit, self._coils.remanence_body_am2)
+        acting = [
+            torques.gravity_gradient(self._inertia, e_body, around.gradient_ps2),
+            torques.magnetic(self._mean_dipole_am2, b_body_t),
+            torques.magnetic(residual, b_body_t),
+            self._bias_body_nm(),
+        ]
+        for effect in self._effects:
+            acting.append(effect.at(body_from_eci, omega, around))
+        if self._noise is not None:
+            acting.append(self._noise_body_nm)
+        if self._wheel is not None:
+            acting.append(self._reaction_nm)
+        acting += self._own.torques_body_nm
         return TruthRow(
-            t_s=self.t_s,
-            q_body_from_orbit=q_body_from_orbit,
-            omega_body_orbit_radps=omega_body_orbit_radps,
-            b_body_t=b_body_t,
-            sun_body=self._sun_body,
-            lit=sample.lit,
-            m_body_am2=self._mean_dipole_am2,
-            r_eci_m=sample.r_eci_m,
-            torque_body_nm=(
-                torques.gravity_gradient(inertia, e_body, around.gradient_ps2),
-                torques.magnetic(self._mean_dipole_am2, b_body_t),
-                torques.magnetic(
-                    residual_dipole(disturbance, sample.lit, self._coils.remanence_body_am2), b_body_t
-                ),
-                self._bias_body_nm(),
-                *(
-                    effect(self._body_from_eci, self.motion.omega_body_radps, around)
-                    for effect in self._effects
-                ),
-                *((self._noise_body_nm,) if self._noise else ()),
-                *self._reactions_nm,
-                *self._own.torques_body_nm,
-            ),
-            wheel_nms=self._wheel.momentum_nms(self.motion.omega_body_radps) if self._wheel else None,
+            self.t_s,
+            q_body_from_orbit,
+            omega_body_orbit_radps,
+            b_body_t,
+            self._sun_body,
+            sample.lit,
+            self._mean_dipole_am2,
+            sample.r_eci_m,
+            tuple(acting),
+            None if self._wheel is None else self._wheel.momentum_nms(omega),
         )
 
     def end(self) -> Frame:
         """The last frame of a complete run."""
         return PlantEnd(self._tick).encode()
 
-    def _torque(self, m_body_am2: Vec3) -> Torque:
+    def _torque(self, m_body_am2: Vec3) -> torques.BodyTorque:
         """The torque over an integration step in which the coils' mean dipole is ``m_body_am2``."""
-        inertia, disturbance, found = self._config.body.inertia_kgm2, self._config.disturbance, self._effects
-        residual = residual_dipole(disturbance, self._sample.lit, self._coils.mean_remanence_body_am2)
-        (mx, my, mz), (rx, ry, rz) = m_body_am2, residual
-        dipole = (mx + rx, my + ry, mz + rz)
-        (bx, by, bz), (nx, ny, nz) = self._bias_body_nm(), self._noise_body_nm
-        bias = (bx + nx, by + ny, bz + nz)
-        for tx, ty, tz in (*self._reactions_nm, *self._own.torques_body_nm):
-            bias = (bias[0] + tx, bias[1] + ty, bias[2] + tz)
-        if not found:
-            return lambda q, omega, around: torques.total(inertia, q, around, dipole, bias)
-
-        def torque(q: Quaternion, omega: Vec3, around: Surroundings) -> Vec3:
-            c = matrix(q)
-            x, y, z = torques.total(inertia, q, around, dipole, bias)
-            for effect in found:
-                dx, dy, dz = effect(c, omega, around)
-                x, y, z = x + dx, y + dy, z + dz
-            return (x, y, z)
-
-        return torque
+        residual = residual_dipole(self._disturbance, self._sample.lit, self._coils.mean_remanence_body_am2)
+        bias = add(self._bias_body_nm(), self._noise_body_nm)
+        if self._wheel is not None:
+            bias = add(bias, self._reaction_nm)
+        for torque in self._own.torques_body_nm:
+            bias = add(bias, torque)
+        return torques.BodyTorque(self._inertia, add(m_body_am2, residual), bias, self._effects)
 
     def _bias_body_nm(self) -> Vec3:
         """The constant torque with its daily variation, at the instant of the tick."""
-        return bias_torque(self._config.disturbance, self.t_s)
+        return bias_torque(self._disturbance, self.t_s)
 
     def _initial_motion(self) -> Motion:
         sample, initial = self._environment.sample(0), self._config.initial
@@ -262,39 +261,47 @@ class Plant:
     def _observe(self) -> None:
         """Update the environment of this tick, and field and Sun in body axes at its instant."""
         self._sample = sample = self._environment.sample(self._tick)
-        self._around = self._environment.stages(self._tick)[0]
+        self._around = self._environment.start(self._tick)
         self._body_from_eci = matrix(self.motion.q_body_from_eci)
         self._b_body_t = transform(self._body_from_eci, sample.b_eci_t)
         self._sun_body = transform(self._body_from_eci, sample.sun_eci)
         if self._own.any:
-            seen = self._b_body_t, self._sun_body
             self._own.observe(
-                Moment(self.t_s, *self.motion, *seen, sample.lit, sample.r_eci_m, sample.v_eci_mps)
+                Moment(
+                    self.t_s,
+                    self.motion.q_body_from_eci,
+                    self.motion.omega_body_radps,
+                    self._b_body_t,
+                    self._sun_body,
+                    sample.lit,
+                    sample.r_eci_m,
+                    sample.v_eci_mps,
+                )
             )
 
     def _relative(self) -> tuple[Quaternion, Vec3]:
         """Attitude and rate relative to the orbital frame."""
-        q_body_from_eci, (x, y, z) = self.motion
-        q_orbit_from_eci = from_matrix(self._sample.orbit_from_eci)
-        nx, ny, nz = transform(self._body_from_eci, self._sample.orbit_from_eci[2])
-        rate = self._sample.orbit_rate_radps
+        sample, (x, y, z) = self._sample, self.motion.omega_body_radps
+        q_orbit_from_eci = from_matrix(sample.orbit_from_eci)
+        nx, ny, nz = transform(self._body_from_eci, sample.orbit_from_eci[2])
+        rate = sample.orbit_rate_radps
         return (
-            canonical(multiply(conjugate(q_orbit_from_eci), q_body_from_eci)),
+            canonical(multiply(conjugate(q_orbit_from_eci), self.motion.q_body_from_eci)),
             (x - rate * nx, y - rate * ny, z - rate * nz),
         )
 
-    def _own_frames(self) -> list[Frame]:
-        tick, frames = self._tick, []
+    def _add_own_frames(self, frames: list[Frame]) -> None:
+        tick = self._tick
         if tick == 0:
             wheel = self._config.wheel
             table_crc = crc32(f"{self._config!r}{'' if wheel is None else repr(wheel)}".encode())
             frames.append(PlantBoot(reason=0, version=CONTRACT_VERSION, table_crc=table_crc).encode())
         if self._config.perfect_knowledge:
-            (_, x, y, z), omega = self._relative()
-            in_range = all(abs(rate) < _REF_RATE_RANGE_RADPS for rate in omega)
+            (_, x, y, z), (wx, wy, wz) = self._relative()
+            most = _REF_RATE_RANGE_RADPS
+            in_range = abs(wx) < most and abs(wy) < most and abs(wz) < most
             frames.append(RefAttitude(1, x, y, z, counter=tick).encode())
-            frames.append(RefRate(int(in_range), *omega, counter=tick).encode())
+            frames.append(RefRate(int(in_range), wx, wy, wz, counter=tick).encode())
         beats, rest = divmod(tick, HEARTBEAT_S * self._config.tick_hz)
         if beats and not rest:
             frames.append(PlantHeartbeat(0, 0, self.slips, tick, counter=beats - 1).encode())
-        return frames

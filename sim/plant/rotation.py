@@ -16,6 +16,11 @@ ZERO: Vec3 = (0.0, 0.0, 0.0)
 ONES: Vec3 = (1.0, 1.0, 1.0)
 
 
+def add(a: Vec3, b: Vec3) -> Vec3:
+    """A + b."""
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
 def cross(a: Vec3, b: Vec3) -> Vec3:
     """A x b."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])

@@ -14,13 +14,12 @@ from fsw.core.laws.feedback.pd import attitude_error, pd_dipole
 from sim.design.theory.bodies import Body
 from sim.design.theory.linear import Gains
 from sim.plant.config import OrbitConfig
-from sim.plant.dynamics import torques
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.dynamics.torques import BodyTorque, TorqueFunction
 from sim.plant.environment.field import DirectDipole
 from sim.plant.environment.orbit import CircularOrbit
 from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import (
-    ZERO,
     Quaternion,
     Vec3,
     canonical,
@@ -96,7 +95,7 @@ class ControlledPlant:
         around = [stage[0] for stage in stages]
         step_s = 2.0 * pi / w0 / STEPS
         for step in range(STEPS):
-            motion = rigid.step(motion, torque, around[2 * step : 2 * step + 3], step_s)
+            motion = rigid.step(motion, torque, step_s, *around[2 * step : 2 * step + 3])
         q = canonical(multiply(conjugate(stages[-1][2]), motion.q_body_from_eci))
         e3 = transform(matrix(motion.q_body_from_eci), normal)
         relative = np.array(motion.omega_body_radps) - w0 * np.array(e3)
@@ -109,8 +108,8 @@ class ControlledPlant:
         nx, ny, nz = transform(matrix(q), (0.0, 0.0, w0))
         return Motion(multiply(q_orbit_from_eci, q), (w0 * wx + nx, w0 * wy + ny, w0 * wz + nz))
 
-    def _torque(self, normal: Vec3) -> "_Torque":
-        return _Torque(self, normal)
+    def _torque(self, normal: Vec3) -> TorqueFunction:
+        return TorqueFunction(_Torque(self, normal))
 
     def _around(self, u: Array) -> "list[_Stage]":
         """Surroundings, the orbit's normal and q_orbit_from_eci at each u."""
@@ -150,7 +149,7 @@ class _Torque:
         error = attitude_error(((e1[0], e2[0], e3[0]), (e1[1], e2[1], e3[1]), (e1[2], e2[2], e3[2])))
         relative = (omega[0] - w0 * e3[0], omega[1] - w0 * e3[1], omega[2] - w0 * e3[2])
         m = pd_dipole(b, relative, error, self.plant.k_w, self.plant.k_a)
-        return torques.total(self.plant.body.inertia_kgm2, q, around, m, ZERO)
+        return BodyTorque(self.plant.body.inertia_kgm2, m).at(q, omega, around)
 
 
 def _vec3(v: Array) -> Vec3:

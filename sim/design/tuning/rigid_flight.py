@@ -8,7 +8,7 @@ the whole of it with the same impulse, and the time from one to the next is a wh
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import radians, sin, sqrt
 from typing import NamedTuple
 
@@ -32,9 +32,8 @@ from fsw.table.schedules import planned_pulses
 from fsw.wire.messages import CoilFire, Mode
 from sim.design.tuning.flown import RigidFlight
 from sim.design.tuning.orbit_path import Path, path_of
-from sim.plant.dynamics import torques
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
-from sim.plant.environment.surroundings import Surroundings
+from sim.plant.dynamics.torques import BodyTorque
 from sim.plant.rotation import Quaternion
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 
@@ -122,8 +121,9 @@ def _fly(
         omega = motion.omega_body_radps
         relative = seen.attitude.omega_body_orbit_radps
         rows.append((motion.q_body_from_eci, seen.attitude.q_body_from_orbit, omega, relative, m_am2))
-        acting = _RigidTorque(control, add(m_am2, disturbing.residual_dipole_am2), disturbing.torque_nm)
-        motion = body.step(motion, acting, path.around[2 * tick : 2 * tick + 3], step_s)
+        dipole_am2 = add(m_am2, disturbing.residual_dipole_am2)
+        acting = BodyTorque(control.inertia_kgm2, dipole_am2, disturbing.torque_nm)
+        motion = body.step(motion, acting, step_s, *path.around[2 * tick : 2 * tick + 3])
     return _recorded(rows, control, step_s, orbit_s)
 
 
@@ -145,18 +145,6 @@ def law_input(
         tick=tick,
         ephemeris=config.ephemeris,
     )
-
-
-@dataclass(frozen=True, slots=True)
-class _RigidTorque:
-    """Gravity gradient, dipole and a constant torque, as ``RigidBody`` takes them."""
-
-    control: ControlConfig
-    m_body_am2: Vec3
-    bias_body_nm: Vec3
-
-    def __call__(self, q: Quaternion, omega: Vec3, around: Surroundings) -> Vec3:
-        return torques.total(self.control.inertia_kgm2, q, around, self.m_body_am2, self.bias_body_nm)
 
 
 def _mode(mode: Mode, attitude: Attitude, config: FlightConfig) -> Mode:

@@ -1,17 +1,14 @@
 """The disturbances: constant torque, residual dipole, drag, solar pressure, eddy currents and noise."""
 
-from collections.abc import Callable, Iterator
 from math import cos, pi, sqrt
+from typing import final
 
-from sim.plant.config import DisturbanceConfig, PlantConfig
+from sim.plant.config import DisturbanceConfig, PlantConfig, PlateConfig
 from sim.plant.dynamics import surfaces, torques
 from sim.plant.environment.orbit import DAY_S
 from sim.plant.environment.surroundings import Surroundings
-from sim.plant.random_streams import normals
+from sim.plant.random_streams import Normals
 from sim.plant.rotation import Mat3, Vec3, transform
-
-Effect = Callable[[Mat3, Vec3, Surroundings], Vec3]
-"""Torque, body axes [N m], from C(body from ``eci``), the inertial rate in body axes and the surroundings."""
 
 
 def bias_torque(disturbance: DisturbanceConfig, t_s: float) -> Vec3:
@@ -47,31 +44,79 @@ def residual_dipole(disturbance: DisturbanceConfig, lit: float, remanence_body_a
     return (x + dark * ex + rx, y + dark * ey + ry, z + dark * ez + rz)
 
 
-def effects(config: PlantConfig) -> dict[str, Effect]:
+@final
+class Drag(torques.Effect):
+    """Of the air on plates."""
+
+    def __init__(self, plates: tuple[PlateConfig, ...]) -> None:
+        self._plates = plates
+
+    def at(self, body_from_eci: Mat3, omega_body_radps: Vec3, around: Surroundings) -> Vec3:
+        """The torque, as in ``surfaces.drag``."""
+        exposure = around.exposure
+        flow_body_mps = transform(body_from_eci, exposure.flow_eci_mps)
+        return surfaces.drag(self._plates, flow_body_mps, exposure.density_kgpm3)
+
+
+@final
+class SolarPressure(torques.Effect):
+    """Of sunlight on plates."""
+
+    def __init__(self, plates: tuple[PlateConfig, ...]) -> None:
+        self._plates = plates
+
+    def at(self, body_from_eci: Mat3, omega_body_radps: Vec3, around: Surroundings) -> Vec3:
+        """The torque, as in ``surfaces.solar_pressure``."""
+        exposure = around.exposure
+        sun_body = transform(body_from_eci, exposure.sun_eci)
+        return surfaces.solar_pressure(self._plates, sun_body, exposure.sunlight_pa)
+
+
+@final
+class EddyCurrents(torques.Effect):
+    """Of the currents that the field induces."""
+
+    def __init__(self, k_nms_per_t2: float) -> None:
+        self._k_nms_per_t2 = k_nms_per_t2
+
+    def at(self, body_from_eci: Mat3, omega_body_radps: Vec3, around: Surroundings) -> Vec3:
+        """The torque, as in ``torques.eddy``."""
+        b_body_t = transform(body_from_eci, around.b_eci_t)
+        return torques.eddy(self._k_nms_per_t2, omega_body_radps, b_body_t)
+
+
+def effects(config: PlantConfig) -> dict[str, torques.Effect]:
     """The torques that follow from attitude, rate and surroundings, by name (``Plant.torque_sources``)."""
-    found: dict[str, Effect] = {}
+    found: dict[str, torques.Effect] = {}
     disturbance, plates = config.disturbance, config.body.plates
     if disturbance.density_scale is not None:
-        found["drag"] = lambda c, omega, around: surfaces.drag(
-            plates, transform(c, around.exposure.flow_eci_mps), around.exposure.density_kgpm3
-        )
+        found["drag"] = Drag(plates)
     if disturbance.solar_flux_wpm2 is not None:
-        found["solar_pressure"] = lambda c, omega, around: surfaces.solar_pressure(
-            plates, transform(c, around.exposure.sun_eci), around.exposure.sunlight_pa
-        )
-    if eddy := disturbance.eddy_nms_per_t2:
-        found["eddy"] = lambda c, omega, around: torques.eddy(eddy, omega, transform(c, around.b_eci_t))
+        found["solar_pressure"] = SolarPressure(plates)
+    if disturbance.eddy_nms_per_t2:
+        found["eddy"] = EddyCurrents(disturbance.eddy_nms_per_t2)
     return found
 
 
-def torque_noise(config: PlantConfig) -> Iterator[Vec3] | None:
-    """A torque for each tick, constant over it, white from tick to tick; None where there is none.
+@final
+class TorqueNoise:
+    """A torque for each tick, constant over it, white from tick to tick.
 
     Its standard deviation per axis is sqrt(q tick_hz), q the spectral density of the white torque that it
     represents: over many ticks the integral of both has the variance q t. Stream ``torque_noise``.
+
+    Args:
+        root_density_nm_rts: sqrt(q).
+        seed: of the stream.
+        tick_hz: ticks a second.
     """
-    root_density = config.disturbance.torque_noise_nm_rts
-    if not root_density:
-        return None
-    sigma_nm, noise = root_density * sqrt(config.tick_hz), normals(config.seed, "torque_noise")
-    return ((sigma_nm * x, sigma_nm * y, sigma_nm * z) for x, y, z in zip(noise, noise, noise, strict=False))
+
+    def __init__(self, root_density_nm_rts: float, seed: int, tick_hz: int) -> None:
+        self._sigma_nm = root_density_nm_rts * sqrt(tick_hz)
+        self._noise = Normals(seed, "torque_noise")
+
+    def next(self) -> Vec3:
+        """That of the next tick, body axes [N m]."""
+        sigma_nm, noise = self._sigma_nm, self._noise
+        x, y, z = noise.next(), noise.next(), noise.next()
+        return (sigma_nm * x, sigma_nm * y, sigma_nm * z)

@@ -1,29 +1,34 @@
 """The rigid body: attitude and rate integrated by the classic Runge-Kutta method, on plain floats."""
 
-from collections.abc import Callable, Sequence
 from math import isfinite
-from typing import NamedTuple
+from typing import final
 
+from fsw.wire.value import Value
+from sim.plant.dynamics.torques import Torque
+from sim.plant.dynamics.wheel import WheelStep
 from sim.plant.environment.surroundings import Surroundings
-from sim.plant.rotation import ZERO, Mat3, Quaternion, Vec3, cross, normalise, transform
-
-Torque = Callable[[Quaternion, Vec3, Surroundings], Vec3]
-"""Torque in body axes [N m], from q_body_from_eci, the inertial rate in body axes and the surroundings."""
+from sim.plant.rotation import ZERO, Mat3, Quaternion, Vec3, add, cross, normalise, transform
 
 
-class Motion(NamedTuple):
-    """Rotational state."""
+@final
+class Motion(Value):
+    """Attitude, and inertial rate in body axes."""
 
-    q_body_from_eci: Quaternion
-    omega_body_radps: Vec3
-    """Inertial rate, body axes."""
+    FIELDS = ("q_body_from_eci", "omega_body_radps")
+    __slots__ = FIELDS
 
-    def sound(self, step_s: float) -> bool:
+    def __init__(self, q_body_from_eci: Quaternion, omega_body_radps: Vec3) -> None:
+        self.q_body_from_eci = q_body_from_eci
+        self.omega_body_radps = omega_body_radps
+
+    def is_sound(self, step_s: float) -> bool:
         """Whether attitude and rate are finite, and a step of ``step_s`` turns it by less than a radian."""
-        (q0, q1, q2, q3), (x, y, z) = self
+        q0, q1, q2, q3 = self.q_body_from_eci
+        x, y, z = self.omega_body_radps
         return isfinite(q0 + q1 + q2 + q3) and (x * x + y * y + z * z) * step_s * step_s < 1.0
 
 
+@final
 class RigidBody:
     """dq/dt = 1/2 q (x) (0, w), J dw/dt = T - w x (J w + h).
 
@@ -41,26 +46,35 @@ class RigidBody:
         self,
         motion: Motion,
         torque: Torque,
-        around: Sequence[Surroundings],
         step_s: float,
-        momenta_nms: tuple[Vec3, Vec3, Vec3] | None = None,
+        start: Surroundings,
+        middle: Surroundings,
+        end: Surroundings,
+        *,
+        driven: WheelStep | None = None,
     ) -> Motion:
         """One Runge-Kutta step of fourth order; the torque is evaluated at each of its four stages.
 
         Args:
             motion: state at the start.
             torque: torque on the body.
-            around: surroundings at the start, the middle and the end of the step.
             step_s: length of the step.
-            momenta_nms: of a driven wheel at the start, the middle and the end, body axes.
+            start: surroundings at its start.
+            middle: in its middle.
+            end: at its end.
+            driven: a driven wheel, over the step.
         """
-        start, middle, end = around
-        h_start, h_middle, h_end = momenta_nms or (None, None, None)
-        half = 0.5 * step_s
-        k1 = self.rates(motion, torque, start, h_start)
-        k2 = self.rates(_advance(motion, k1, half), torque, middle, h_middle)
-        k3 = self.rates(_advance(motion, k2, half), torque, middle, h_middle)
-        k4 = self.rates(_advance(motion, k3, step_s), torque, end, h_end)
+        q, w, half = motion.q_body_from_eci, motion.omega_body_radps, 0.5 * step_s
+        h1 = h2 = h4 = self._wheel
+        if driven is not None:
+            h1, h2, h4 = add(h1, driven.start_nms), add(h2, driven.middle_nms), add(h4, driven.end_nms)
+        k1 = self._rates(q, w, torque, start, h1)
+        q2, w2 = _advance(q, w, k1, half)
+        k2 = self._rates(q2, w2, torque, middle, h2)
+        q3, w3 = _advance(q, w, k2, half)
+        k3 = self._rates(q3, w3, torque, middle, h2)
+        q4, w4 = _advance(q, w, k3, step_s)
+        k4 = self._rates(q4, w4, torque, end, h4)
         (a1, b1, c1, d1), (x1, y1, z1) = k1
         (a2, b2, c2, d2), (x2, y2, z2) = k2
         (a3, b3, c3, d3), (x3, y3, z3) = k3
@@ -74,18 +88,18 @@ class RigidBody:
             ),
             (x1 + 2.0 * (x2 + x3) + x4, y1 + 2.0 * (y2 + y3) + y4, z1 + 2.0 * (z2 + z3) + z4),
         )
-        q, w = _advance(motion, mean, step_s / 6.0)
+        q, w = _advance(q, w, mean, step_s / 6.0)
         return Motion(normalise(q), w)
 
-    def rates(
-        self, motion: "Stage", torque: Torque, around: Surroundings, driven_nms: Vec3 | None = None
-    ) -> "Rates":
+    def rates(self, motion: Motion, torque: Torque, around: Surroundings) -> "Rates":
         """dq/dt [1/s] and dw/dt [rad/s^2], the right-hand side that ``step`` integrates."""
-        q, w = motion
-        tx, ty, tz = torque(q, w, around)
-        (x, y, z), (hx, hy, hz) = transform(self._inertia, w), self._wheel
-        if driven_nms is not None:
-            hx, hy, hz = hx + driven_nms[0], hy + driven_nms[1], hz + driven_nms[2]
+        return self._rates(motion.q_body_from_eci, motion.omega_body_radps, torque, around, self._wheel)
+
+    def _rates(self, q: Quaternion, w: Vec3, torque: Torque, around: Surroundings, wheel: Vec3) -> "Rates":
+        """The same of a stage; ``wheel`` is the momentum of all wheels."""
+        tx, ty, tz = torque.at(q, w, around)
+        x, y, z = transform(self._inertia, w)
+        hx, hy, hz = wheel
         gx, gy, gz = cross(w, (x + hx, y + hy, z + hz))
         q0, q1, q2, q3 = q
         wx, wy, wz = 0.5 * w[0], 0.5 * w[1], 0.5 * w[2]
@@ -100,15 +114,13 @@ class RigidBody:
         )
 
 
-Stage = tuple[Quaternion, Vec3]
-"""Attitude and rate within a step; ``Motion`` is one."""
-
 Rates = tuple[Quaternion, Vec3]
 """dq/dt and dw/dt."""
 
 
-def _advance(motion: Stage, rates: Rates, step_s: float) -> Stage:
-    (q0, q1, q2, q3), (wx, wy, wz) = motion
+def _advance(q: Quaternion, w: Vec3, rates: Rates, step_s: float) -> tuple[Quaternion, Vec3]:
+    q0, q1, q2, q3 = q
+    wx, wy, wz = w
     (a, b, c, d), (x, y, z) = rates
     return (
         (q0 + step_s * a, q1 + step_s * b, q2 + step_s * c, q3 + step_s * d),

@@ -1,7 +1,7 @@
 """The integration steps of a tick: as many as are needed for none to turn the body too far."""
 
 from math import ceil, sqrt
-from typing import NamedTuple
+from typing import final
 
 import numpy as np
 
@@ -20,15 +20,25 @@ MOST_SUBSTEPS = 2048
 """Steps of a tick for the sake of a fast motion; one that needs more is lost."""
 
 
-class TickSteps(NamedTuple):
-    """The steps of a tick."""
+@final
+class TickSteps:
+    """The steps of a tick.
 
-    number: int
-    step_s: float
-    stages: list[Surroundings]
-    """At the start, the middle and the end of each, in time: 2 n + 1 of them."""
+    Args:
+        number: how many.
+        step_s: length of each.
+        stages: at the start, the middle and the end of each, in time: 2 n + 1 of them.
+    """
+
+    __slots__ = ("number", "stages", "step_s")
+
+    def __init__(self, number: int, step_s: float, stages: list[Surroundings]) -> None:
+        self.number = number
+        self.step_s = step_s
+        self.stages = stages
 
 
+@final
 class Substeps:
     """Steps a tick: those of ``max_substep_s``, doubled until each turns the body by ``MOST_RAD`` at most.
 

@@ -13,7 +13,7 @@ about W = 0.
 """
 
 from math import exp, sqrt
-from typing import NamedTuple
+from typing import final
 
 from sim.plant.rotation import Vec3
 from sim.plant.wheel_config import WheelConfig
@@ -22,15 +22,27 @@ SMOOTH_RADPS = 1.0
 """W_0: at lower speeds the Coulomb friction is smaller."""
 
 
-class WheelStep(NamedTuple):
-    """What the wheel does to the body over an integration step, body axes."""
+@final
+class WheelStep:
+    """What the wheel does to the body over an integration step, body axes.
 
-    momenta_nms: tuple[Vec3, Vec3, Vec3]
-    """h w at its start, middle and end."""
-    reaction_nm: Vec3
-    """-w dh/dt."""
+    Args:
+        start_nms: h w at its start.
+        middle_nms: in its middle.
+        end_nms: at its end.
+        reaction_nm: -w dh/dt.
+    """
+
+    __slots__ = ("end_nms", "middle_nms", "reaction_nm", "start_nms")
+
+    def __init__(self, start_nms: Vec3, middle_nms: Vec3, end_nms: Vec3, reaction_nm: Vec3) -> None:
+        self.start_nms = start_nms
+        self.middle_nms = middle_nms
+        self.end_nms = end_nms
+        self.reaction_nm = reaction_nm
 
 
+@final
 class SpinningWheel:
     """The wheel's own state: absolute momentum about its axis, and the torque that its motor gives.
 
@@ -64,18 +76,20 @@ class SpinningWheel:
         motor_nm = self._mean_motor_nm(requested_nm, step_s)
         free = before + step_s * motor_nm
         friction_nm = self.friction_nm(before / config.inertia_kgm2)
-        middle = _slowed(0.5 * (before + free), 0.5 * step_s * friction_nm)
+        middle = _slow(0.5 * (before + free), 0.5 * step_s * friction_nm)
         if middle:  # otherwise friction stops it within the step
             friction_nm = self.friction_nm(middle / config.inertia_kgm2)
         most = max(config.max_momentum_nms, abs(before))
-        after = min(max(_slowed(free, step_s * friction_nm), -most), most)
+        after = min(max(_slow(free, step_s * friction_nm), -most), most)
         change = after - before
         self._momentum_nms = h + change
-        x, y, z = config.axis_body
-        at = (h, h + 0.5 * change, h + change)
-        first, half, last = ((part * x, part * y, part * z) for part in at)
-        reaction = -change / step_s
-        return WheelStep((first, half, last), (reaction * x, reaction * y, reaction * z))
+        axis = config.axis_body
+        return WheelStep(
+            _scale(h, axis),
+            _scale(h + 0.5 * change, axis),
+            _scale(h + change, axis),
+            _scale(-change / step_s, axis),
+        )
 
     def friction_nm(self, speed_radps: float) -> float:
         """The torque that slows the wheel at a speed relative to the body; it has the sign of the speed."""
@@ -100,7 +114,11 @@ class SpinningWheel:
         return x * v[0] + y * v[1] + z * v[2]
 
 
-def _slowed(momentum_nms: float, lost_nms: float) -> float:
+def _scale(size: float, v: Vec3) -> Vec3:
+    return (size * v[0], size * v[1], size * v[2])
+
+
+def _slow(momentum_nms: float, lost_nms: float) -> float:
     """The momentum after a loss to friction, which does not reverse it."""
     turned = lost_nms * momentum_nms > 0.0 and abs(lost_nms) > abs(momentum_nms)
     return 0.0 if turned else momentum_nms - lost_nms

@@ -4,12 +4,11 @@ Orbit, field and Sun are computed at nodes, many at once, and interpolated to ev
 integration or the sensors need. All instants lie on one grid of integers, so no time is ever accumulated.
 """
 
-from collections.abc import Iterable
-from itertools import repeat
-from typing import NamedTuple
+from typing import Final, final
 
 import numpy as np
 
+from fsw.wire.value import Value
 from sim.plant.config import DisturbanceConfig, PlantConfig
 from sim.plant.environment.atmosphere import altitude_m, density_kgpm3, flow_mps
 from sim.plant.environment.field import make_field
@@ -30,47 +29,85 @@ _SUBSTEPS_A_BLOCK = 320
 """About how many integration steps are computed ahead at once."""
 
 
-class Exposure(NamedTuple):
-    """Air and light at one instant."""
+@final
+class Exposure(Value):
+    """Air and light at one instant.
 
-    flow_eci_mps: Vec3
-    """Velocity relative to the air."""
-    density_kgpm3: float
-    sun_eci: Vec3
-    """Unit vector from the satellite to the Sun."""
-    sunlight_pa: float
-    """Pressure of the light on a black plate that faces the Sun."""
+    Args:
+        flow_eci_mps: velocity relative to the air.
+        density_kgpm3: of the air.
+        sun_eci: unit vector from the satellite to the Sun.
+        sunlight_pa: pressure of the light on a black plate that faces the Sun.
+    """
 
+    FIELDS = ("flow_eci_mps", "density_kgpm3", "sun_eci", "sunlight_pa")
+    __slots__ = FIELDS
 
-VACUUM = Exposure(ZERO, 0.0, ZERO, 0.0)
-
-
-class Surroundings(NamedTuple):
-    """The quantities that the torques need at one instant."""
-
-    e_eci: Vec3
-    """Unit vector of the radius."""
-    gradient_ps2: float
-    """3 mu / r^3."""
-    b_eci_t: Vec3
-    exposure: Exposure = VACUUM
-    """Only if drag or solar pressure is configured."""
+    def __init__(self, flow_eci_mps: Vec3, density_kgpm3: float, sun_eci: Vec3, sunlight_pa: float) -> None:
+        self.flow_eci_mps = flow_eci_mps
+        self.density_kgpm3 = density_kgpm3
+        self.sun_eci = sun_eci
+        self.sunlight_pa = sunlight_pa
 
 
-class Sample(NamedTuple):
-    """The quantities that sensors and truth need at one tick."""
+VACUUM: Final = Exposure(ZERO, 0.0, ZERO, 0.0)
 
-    r_eci_m: Vec3
-    orbit_from_eci: Mat3
-    """Rows: radius, along-track, normal."""
-    orbit_rate_radps: float
-    """Rate |r x v| / r^2 of the orbital frame, about its axis 3."""
-    b_eci_t: Vec3
-    sun_eci: Vec3
-    """Unit vector from the satellite to the Sun."""
-    lit: float
-    """Visible fraction of the Sun's disc."""
-    v_eci_mps: Vec3
+
+@final
+class Surroundings(Value):
+    """The quantities that the torques need at one instant.
+
+    Args:
+        e_eci: unit vector of the radius.
+        gradient_ps2: 3 mu / r^3.
+        b_eci_t: field.
+        exposure: only if drag or solar pressure is configured.
+    """
+
+    FIELDS = ("e_eci", "gradient_ps2", "b_eci_t", "exposure")
+    __slots__ = FIELDS
+
+    def __init__(self, e_eci: Vec3, gradient_ps2: float, b_eci_t: Vec3, exposure: Exposure = VACUUM) -> None:
+        self.e_eci = e_eci
+        self.gradient_ps2 = gradient_ps2
+        self.b_eci_t = b_eci_t
+        self.exposure = exposure
+
+
+@final
+class Sample(Value):
+    """The quantities that sensors and truth need at one tick.
+
+    Args:
+        r_eci_m: position.
+        orbit_from_eci: rows: radius, along-track, normal.
+        orbit_rate_radps: rate |r x v| / r^2 of the orbital frame, about its axis 3.
+        b_eci_t: field.
+        sun_eci: unit vector from the satellite to the Sun.
+        lit: visible fraction of the Sun's disc.
+        v_eci_mps: velocity.
+    """
+
+    FIELDS = ("r_eci_m", "orbit_from_eci", "orbit_rate_radps", "b_eci_t", "sun_eci", "lit", "v_eci_mps")
+    __slots__ = FIELDS
+
+    def __init__(
+        self,
+        r_eci_m: Vec3,
+        orbit_from_eci: Mat3,
+        orbit_rate_radps: float,
+        b_eci_t: Vec3,
+        sun_eci: Vec3,
+        lit: float,
+        v_eci_mps: Vec3,
+    ) -> None:
+        self.r_eci_m = r_eci_m
+        self.orbit_from_eci = orbit_from_eci
+        self.orbit_rate_radps = orbit_rate_radps
+        self.b_eci_t = b_eci_t
+        self.sun_eci = sun_eci
+        self.lit = lit
+        self.v_eci_mps = v_eci_mps
 
 
 class Environment:
@@ -103,6 +140,11 @@ class Environment:
         """Start, middle, end of each substep of a tick, in time: 2 substeps + 1 of them."""
         offset = self._enter(tick) * self._stages_per_tick
         return self._stages[offset : offset + self._stages_per_tick + 1]
+
+    def start(self, tick: int) -> Surroundings:
+        """The first of them: the surroundings at the instant of the tick."""
+        place = self._enter(tick)
+        return self._stages[place * self._stages_per_tick]
 
     def sample(self, tick: int) -> Sample:
         """The sample at a tick."""
@@ -146,29 +188,27 @@ def _lagrange_weights(steps: int) -> Array:
     return np.array([np.prod([(x - j) / (k - j) for j in places if j != k], axis=0) for k in places])
 
 
-def _surroundings(rows: Array, exposures: Iterable[Exposure]) -> list[Surroundings]:
+def _surroundings(rows: Array, exposures: list[Exposure]) -> list[Surroundings]:
     r_m = rows[:, 0:3]
     r_norm_m = np.sqrt((r_m * r_m).sum(axis=1))
     gradient_ps2 = 3.0 * MU_M3PS2 / r_norm_m**3
-    columns = (_tuples(r_m / r_norm_m[:, None]), gradient_ps2.tolist(), _tuples(rows[:, 6:9]))
-    return [Surroundings(*row) for row in zip(*columns, exposures, strict=False)]
+    e, gradients = _tuples(r_m / r_norm_m[:, None]), gradient_ps2.tolist()
+    b_t = _tuples(rows[:, 6:9])
+    return [Surroundings(e[k], gradients[k], b_t[k], exposures[k]) for k in range(len(rows))]
 
 
-def _exposures(rows: Array, disturbance: DisturbanceConfig) -> Iterable[Exposure]:
+def _exposures(rows: Array, disturbance: DisturbanceConfig) -> list[Exposure]:
     density_scale, flux_wpm2 = disturbance.density_scale, disturbance.solar_flux_wpm2
     if density_scale is None and flux_wpm2 is None:
-        return repeat(VACUUM)
+        return [VACUUM] * len(rows)
     r_m, v_mps, _, sun_m = np.hsplit(rows, 4)
     to_sun = sun_m - r_m
     distance_m = np.linalg.norm(to_sun, axis=1)
     sunlight_pa = (flux_wpm2 or 0.0) / LIGHT_MPS * (AU_M / distance_m) ** 2 * illumination(r_m, sun_m)
-    columns = (
-        _tuples(flow_mps(r_m, v_mps)),
-        ((density_scale or 0.0) * density_kgpm3(altitude_m(r_m))).tolist(),
-        _tuples(to_sun / distance_m[:, None]),
-        sunlight_pa.tolist(),
-    )
-    return [Exposure(*row) for row in zip(*columns, strict=True)]
+    flows = _tuples(flow_mps(r_m, v_mps))
+    densities = ((density_scale or 0.0) * density_kgpm3(altitude_m(r_m))).tolist()
+    suns, pressures = _tuples(to_sun / distance_m[:, None]), sunlight_pa.tolist()
+    return [Exposure(flows[k], densities[k], suns[k], pressures[k]) for k in range(len(rows))]
 
 
 def _samples(rows: Array) -> list[Sample]:
@@ -176,18 +216,17 @@ def _samples(rows: Array) -> list[Sample]:
     h_m2ps = np.cross(r_m, v_mps)
     r_norm_m, h_norm_m2ps = np.linalg.norm(r_m, axis=1), np.linalg.norm(h_m2ps, axis=1)
     e1, e3 = r_m / r_norm_m[:, None], h_m2ps / h_norm_m2ps[:, None]
-    frames = zip(_tuples(e1), _tuples(np.cross(e3, e1)), _tuples(e3), strict=True)
+    radius, along, normal = _tuples(e1), _tuples(np.cross(e3, e1)), _tuples(e3)
     to_sun = sun_m - r_m
-    columns = (
-        _tuples(r_m),
-        frames,
-        (h_norm_m2ps / r_norm_m**2).tolist(),
-        _tuples(b_t),
-        _tuples(to_sun / np.linalg.norm(to_sun, axis=1)[:, None]),
-        illumination(r_m, sun_m).tolist(),
-        _tuples(v_mps),
-    )
-    return [Sample(*row) for row in zip(*columns, strict=True)]
+    suns = _tuples(to_sun / np.linalg.norm(to_sun, axis=1)[:, None])
+    places, velocities, fields = _tuples(r_m), _tuples(v_mps), _tuples(b_t)
+    rates, lit = (h_norm_m2ps / r_norm_m**2).tolist(), illumination(r_m, sun_m).tolist()
+    return [
+        Sample(
+            places[k], (radius[k], along[k], normal[k]), rates[k], fields[k], suns[k], lit[k], velocities[k]
+        )
+        for k in range(len(rows))
+    ]
 
 
 def _tuples(vectors: Array) -> list[Vec3]:

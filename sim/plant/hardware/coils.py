@@ -1,6 +1,7 @@
 """Three coils: current, dipole, remanence and read-back."""
 
 from math import exp, expm1, prod
+from typing import final
 
 from sim.plant.config import CoilConfig
 from sim.plant.hardware.remanence import Remanence
@@ -11,6 +12,7 @@ _EXTINCT_A = 1e-15
 """A current below this counts as zero."""
 
 
+@final
 class Coils:
     """Currents that follow their targets with a first-order lag: di/dt = (i_driven - i) / tau.
 
@@ -25,9 +27,9 @@ class Coils:
         self._tau_s = config.time_constant_s
         self._dipole_per_ampere = [config.dipole_per_ampere_am2 * scale for scale in config.dipole_scale]
         self._body_from_coils = body_from_coils(config.misalignment_rad, config.wiring)
-        self._scales: tuple[list[float], ...] = ([], [], [])
+        self._scales: list[list[float]] = [[], [], []]
         self._remanence = Remanence(config.remanence_part)
-        self._current_a = [0.0, 0.0, 0.0]
+        self._current_a = ZERO
 
     def rescale(self, coil: int, scale: float) -> None:
         """Scale the dipole of a coil from now on, in addition to the scales that it has."""
@@ -79,23 +81,32 @@ class Coils:
         """
         if self._remanence.part:
             self._remanence.advance(driven_a, on_s, step_s, held_a)
-        if self._current_a == [0.0, 0.0, 0.0] and not (on_s and any(driven_a)) and held_a == ZERO:
+        if self._current_a == ZERO and (not on_s or driven_a == ZERO) and held_a == ZERO:
             return ZERO
-        x, y, z = (self._mean_current(coil, driven_a[coil], on_s, step_s, held_a[coil]) for coil in range(3))
+        i, j, k = self._current_a
+        x, i = self._mean_current(i, driven_a[0], on_s, step_s, held_a[0])
+        y, j = self._mean_current(j, driven_a[1], on_s, step_s, held_a[1])
+        z, k = self._mean_current(k, driven_a[2], on_s, step_s, held_a[2])
+        self._current_a = (i, j, k)
         return self._dipole((x, y, z))
 
     def _dipole(self, current_a: Vec3) -> Vec3:
         if current_a == ZERO:
             return ZERO
-        (x, y, z), (i, j, k) = self._dipole_per_ampere, current_a
-        by_coil = (x * i, y * j, z * k)
-        return transform(self._body_from_coils, by_coil) if self._body_from_coils else by_coil
+        i, j, k = current_a
+        full = self._dipole_per_ampere
+        by_coil = (full[0] * i, full[1] * j, full[2] * k)
+        axes = self._body_from_coils
+        return by_coil if axes is None else transform(axes, by_coil)
 
-    def _mean_current(self, coil: int, target_a: float, on_s: float, step_s: float, held_a: float) -> float:
-        charge_on, turned_off_a = self._follow(self._current_a[coil], target_a, on_s)
+    def _mean_current(
+        self, start_a: float, target_a: float, on_s: float, step_s: float, held_a: float
+    ) -> tuple[float, float]:
+        """Of one coil over a step, and its current at the end."""
+        charge_on, turned_off_a = self._follow(start_a, target_a, on_s)
         charge_off, end_a = self._follow(turned_off_a, held_a, step_s - on_s)
-        self._current_a[coil] = end_a if abs(end_a) > _EXTINCT_A else 0.0
-        return (charge_on + charge_off) / step_s
+        mean_a = (charge_on + charge_off) / step_s
+        return mean_a, end_a if abs(end_a) > _EXTINCT_A else 0.0
 
     def _follow(self, start_a: float, target_a: float, time_s: float) -> tuple[float, float]:
         """Integral [A s] and end value [A] of i(t) = target + (start - target) exp(-t / tau)."""

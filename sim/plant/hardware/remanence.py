@@ -1,8 +1,11 @@
 """The dipoles that the cores of the coils keep after a pulse."""
 
+from typing import final
+
 from sim.plant.rotation import ZERO, Vec3
 
 
+@final
 class Remanence:
     """Coil j keeps m_j = part m_pulse,j, m_pulse,j the dipole of its last pulse, until its next one.
 
@@ -34,12 +37,21 @@ class Remanence:
         if not on_s and held_a == ZERO:
             self.now_a = self.mean_a = self._kept_a
             return
+        x, y, z = self._kept_a
         off = 1.0 - on_s / step_s
-        coils = [
-            (self.part * held, 0.0) if held else (self.part * driven, off) if driven and on_s else (kept, 1.0)
-            for driven, held, kept in zip(driven_a, held_a, self._kept_a, strict=True)
-        ]
-        (x, p), (y, q), (z, r) = coils
+        x, p = self._after(driven_a[0], held_a[0], x, on_s, off)
+        y, q = self._after(driven_a[1], held_a[1], y, on_s, off)
+        z, r = self._after(driven_a[2], held_a[2], z, on_s, off)
         self._kept_a = (x, y, z)
         self.mean_a = (x * p, y * q, z * r)
         self.now_a = (x if p else x * p, y if q else y * q, z if r else z * r)
+
+    def _after(
+        self, driven_a: float, held_a: float, kept_a: float, on_s: float, off_part: float
+    ) -> tuple[float, float]:
+        """What a coil keeps after a step, and the part of the step in which it acts."""
+        if held_a:
+            return self.part * held_a, 0.0
+        if driven_a and on_s:
+            return self.part * driven_a, off_part
+        return kept_a, 1.0

@@ -2,8 +2,9 @@
 
 from collections import deque
 from math import cos, sin, sqrt
+from typing import final
 
-from sim.plant.random_streams import normals
+from sim.plant.random_streams import Normals
 from sim.plant.rotation import ZERO, Mat3, Vec3, from_vector, matrix, transform
 from sim.plant.sensor_config import AS_NAMED, MagnetometerConfig, SunSensorConfig, Wiring
 
@@ -14,6 +15,7 @@ LEAST_LIT = 0.5
 _Values = tuple[float, ...]
 
 
+@final
 class Delay:
     """The values ``latency_s`` ago: linear between samples; before the first, the first.
 
@@ -27,17 +29,19 @@ class Delay:
         self._length = int(ticks) + 2
         self._samples: deque[_Values] = deque(maxlen=self._length)
 
-    def __call__(self, now: _Values) -> _Values:
-        """Add the sample ``now``, and return the delayed values."""
+    def take(self, now: _Values) -> _Values:
+        """Take the sample ``now``; the delayed values."""
         samples, part = self._samples, self._part
         samples.append(now)
         while len(samples) < self._length:
             samples.append(now)
         if not part:  # whole ticks
             return samples[1]
-        return tuple(late + part * (early - late) for early, late in zip(samples[0], samples[1], strict=True))
+        early, late = samples[0], samples[1]
+        return tuple([late[k] + part * (early[k] - late[k]) for k in range(len(late))])
 
 
+@final
 class MagnetometerPhysics:
     """b = scale (N R (b_body + K m)) + bias + noise, then quantised and limited to the range.
 
@@ -57,7 +61,7 @@ class MagnetometerPhysics:
         self._sensor_from_body = matrix(from_vector(config.misalignment_rad))
         if any(config.non_orthogonality_rad):
             self._sensor_from_body = _skewed(config.non_orthogonality_rad, self._sensor_from_body)
-        self._noise = normals(seed, "magnetometer")
+        self._noise = Normals(seed, "magnetometer")
 
     def measure(self, b_body_t: Vec3, m_body_am2: Vec3) -> tuple[Vec3, bool]:
         """The reading [T] and whether it is valid: within the range on every axis.
@@ -70,20 +74,22 @@ class MagnetometerPhysics:
         if m_body_am2 != ZERO:
             (bx, by, bz), own = b_body_t, transform(config.coil_coupling_t_per_am2, m_body_am2)
             b_body_t = (bx + own[0], by + own[1], bz + own[2])
-        sensed: _Values = transform(self._sensor_from_body, b_body_t)
-        if self._delay:
-            sensed = self._delay(sensed)
-        (bx, by, bz), (sx, sy, sz), (ox, oy, oz) = sensed, config.scale, config.bias_t
+        bx, by, bz = transform(self._sensor_from_body, b_body_t)
+        if self._delay is not None:
+            late = self._delay.take((bx, by, bz))
+            bx, by, bz = late[0], late[1], late[2]
+        (sx, sy, sz), (ox, oy, oz) = config.scale, config.bias_t
         sigma, quantum, most = config.noise_t, config.quantum_t, config.saturation_t
-        x = quantise(sx * bx + ox + sigma * next(noise), quantum)
-        y = quantise(sy * by + oy + sigma * next(noise), quantum)
-        z = quantise(sz * bz + oz + sigma * next(noise), quantum)
+        x = quantise(sx * bx + ox + sigma * noise.next(), quantum)
+        y = quantise(sy * by + oy + sigma * noise.next(), quantum)
+        z = quantise(sz * bz + oz + sigma * noise.next(), quantum)
         if -most <= x <= most and -most <= y <= most and -most <= z <= most:
             return wired((x, y, z), config.wiring), True
         limited = (min(max(x, -most), most), min(max(y, -most), most), min(max(z, -most), most))
         return wired(limited, config.wiring), False
 
 
+@final
 class SunSensorPhysics:
     """s = R (s_body + a_body) of unit length, turned about each axis by a small random angle, then quantised.
 
@@ -102,7 +108,7 @@ class SunSensorPhysics:
         self._delay = Delay(config.latency_s, tick_hz) if config.latency_s else None
         self._cos_half = cos(config.fov_half_rad)
         self._sensor_from_body = matrix(from_vector(config.misalignment_rad))
-        self._noise = normals(seed, "sun_sensor")
+        self._noise = Normals(seed, "sun_sensor")
 
     def measure(self, sun_body: Vec3, lit: float, earthlight_body: Vec3 = ZERO) -> tuple[Vec3, bool]:
         """The unit vector to the Sun and whether it is valid: in view, and at least half of the disc visible.
@@ -113,10 +119,10 @@ class SunSensorPhysics:
             earthlight_body: a, relative to the Sun's light.
         """
         noise, sigma = self._noise, self._config.noise_rad
-        ax, ay, az = sigma * next(noise), sigma * next(noise), sigma * next(noise)
-        if self._delay:
-            x, y, z, lit, *then = self._delay((*sun_body, lit, *earthlight_body))
-            sun_body, earthlight_body = (x, y, z), (then[0], then[1], then[2])
+        ax, ay, az = sigma * noise.next(), sigma * noise.next(), sigma * noise.next()
+        if self._delay is not None:
+            late = self._delay.take((*sun_body, lit, *earthlight_body))
+            sun_body, lit, earthlight_body = (late[0], late[1], late[2]), late[3], (late[4], late[5], late[6])
         if lit < LEAST_LIT or not self._in_view(sun_body):
             return ZERO, False
         if earthlight_body != ZERO and self._in_view(earthlight_body):
@@ -133,19 +139,27 @@ class SunSensorPhysics:
 
     def _in_view(self, light_body: Vec3) -> bool:
         boresights = self._config.boresights_body
-        if not boresights:
-            return True
         x, y, z = light_body
         least = self._cos_half * sqrt(x * x + y * y + z * z)
-        return any(x * bx + y * by + z * bz >= least for bx, by, bz in boresights)
+        seen = not boresights
+        for bx, by, bz in boresights:
+            seen = seen or x * bx + y * by + z * bz >= least
+        return seen
 
 
 def wired(by_axis: Vec3, wiring: Wiring) -> Vec3:
     """The values by axis, rearranged by channel."""
     if wiring == AS_NAMED:
         return by_axis
-    x, y, z = (by_axis[abs(axis) - 1] * (1.0 if axis > 0 else -1.0) for axis in wiring)
-    return x, y, z
+    return _along(by_axis, wiring[0]), _along(by_axis, wiring[1]), _along(by_axis, wiring[2])
+
+
+def _along(by_axis: Vec3, axis: int) -> float:
+    """The value along an axis of this number, negative for the opposite sense."""
+    x, y, z = by_axis
+    number = abs(axis)
+    value = x if number == 1 else y if number == 2 else z
+    return value * (1.0 if axis > 0 else -1.0)
 
 
 def _skewed(non_orthogonality_rad: Vec3, axes: Mat3) -> Mat3:

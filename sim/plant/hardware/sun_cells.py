@@ -1,12 +1,13 @@
 """The physics of coarse Sun cells: cosine, gain, shading, the Earth's light, noise, step, threshold."""
 
 from math import exp, sqrt
+from typing import final
 
 import numpy as np
 
 from sim.plant.environment.earth_view import earth_view
 from sim.plant.hardware.sensors import Delay, quantise
-from sim.plant.random_streams import normals
+from sim.plant.random_streams import Normals
 from sim.plant.rotation import Mat3, Vec3, from_vector, matrix, transform
 from sim.plant.sensor_config import CellConfig, SunCellsConfig
 
@@ -14,6 +15,7 @@ CLOUDS_S = 300.0
 """Time in which a satellite in low orbit comes over other clouds."""
 
 
+@final
 class SunCellPhysics:
     """c = g (lit max(0, n . s) + A light(n)) + noise, then quantised, and 0 below the threshold.
 
@@ -31,9 +33,9 @@ class SunCellPhysics:
         self._config = config
         self._delay = Delay(config.latency_s, tick_hz) if config.latency_s else None
         self._normals = [_turned(cell.normal_body, cell.turn_rad) for cell in config.cells]
-        self._noise, self._clouds = normals(seed, "sun_cells"), normals(seed, "clouds")
+        self._noise, self._clouds = Normals(seed, "sun_cells"), Normals(seed, "clouds")
         self._keep = exp(-1.0 / (CLOUDS_S * tick_hz))
-        self._cloud = next(self._clouds)
+        self._cloud = self._clouds.next()
 
     def measure(self, body_from_eci: Mat3, r_eci_m: Vec3, sun_eci: Vec3, lit: float) -> tuple[float, ...]:
         """The current of each cell, relative to the nominal one in full sunlight.
@@ -45,26 +47,24 @@ class SunCellPhysics:
             lit: visible fraction of the Sun's disc.
         """
         config, sun_body = self._config, transform(body_from_eci, sun_eci)
-        light = [
-            lit * _cosine(cell, normal, sun_body)
-            for cell, normal in zip(config.cells, self._normals, strict=True)
-        ]
+        cells, normals = config.cells, self._normals
+        light = [lit * _cosine(cells[k], normals[k], sun_body) for k in range(len(cells))]
         if config.albedo:
-            seen = earth_view(r_eci_m, sun_eci, np.array(self._normals) @ np.array(body_from_eci))
+            parts = earth_view(r_eci_m, sun_eci, np.array(normals) @ np.array(body_from_eci)).tolist()
             reflected = self._reflected()
-            light = [own + reflected * part for own, part in zip(light, seen.tolist(), strict=True)]
-        if self._delay:
-            light = list(self._delay(tuple(light)))
-        return tuple([self._current(cell, part) for cell, part in zip(config.cells, light, strict=True)])
+            light = [light[k] + reflected * parts[k] for k in range(len(cells))]
+        if self._delay is not None:
+            light = list(self._delay.take(tuple(light)))
+        return tuple([self._current(cells[k], light[k]) for k in range(len(cells))])
 
     def _reflected(self) -> float:
         """The fraction of the light that the Earth in view reflects now."""
         keep, config = self._keep, self._config
-        self._cloud = keep * self._cloud + sqrt(1.0 - keep * keep) * next(self._clouds)
+        self._cloud = keep * self._cloud + sqrt(1.0 - keep * keep) * self._clouds.next()
         return config.albedo * min(max(0.0, 1.0 + config.albedo_spread * self._cloud), 2.0)
 
     def _current(self, cell: CellConfig, light: float) -> float:
-        current = cell.gain * light + self._config.noise * next(self._noise)
+        current = cell.gain * light + self._config.noise * self._noise.next()
         current = quantise(current, self._config.quantum)
         return current if current >= self._config.threshold else 0.0
 
@@ -72,8 +72,10 @@ class SunCellPhysics:
 def _cosine(cell: CellConfig, normal: Vec3, sun_body: Vec3) -> float:
     """Of the Sun's incidence; 0 from behind and in the shade."""
     (x, y, z), (nx, ny, nz) = sun_body, normal
-    shaded = any(ax * x + ay * y + az * z > cosine for (ax, ay, az), cosine in cell.shades)
-    return 0.0 if shaded else max(0.0, nx * x + ny * y + nz * z)
+    for (ax, ay, az), cosine in cell.shades:
+        if ax * x + ay * y + az * z > cosine:
+            return 0.0
+    return max(0.0, nx * x + ny * y + nz * z)
 
 
 def _turned(normal: Vec3, turn_rad: Vec3) -> Vec3:

@@ -1,5 +1,7 @@
 """The wheel of the plant: its board on the bus, and the wheel that it drives."""
 
+from typing import final
+
 from fsw.wire.frame import Frame
 from hil_stub.wheel.wheel_driver import WheelDriver
 from hil_stub.wheel.wheel_guard import WheelLimits
@@ -8,6 +10,7 @@ from sim.plant.rotation import Vec3
 from sim.plant.wheel_config import WheelConfig
 
 
+@final
 class WheelUnit:
     """Board and wheel.
 

@@ -12,8 +12,8 @@ from fsw.core.actuation.pulses import PulseConfig, PulseState, choose, dipole_am
 from fsw.core.laws.predictive.predictive import best_impulse, free_rate_change, missing_impulse
 from sim.campaign.claim import Claim, ClaimOutcome, Study, Threshold
 from sim.campaign.study import spread_of
-from sim.plant.dynamics import torques
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.dynamics.torques import BodyTorque
 from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2
 from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import ZERO, Mat3, Quaternion, Vec3, matrix, normalise, transform
@@ -72,11 +72,9 @@ class State:
         around = Surroundings((1.0, 0.0, 0.0), 3.0 * RATE_RADPS**2, self.b_orbit_t)
         omega = np.array(self.omega_body_orbit_radps) + RATE_RADPS * np.array(transform(start, NORMAL))
 
-        def torque(q: Quaternion, omega_body_radps: Vec3, here: Surroundings) -> Vec3:
-            return torques.total(inertia, q, here, m_body_am2, ZERO)
-
-        body = RigidBody(inertia, self.wheel_body_nms)
-        end = body.step(Motion(self.q_body_from_orbit, vec3(omega)), torque, (around,) * 3, seconds)
+        body, torque = RigidBody(inertia, self.wheel_body_nms), BodyTorque(inertia, m_body_am2)
+        motion = Motion(self.q_body_from_orbit, vec3(omega))
+        end = body.step(motion, torque, seconds, around, around, around)
         normal = transform(matrix(end.q_body_from_eci), NORMAL)
         after: Array = np.array(end.omega_body_radps) - RATE_RADPS * np.array(normal)
         return after

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
 from math import ceil
 
 import numpy as np
@@ -10,10 +9,10 @@ import numpy as np
 from fsw.core.algebra import quaternion as onboard
 from sim.campaign.claim import Threshold
 from sim.errors import HarnessError
-from sim.plant.dynamics import torques
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.dynamics.torques import BodyTorque
 from sim.plant.environment.surroundings import Surroundings
-from sim.plant.rotation import ZERO, Mat3, Quaternion, Vec3, matrix, normalise
+from sim.plant.rotation import ZERO, Mat3, Vec3, matrix, normalise
 from sim.report.figures.attitude_arrays import angle_rad, relative
 from sim.validate.reference.comparison import Array, ReferenceComparison, largest
 from sim.validate.reference.reference_table import ReferenceTable, names_of
@@ -134,13 +133,13 @@ def read_case(table: ReferenceTable) -> AttitudeCase:
 def fly(case: AttitudeCase, times: Array, longest_step_s: float) -> tuple[Array, Array]:
     """Attitudes (n, 4) and inertial rates (n, 3) of the plant's rigid body at rising times from 0."""
     body, motion, here = RigidBody(case.inertia_kgm2), case.start, 0.0
-    torque = partial(_torque, case)
+    torque = BodyTorque(case.inertia_kgm2, case.dipole_body_am2)
     history = []
     for time in times.tolist():
         steps = ceil((time - here) / longest_step_s)
         around = surroundings(case, np.linspace(here, time, 2 * steps + 1))
         for step in range(steps):
-            motion = body.step(motion, torque, around[2 * step : 2 * step + 3], (time - here) / steps)
+            motion = body.step(motion, torque, (time - here) / steps, *around[2 * step : 2 * step + 3])
         history.append(motion)
         here = time
     return np.array([m.q_body_from_eci for m in history]), np.array([m.omega_body_radps for m in history])
@@ -163,10 +162,6 @@ def step_s(omega: Array) -> float:
     """The integration step for a history of rates."""
     fastest = float(np.linalg.norm(omega, axis=1).max())
     return float(np.clip(TURN_A_STEP_RAD / np.maximum(fastest, 1e-9), SHORTEST_STEP_S, LONGEST_STEP_S))
-
-
-def _torque(case: AttitudeCase, q: Quaternion, omega_body_radps: Vec3, around: Surroundings) -> Vec3:
-    return torques.total(case.inertia_kgm2, q, around, case.dipole_body_am2, ZERO)
 
 
 def _check_physics(table: ReferenceTable, case: AttitudeCase) -> None:

@@ -153,7 +153,7 @@ def flaps_about_normal() -> float:
 def ring_momentum_change() -> float:
     """Of J omega + h in space, the body turning freely."""
     ring, rigid, step_s = FluidRing(), RigidBody(INERTIA), 0.5
-    around = [Surroundings((1.0, 0.0, 0.0), 0.0, (0.0, 0.0, 0.0))] * 3
+    around = Surroundings((1.0, 0.0, 0.0), 0.0, (0.0, 0.0, 0.0))
     motion = Motion((1.0, 0.0, 0.0, 0.0), (0.01, -0.02, 0.015))
     first = _momentum(motion, ring, 0.0)
     for step in range(1200):
@@ -162,7 +162,7 @@ def ring_momentum_change() -> float:
         def torque(q: Quaternion, omega: Vec3, _: Surroundings, t_s: float = middle_s) -> Vec3:
             return ring.torque_body_nm(Moment(t_s, q, omega))
 
-        motion = rigid.step(motion, torque, around, step_s)
+        motion = rigid.step(motion, torques.TorqueFunction(torque), step_s, around, around, around)
     last = _momentum(motion, ring, 1200 * step_s)
     return float(np.linalg.norm(last - first) / np.linalg.norm(first))
 

@@ -19,8 +19,8 @@ from fsw.core.laws.plan.riccati import Schedule
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.ephemeris import Reference
 from sim.plant.config import OrbitConfig
-from sim.plant.dynamics import torques
-from sim.plant.dynamics.rigid_body import Motion, RigidBody, Torque
+from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.dynamics.torques import BodyTorque, Torque, TorqueFunction
 from sim.plant.dynamics.wheel import SpinningWheel
 from sim.plant.environment.field import DirectDipole, RotatingIgrf
 from sim.plant.environment.orbit import Array, CircularOrbit
@@ -30,6 +30,7 @@ from sim.plant.rotation import (
     Mat3,
     Quaternion,
     Vec3,
+    add,
     conjugate,
     from_matrix,
     matrix,
@@ -136,13 +137,14 @@ def fly(case: LawFlight) -> LawHistory:
         _check_numbers(case, tick, demand)
         before, memory = inputs.sample, demand.memory
         m = _clipped(demand.m_body_am2, case.most_am2)
-        rows.append((tick * case.step_s, *motion, relative, from_orbit, m, h or 0.0))
-        momenta, reaction = None, ZERO
+        q, omega = motion.q_body_from_eci, motion.omega_body_radps
+        rows.append((tick * case.step_s, q, omega, relative, from_orbit, m, h or 0.0))
+        driven, reaction = None, ZERO
         if wheel is not None:
-            asked, omega = demand.wheel_torque_nm or 0.0, motion.omega_body_radps
-            momenta, reaction = wheel.advance(asked, omega, case.step_s)
+            driven = wheel.advance(demand.wheel_torque_nm or 0.0, omega, case.step_s)
+            reaction = driven.reaction_nm
         torque = _torque(case, m, _vec3(orbit.v_mps[place]), reaction)
-        motion = rigid.step(motion, torque, orbit.around(place), case.step_s, momenta)
+        motion = rigid.step(motion, torque, case.step_s, *orbit.around(place), driven=driven)
     return _flown(case, rate, rows)
 
 
@@ -219,14 +221,14 @@ def _inputs(
 
 
 def _torque(case: LawFlight, m: Vec3, velocity: Vec3, reaction: Vec3) -> Torque:
-    def torque(q: Quaternion, omega: Vec3, around: Surroundings) -> Vec3:
-        x, y, z = torques.total(case.inertia_kgm2, q, around, m, reaction)
-        if case.extra is None:
-            return (x, y, z)
-        ex, ey, ez = case.extra(matrix(q), velocity)
-        return (x + ex, y + ey, z + ez)
+    alone, extra = BodyTorque(case.inertia_kgm2, m, reaction), case.extra
+    if extra is None:
+        return alone
 
-    return torque
+    def torque(q: Quaternion, omega: Vec3, around: Surroundings) -> Vec3:
+        return add(alone.at(q, omega, around), extra(matrix(q), velocity))
+
+    return TorqueFunction(torque)
 
 
 def _setpoint(case: LawFlight) -> Setpoint:

@@ -81,27 +81,27 @@ class TestFlaps:
 
     def test_flaps_alike_and_the_dark_give_none(self):
         assert SolarFlaps(plus_deg=30.0, minus_deg=30.0).torque_body_nm(MOMENT) == pytest.approx((0.0,) * 3)
-        assert SolarFlaps().torque_body_nm(MOMENT._replace(lit=0.0)) == (0.0, 0.0, 0.0)
+        assert SolarFlaps().torque_body_nm(MOMENT.replace(lit=0.0)) == (0.0, 0.0, 0.0)
 
     def test_the_light_on_either_side_counts(self):
-        behind = MOMENT._replace(sun_body=(-0.6, 0.7, -0.1))
+        behind = MOMENT.replace(sun_body=(-0.6, 0.7, -0.1))
         assert np.linalg.norm(SolarFlaps().torque_body_nm(behind)) > 1e-8
 
 
 class TestRing:
     def test_the_pump_accelerates_the_fluid_and_the_body_the_other_way(self):
         """At the start p A R = 0.05 * pi 16e-6 * 0.15; later the wall holds the fluid."""
-        at_start = MOMENT._replace(t_s=0.0, omega_body_radps=(0.0, 0.0, 0.0))
+        at_start = MOMENT.replace(t_s=0.0, omega_body_radps=(0.0, 0.0, 0.0))
         assert FluidRing().torque_body_nm(at_start) == pytest.approx((0.0, 0.0, -0.05 * pi * 16e-6 * 0.15))
-        late = at_start._replace(t_s=20.0 * FluidRing().time_s)
+        late = at_start.replace(t_s=20.0 * FluidRing().time_s)
         assert FluidRing().torque_body_nm(late) == pytest.approx((0.0, 0.0, 0.0), abs=1e-14)
 
     def test_what_the_body_gets_the_fluid_has(self):
         """The momentum is the integral of the torque against it, on a body that does not turn."""
         ring = FluidRing(axis=2.0)
         times = np.linspace(0.0, 3.0 * ring.time_s, 3001)
-        still = MOMENT._replace(omega_body_radps=(0.0, 0.0, 0.0))
-        torque = [ring.torque_body_nm(still._replace(t_s=t))[1] for t in times.tolist()]
+        still = MOMENT.replace(omega_body_radps=(0.0, 0.0, 0.0))
+        torque = [ring.torque_body_nm(still.replace(t_s=t))[1] for t in times.tolist()]
         given = -np.trapezoid(torque, times)
         assert given == pytest.approx(ring.momentum_nms(float(times[-1])), rel=1e-5)
         assert given == pytest.approx(ring.most_momentum_nms * (1.0 - exp(-3.0)), rel=1e-5)
@@ -109,7 +109,7 @@ class TestRing:
     def test_on_a_turning_body_it_is_a_gyroscope(self):
         """The torque of momentum h e at rest in the body is -omega x h e."""
         ring = FluidRing(axis=1.0)
-        late = MOMENT._replace(t_s=50.0 * ring.time_s)
+        late = MOMENT.replace(t_s=50.0 * ring.time_s)
         h = np.array([ring.most_momentum_nms, 0.0, 0.0])
         expected = -np.cross(MOMENT.omega_body_radps, h)
         np.testing.assert_allclose(ring.torque_body_nm(late), expected, atol=1e-18)

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from sim.fault_rig.currents import CurrentLimits, CurrentPulse, pulses, violations
-from sim.plant.hardware.actuators import CoilDrive
+from sim.plant.coil_drive import CoilDrive
 
 OFF = CoilDrive((0.0, 0.0, 0.0), 0.0)
 LEVELS_A = (0.025, 0.1, 0.4)

@@ -7,7 +7,7 @@ import pytest
 from sim.fault_rig.record import FaultFlightRecord
 from sim.fault_table import case
 from sim.fault_table.row import CheckVerdict, FaultRow, When
-from sim.plant.hardware.actuators import OFF
+from sim.plant.coil_drive import OFF
 
 
 class RigThatNeverFires:

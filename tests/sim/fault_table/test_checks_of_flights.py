@@ -12,7 +12,7 @@ from sim.fault_rig.record import FaultFlightRecord
 from sim.fault_table import checks
 from sim.fault_table.case import prepare
 from sim.fault_table.row import FaultRow
-from sim.plant.hardware.actuators import OFF, CoilDrive
+from sim.plant.coil_drive import OFF, CoilDrive
 
 ROW = FaultRow("planted", "", "none")
 HZ = 4

@@ -13,7 +13,7 @@ from hil_stub.coils.events import CoilEventCode
 from sim.fault_rig.record import BoardEvent, FaultFlightRecord, ReportedEvent
 from sim.fault_table import isolation, showing
 from sim.fault_table.row import FaultRow, RowFault
-from sim.plant.hardware.actuators import OFF
+from sim.plant.coil_drive import OFF
 
 HZ, ONSET = 4, 100
 MAG = FaultRow("planted", "", "none", unit="magnetometer", lasts_s=60.0)

@@ -10,7 +10,7 @@ from fsw.core.algebra.quaternion import rotate
 from fsw.wire.messages import SENDERS, CoilBoot, MagBoot, MagField, SunBoot, SunVector
 from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.faults.kinds import make
-from sim.plant.hardware.actuators import CoilDrive
+from sim.plant.coil_drive import CoilDrive
 from sim.plant.rotation import ZERO
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import load

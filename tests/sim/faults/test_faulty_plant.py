@@ -7,7 +7,7 @@ import pytest
 from fsw.wire.messages import CoilFire, Sync
 from sim.faults.fault import Fault
 from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
-from sim.plant.hardware.actuators import CoilDrive
+from sim.plant.coil_drive import CoilDrive
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import load
 

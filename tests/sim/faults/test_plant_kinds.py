@@ -21,8 +21,8 @@ from fsw.wire.messages import (
 from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.faults.kinds import make
 from sim.faults.node_kinds import count_doubles, flip, flip_bit
+from sim.plant.coil_drive import CoilDrive
 from sim.plant.config import CoilConfig, MagnetometerConfig
-from sim.plant.hardware.actuators import CoilDrive
 from sim.plant.hardware.coils import Coils
 from sim.plant.hardware.sensors import MagnetometerPhysics
 from sim.plant.rotation import ZERO

@@ -1,15 +1,14 @@
-from itertools import islice
-
 import numpy as np
 import pytest
 
-from sim.plant.random_streams import normals
+from sim.plant.random_streams import Normals
 
 COUNT = 20000
 
 
 def draw(seed, name, count=COUNT):
-    return np.array(list(islice(normals(seed, name), count)))
+    stream = Normals(seed, name)
+    return np.array([stream.next() for _ in range(count)])
 
 
 def test_a_stream_is_what_its_seed_and_name_say():
@@ -25,14 +24,14 @@ def test_another_seed_or_name_is_another_stream(seed, name):
 
 def test_drawing_from_one_stream_does_not_move_another():
     alone = draw(5, "sun_sensor", 10)
-    noise, sun = normals(5, "magnetometer"), normals(5, "sun_sensor")
-    interleaved = [(next(noise), next(noise), next(sun))[2] for _ in range(10)]
+    noise, sun = Normals(5, "magnetometer"), Normals(5, "sun_sensor")
+    interleaved = [(noise.next(), noise.next(), sun.next())[2] for _ in range(10)]
     assert (alone == interleaved).all()
 
 
 def test_numbers_are_standard_normal_floats():
     numbers = draw(5, "magnetometer")
-    assert type(next(normals(5, "magnetometer"))) is float
+    assert type(Normals(5, "magnetometer").next()) is float
     assert abs(numbers.mean()) < 4.0 / np.sqrt(COUNT)
     assert numbers.std() == pytest.approx(1.0, abs=4.0 / np.sqrt(2 * COUNT))
     assert abs(np.corrcoef(numbers[1:], numbers[:-1])[0, 1]) < 4.0 / np.sqrt(COUNT)

@@ -105,7 +105,7 @@ def test_the_momentum_of_a_driven_wheel_has_a_history_of_its_own(tmp_path, rows)
     path = tmp_path / "truth.h5"
     with TruthFile(path, rows + 5, SOURCES, wheel=True) as truth:
         for tick in range(rows):
-            truth.append(row(tick)._replace(wheel_nms=-0.25 * tick - 1.0))
+            truth.append(row(tick).replace(wheel_nms=-0.25 * tick - 1.0))
     histories = read_truth(path)
     assert_rows(histories, rows)
     assert histories["wheel_nms"].tolist() == [-0.25 * tick - 1.0 for tick in range(rows)]

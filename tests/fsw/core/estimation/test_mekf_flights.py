@@ -12,8 +12,8 @@ from fsw.core.algebra.quaternion import multiply, normalise
 from fsw.core.algebra.vector import ZERO
 from fsw.core.estimation.mekf import predict, start, update_field, update_sun
 from fsw.core.estimation.parameters import NAMES, NOTHING, OF_CELLS, Parameters
-from sim.plant.dynamics import torques
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.dynamics.torques import BodyTorque
 from sim.plant.environment.surroundings import Surroundings
 
 SECONDS = 1800
@@ -55,11 +55,8 @@ def flown(satellite, true):
         u, driven = 0.00104 * second, driven_am2(second)
         e1, b = (cos(u), sin(u), 0.0), field_t(u)
         dipole = tuple((coils @ driven + true.dipole_body_am2).tolist())
-
-        def torque(q, _, at, dipole=dipole):
-            return torques.total(inertia, q, at, dipole, true.torque_body_nm)
-
-        motion = body.step(motion, torque, [Surroundings(e1, gravity, b)] * 3, 1.0)
+        torque, around = BodyTorque(inertia, dipole, true.torque_body_nm), Surroundings(e1, gravity, b)
+        motion = body.step(motion, torque, 1.0, around, around, around)
         estimate = predict(estimate, e1, b, gravity, driven, config)
         truth = estimate._replace(
             q_body_from_eci=motion.q_body_from_eci, omega_body_radps=motion.omega_body_radps, parameters=true

@@ -7,8 +7,8 @@ from estimator_samples import angle_rad
 from fsw.core.algebra.vector import ZERO, scale
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf import predict, start
-from sim.plant.dynamics import torques
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.dynamics.torques import BodyTorque
 from sim.plant.environment.surroundings import Surroundings
 
 SLOW = (0.0011, -0.0009, 0.0013)
@@ -34,14 +34,11 @@ class TestPropagation:
         inertia = tuple(map(tuple, np.add(satellite.inertia_kgm2, error).tolist()))
         coils = np.eye(3) + np.reshape(parameters.coil_error, (3, 3))
         dipole = tuple((coils @ driven_am2 + parameters.dipole_body_am2).tolist())
-
-        def torque(q, _, at):
-            return torques.total(inertia, q, at, dipole, parameters.torque_body_nm)
-
+        torque = BodyTorque(inertia, dipole, parameters.torque_body_nm)
         body, motion = RigidBody(inertia), Motion(satellite.q, omega)
         place = Surroundings(satellite.e1_eci, satellite.gravity_ps2, satellite.b_eci_t)
         for _ in range(seconds * 20):
-            motion = body.step(motion, torque, [place] * 3, 0.05)
+            motion = body.step(motion, torque, 0.05, place, place, place)
         return motion
 
     def test_sixty_seconds_with_a_coil_driven(self, satellite):

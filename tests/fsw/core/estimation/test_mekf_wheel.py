@@ -9,6 +9,7 @@ from fsw.core.algebra.vector import ZERO
 from fsw.core.estimation.mekf import predict, start
 from fsw.core.estimation.mekf_config import mekf_config, with_wheel
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.dynamics.torques import TorqueFunction
 from sim.plant.dynamics.wheel import SpinningWheel
 from sim.plant.environment.surroundings import Surroundings
 from sim.plant.wheel_config import WheelConfig
@@ -67,14 +68,13 @@ def test_by_measured_speeds_alone_it_turns_as_the_plant(motor_nm):
     )
     motion = Motion((0.5, -0.5, 0.5, 0.5), (2e-3, -3e-3, 5e-3))
     wheel, body = SpinningWheel(config, motion.omega_body_radps), RigidBody(config.rest_of(INERTIA))
-    estimate = start(*motion, tuned())
+    estimate = start(motion.q_body_from_eci, motion.omega_body_radps, tuned())
     before = wheel.relative_nms(motion.omega_body_radps)
     for _ in range(60):
         for _ in range(10):
-            momenta, reaction = wheel.advance(motor_nm, motion.omega_body_radps, 0.1 * TICK_S)
-            motion = body.step(
-                motion, lambda q, w, around, r=reaction: r, (STILL,) * 3, 0.1 * TICK_S, momenta
-            )
+            driven = wheel.advance(motor_nm, motion.omega_body_radps, 0.1 * TICK_S)
+            torque = TorqueFunction(lambda q, omega, around, r=driven.reaction_nm: r)
+            motion = body.step(motion, torque, 0.1 * TICK_S, STILL, STILL, STILL, driven=driven)
         after = wheel.relative_nms(motion.omega_body_radps)
         step = with_wheel(tuned(), along(0.5 * (before + after)), along((before - after) / TICK_S), ZERO)
         estimate = predict(estimate, STILL.e_eci, ZERO, 0.0, ZERO, step)

@@ -7,7 +7,8 @@ from fsw.core.algebra.quaternion import conjugate, multiply, normalise, rotate
 from fsw.table.config import flight_config
 from sim.design.limits.linear_flight import LOST_DEG, LinearBody, LinearFlight, fly, law_input, orbits_of
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
-from sim.plant.dynamics.torques import gravity_gradient, magnetic
+from sim.plant.dynamics.torques import BodyTorque
+from sim.plant.environment.surroundings import Surroundings
 from sim.scenario.schema import flight_table, load
 
 START = (0.03, 0.04, -0.02)
@@ -44,15 +45,14 @@ class TestBody:
         spin = first.orbit_rate_radps * np.array(rotate(from_orbit, (0.0, 0.0, 1.0)))
         motion = Motion(multiply(first.q_orbit_from_eci, from_orbit), tuple(relative + spin))
 
-        def torque(q, omega, reference):
-            e_body = rotate(q, tuple(np.array(reference.r_eci_m) / reference.radius_m))
-            gradient = gravity_gradient(inertia, e_body, 3.0 * MU_M3PS2 / reference.radius_m**3)
-            return tuple(np.array(TORQUE) + gradient + magnetic(self.DIPOLE, rotate(q, reference.b_eci_t)))
+        def around(tick):
+            met_there = met[tick].reference
+            e = tuple((np.array(met_there.r_eci_m) / met_there.radius_m).tolist())
+            return Surroundings(e, 3.0 * MU_M3PS2 / met_there.radius_m**3, met_there.b_eci_t)
 
-        body = RigidBody(inertia)
+        body, torque = RigidBody(inertia), BodyTorque(inertia, self.DIPOLE, TORQUE)
         for tick in range(0, self.TICKS, 2):
-            around = [met[tick + later].reference for later in range(3)]
-            motion = body.step(motion, torque, around, 2.0)
+            motion = body.step(motion, torque, 2.0, around(tick), around(tick + 1), around(tick + 2))
         last = met[self.TICKS].reference
         from_orbit = multiply(conjugate(last.q_orbit_from_eci), motion.q_body_from_eci)
         spin = last.orbit_rate_radps * np.array(rotate(from_orbit, (0.0, 0.0, 1.0)))

@@ -19,7 +19,7 @@ from sim.design.theory.linear import (
 )
 from sim.plant.config import OrbitConfig
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
-from sim.plant.dynamics.torques import gravity_gradient, magnetic
+from sim.plant.dynamics.torques import TorqueFunction, gravity_gradient, magnetic
 from sim.plant.environment.field import DirectDipole
 from sim.plant.environment.orbit import CircularOrbit
 from sim.plant.environment.surroundings import Surroundings
@@ -89,7 +89,7 @@ class NonlinearPlant:
             gravity = gravity_gradient(self.inertia, e_body, around.gradient_ps2)
             return total(gravity, magnetic(m_body_am2, b_body_t))
 
-        return of
+        return TorqueFunction(of)
 
     def derivative(self, u, x):
         """dx/du at a complex state so small that only its first order counts."""
@@ -174,7 +174,7 @@ def flown_degree(plant, deviation=1e-5, steps=600):
     attitudes = {around.e_eci: q_orbit for around, q_orbit in places}
 
     def law(q_body_from_eci, omega_body_radps, around):
-        return plant.torque(attitudes[around.e_eci])(q_body_from_eci, omega_body_radps, around)
+        return plant.torque(attitudes[around.e_eci]).at(q_body_from_eci, omega_body_radps, around)
 
     def fly(x):
         q_relative = from_vector(tuple(x[3:]))
@@ -182,7 +182,7 @@ def flown_degree(plant, deviation=1e-5, steps=600):
         motion = Motion(multiply(places[0][1], q_relative), omega)
         for k in range(steps):
             around = [place[0] for place in places[2 * k : 2 * k + 3]]
-            motion = plant.rigid.step(motion, law, around, step_s)
+            motion = plant.rigid.step(motion, TorqueFunction(law), step_s, *around)
         q_relative = canonical(multiply(conjugate(places[-1][1]), motion.q_body_from_eci))
         frame_rate = transform(matrix(q_relative), (0.0, 0.0, plant.w0))
         rate = difference(motion.omega_body_radps, frame_rate)

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from sim.design.theory.side_by_side import angle_deg, in_body, quaternion_rate, step
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
-from sim.plant.dynamics.torques import magnetic
+from sim.plant.dynamics.torques import TorqueFunction, magnetic
 from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import matrix, transform
 
@@ -37,7 +37,8 @@ def test_a_step_is_the_plant_s(flight):
 
     places = [Surroundings((1.0, 0.0, 0.0), 0.0, tuple(field)) for field in FIELDS_T.tolist()]
     start = STARTS[flight].tolist()
-    plant = RigidBody(INERTIA).step(Motion(tuple(start[:4]), tuple(start[4:])), torque, places, 0.2)
+    motion = Motion(tuple(start[:4]), tuple(start[4:]))
+    plant = RigidBody(INERTIA).step(motion, TorqueFunction(torque), 0.2, *places)
     ours = step(rates, STARTS, FIELDS_T, 0.2)[flight]
     np.testing.assert_allclose(ours, (*plant.q_body_from_eci, *plant.omega_body_radps), rtol=0.0, atol=1e-14)
 

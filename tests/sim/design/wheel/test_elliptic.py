@@ -11,8 +11,8 @@ from fsw.core.laws.wheel.six_gain import SixGainGains, six_gain_dipole
 from sim.design.theory.bodies import Body, diagonal
 from sim.design.theory.linear import free_motion
 from sim.design.wheel.elliptic import Ellipse, WheelLaw, decays, roll_yaw_motion
-from sim.plant.dynamics import torques
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.dynamics.torques import BodyTorque, TorqueFunction
 from sim.plant.environment.surroundings import Surroundings
 
 BODY = Body("wheeled", diagonal((1.4, 1.6, 1.9)), 2100.0, 75.0, (0.0, 0.0, 0.02))
@@ -35,11 +35,11 @@ def plant_rates(nu, state):
         b1, b2, _ = c @ b_eci
         motion = RollYaw(roll, yaw, omega[1] - w * yaw, omega[0] + w * roll)
         m = six_gain_dipole((b1, b2, 0.0), motion, LAW.k1, LAW.k3, LAW.others)
-        return torques.total(BODY.inertia_kgm2, q, around, m, (0.0, 0.0, 0.0))
+        return BodyTorque(BODY.inertia_kgm2, m).at(q, omega, around)
 
     around = Surroundings((1.0, 0.0, 0.0), 3.0 * n * n * near**3, tuple(b_eci.tolist()))
     body = RigidBody(BODY.inertia_kgm2, BODY.wheel_nms)
-    _, (r1, r2, _) = body.rates(Motion(q, (n * first, n * second, w)), torque, around)
+    _, (r1, r2, _) = body.rates(Motion(q, (n * first, n * second, w)), TorqueFunction(torque), around)
     return np.array([n * first + w * roll, n * second - w * yaw, r1 / n, r2 / n]) / w
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from sim.plant.dynamics import torques
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.dynamics.torques import BodyTorque, TorqueFunction
 from sim.plant.environment.orbit import MU_M3PS2
 from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import ZERO, normalise
@@ -24,6 +24,10 @@ def two_body(r0_m, v0_mps, times):
 
     span = (0.0, times[-1])
     return solve_ivp(rates, span, [*r0_m, *v0_mps], "DOP853", times, rtol=1e-12, atol=1e-6).y[:3].T
+
+
+def constant(torque_nm):
+    return TorqueFunction(lambda q, omega, around: torque_nm)
 
 
 @dataclass
@@ -57,16 +61,14 @@ class Case:
         body, motion = RigidBody(self.inertia), self.start
         _, around = self.around(step_s, rows)
 
-        def torque(q, omega, place):
-            return torques.total(self.inertia, q, place, self.dipole, ZERO)
-
+        torque = BodyTorque(self.inertia, self.dipole)
         history = [motion]
         steps = round(ROW_S / step_s)
         for step in range(rows * steps):
-            motion = body.step(motion, torque, around[2 * step : 2 * step + 3], step_s)
+            motion = body.step(motion, torque, step_s, *around[2 * step : 2 * step + 3])
             if (step + 1) % steps == 0:
                 history.append(motion)
-        return np.array([m[0] for m in history]), np.array([m[1] for m in history])
+        return np.array([m.q_body_from_eci for m in history]), np.array([m.omega_body_radps for m in history])
 
 
 @pytest.fixture(scope="module")
@@ -143,7 +145,7 @@ def test_a_constant_torque_about_a_principal_axis_spins_it_up():
     nowhere = Surroundings((1.0, 0.0, 0.0), 0.0, ZERO)
     motion = Motion((1.0, 0.0, 0.0, 0.0), ZERO)
     for _ in range(100):
-        motion = body.step(motion, lambda q, omega, place: (0.0, 0.0, 0.02), [nowhere] * 3, 0.1)
+        motion = body.step(motion, constant((0.0, 0.0, 0.02)), 0.1, nowhere, nowhere, nowhere)
     assert motion.omega_body_radps == pytest.approx((0.0, 0.0, 0.04))
     assert motion.q_body_from_eci == pytest.approx((np.cos(0.1), 0.0, 0.0, np.sin(0.1)))  # angle 0.2
 
@@ -158,6 +160,6 @@ def test_the_inverse_of_a_full_inertia_tensor():
     torque = np.array([0.03, -0.01, 0.02])
     step_s = 1e-6
     motion = RigidBody(inertia).step(
-        Motion((1.0, 0.0, 0.0, 0.0), ZERO), lambda q, omega, place: tuple(torque), [nowhere] * 3, step_s
+        Motion((1.0, 0.0, 0.0, 0.0), ZERO), constant(tuple(torque)), step_s, nowhere, nowhere, nowhere
     )
     assert np.array(motion.omega_body_radps) / step_s == pytest.approx(np.linalg.solve(inertia, torque))

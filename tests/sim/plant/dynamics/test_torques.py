@@ -3,7 +3,7 @@ import pytest
 
 from sim.plant.dynamics import torques
 from sim.plant.environment.surroundings import Surroundings
-from sim.plant.rotation import from_vector, matrix, transform
+from sim.plant.rotation import ZERO, from_vector, matrix, transform
 
 J = ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95))
 Q = from_vector((0.4, -0.7, 1.1))
@@ -40,7 +40,9 @@ def test_the_total_is_the_sum_of_the_sources():
     c = matrix(Q)
     e_body, b_body = transform(c, AROUND.e_eci), transform(c, AROUND.b_eci_t)
     parts = [torques.gravity_gradient(J, e_body, 3.2e-6), torques.magnetic(DIPOLE, b_body), BIAS]
-    assert torques.total(J, Q, AROUND, DIPOLE, BIAS) == pytest.approx(np.sum(parts, axis=0), rel=1e-12)
+    assert torques.BodyTorque(J, DIPOLE, BIAS).at(Q, ZERO, AROUND) == pytest.approx(
+        np.sum(parts, axis=0), rel=1e-12
+    )
 
 
 def test_eddy_currents_by_the_identity_of_the_double_product():

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
+from sim.plant.dynamics.torques import TorqueFunction
 from sim.plant.dynamics.wheel import SpinningWheel
 from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import ZERO, matrix
@@ -21,14 +22,18 @@ def wheel(**parts):
     return WheelConfig(AXIS, **values)
 
 
+def reaction(driven):
+    return TorqueFunction(lambda q, omega, around: driven.reaction_nm)
+
+
 def flown(config, asked_nm, seconds, step_s=0.25, omega=(0.02, -0.03, 0.05), motion=None):
     """SpinningWheel and body without other torques: the wheel, and rows of (motion, relative momentum)."""
     motion = motion or Motion((0.5, -0.5, 0.5, 0.5), omega)
     unit, body = SpinningWheel(config, motion.omega_body_radps), RigidBody(config.rest_of(INERTIA))
     rows = [(motion, unit.relative_nms(motion.omega_body_radps))]
     for _ in range(round(seconds / step_s)):
-        momenta, reaction = unit.advance(asked_nm, motion.omega_body_radps, step_s)
-        motion = body.step(motion, lambda q, w, around, r=reaction: r, (STILL,) * 3, step_s, momenta)
+        driven = unit.advance(asked_nm, motion.omega_body_radps, step_s)
+        motion = body.step(motion, reaction(driven), step_s, STILL, STILL, STILL, driven=driven)
         rows.append((motion, unit.relative_nms(motion.omega_body_radps)))
     return rows
 
@@ -54,12 +59,10 @@ def test_a_torque_about_a_principal_axis_turns_the_body_the_other_way():
     config = WheelConfig((0.0, 0.0, 1.0), inertia_kgm2=0.5, max_torque_nm=0.1, max_momentum_nms=1.0)
     unit = SpinningWheel(config, ZERO)
     sphere = ((2.0, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, 0.0, 2.0))
-    momenta, reaction = unit.advance(0.03, ZERO, 2.0)
-    body = RigidBody(config.rest_of(sphere))
-    motion = body.step(
-        Motion((1.0, 0.0, 0.0, 0.0), ZERO), lambda q, w, around: reaction, (STILL,) * 3, 2.0, momenta
-    )
-    assert reaction == pytest.approx((0.0, 0.0, -0.03))
+    driven = unit.advance(0.03, ZERO, 2.0)
+    body, start = RigidBody(config.rest_of(sphere)), Motion((1.0, 0.0, 0.0, 0.0), ZERO)
+    motion = body.step(start, reaction(driven), 2.0, STILL, STILL, STILL, driven=driven)
+    assert driven.reaction_nm == pytest.approx((0.0, 0.0, -0.03))
     assert motion.omega_body_radps == pytest.approx((0.0, 0.0, -0.06 / 1.5))
     assert unit.relative_nms(motion.omega_body_radps) == pytest.approx(0.06 + 0.5 * 0.04)
 

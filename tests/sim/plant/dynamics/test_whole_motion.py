@@ -94,7 +94,7 @@ def test_ten_minutes_of_everything_at_once(make_plant, make_config, rotation_ang
         "max_substep_s": 0.25,
     }
     plant, model = make_plant(**parts), Model(make_config(**parts))
-    q, w = plant.motion
+    q, w = plant.motion.q_body_from_eci, plant.motion.omega_body_radps
     solved = solve_ivp(model.rates, (0.0, SECONDS), [*q, *w], "DOP853", rtol=1e-10, atol=1e-13, max_step=20.0)
     driven = []
     for _ in range(SECONDS):

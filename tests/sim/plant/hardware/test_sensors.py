@@ -183,14 +183,14 @@ class TestLatency:
         slope, start = np.array([2.0, -3.0, 0.5]), np.array([7.0, 1.0, -4.0])
         for tick in range(60):
             t = tick / tick_hz
-            shown = delay(tuple(start + slope * t))
+            shown = delay.take(tuple(start + slope * t))
             assert shown == pytest.approx(start + slope * max(0.0, t - latency_s), abs=0.51 / tick_hz * 3.0)
             if t >= latency_s + 1.0 / tick_hz:
                 assert shown == pytest.approx(start + slope * (t - latency_s), abs=1e-9)
 
     def test_before_the_first_sample_there_is_the_first(self):
         delay = Delay(3.0, 1)
-        assert [delay((float(k), 1.0)) for k in range(6)] == [
+        assert [delay.take((float(k), 1.0)) for k in range(6)] == [
             *[(0.0, 1.0)] * 4,
             (1.0, 1.0),
             (2.0, 1.0),
@@ -198,7 +198,7 @@ class TestLatency:
 
     def test_between_samples_a_jump_is_shared_out(self):
         delay = Delay(0.25, 1)
-        assert [delay((value,)) for value in (0.0, 0.0, 8.0, 8.0)] == [(0.0,), (0.0,), (6.0,), (8.0,)]
+        assert [delay.take((value,)) for value in (0.0, 0.0, 8.0, 8.0)] == [(0.0,), (0.0,), (6.0,), (8.0,)]
 
     def test_the_field_is_late_and_the_noise_is_not(self):
         """What is read is the field of then under the errors of now."""
