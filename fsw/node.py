@@ -5,6 +5,7 @@ from enum import Enum, auto
 from typing import Self
 
 from fsw.core.config import FlightConfig
+from fsw.core.packing import copy_state
 from fsw.core.state import FlightState, Inbox
 from fsw.core.step import boot, step, takes_inbox
 from fsw.core.telemetry import boot_frame
@@ -73,15 +74,15 @@ class FlightNode:
     def copy(self) -> Self:
         """An independent copy of the node in its present state."""
         other = copy(self)
+        other.state = copy_state(self.state)
         other._inbox = self._inbox.copy()
         return other
 
     def _answer(self, sync: Sync) -> tuple[Frame, ...]:
         """One step; the frames of the boards are stored until a SYNC consumes them."""
-        before = self.state
-        inbox = Inbox(sync.tick, sync.unix_time_s, tuple(self._inbox))
-        self.state, outbox = step(before, inbox, self.config)
-        if takes_inbox(before, self.state, self.config.leap_ticks):
+        before = self.state.tick
+        outbox = step(self.state, Inbox(sync.tick, sync.unix_time_s, tuple(self._inbox)), self.config)
+        if takes_inbox(before, self.state.tick, self.config.leap_ticks):
             self._inbox = []
         if outbox:
             self.end = End.NO

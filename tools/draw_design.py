@@ -228,7 +228,7 @@ def modes() -> str:
     transitions: dict[tuple[Mode, Mode], list[str]] = {}
     for row in TABLE:
         seconds = dwell_s.get(row.dwell)
-        label = row.condition.replace("_", " ") + (f" for {seconds:g} s" if seconds else "")
+        label = row.condition.name.lower().replace("_", " ") + (f" for {seconds:g} s" if seconds else "")
         transitions.setdefault((row.source, row.target), []).append(label)
     order = list(Mode)
     spans = {pair: order.index(pair[1]) - order.index(pair[0]) for pair in transitions}

@@ -1,12 +1,12 @@
 """Telecommands: what the ground may change in flight.
 
-Each is carried out whole or refused whole, in the order of arrival, and answered by one TC_ACK. One with the
-counter of the one before it is not carried out again, but is still answered.
+Each is carried out whole or, with nothing changed, refused whole, in the order of arrival, and answered by
+one TC_ACK. One with the counter of the one before it is not carried out again, but is still answered.
 """
 
 from collections.abc import Callable
 from math import sqrt
-from typing import Any, NamedTuple
+from typing import Any, final
 
 from fsw.core import modes
 from fsw.core.algebra.vector import positive_definite
@@ -47,22 +47,23 @@ from fsw.wire.messages import (
 )
 
 
-class Situation(NamedTuple):
+@final
+class Situation:
     """What a telecommand is judged by besides the state."""
 
-    violated: Monitor | None
-    config: FlightConfig
+    __slots__ = ("config", "violated")
 
+    def __init__(self, violated: Monitor | None, config: FlightConfig) -> None:
+        self.violated = violated
+        self.config = config
 
-Outcome = FlightState | TcAckResult
-"""The state after a telecommand that was carried out, or why it was not."""
 
 LAW_NAMES = {law.number: name for name, law in LAWS.items()}
 
 
 def command(
     state: FlightState, measurements: Measurements, violated: Monitor | None, config: FlightConfig
-) -> tuple[FlightState, list[TcAck]]:
+) -> list[TcAck]:
     """Carry out the telecommands of this tick.
 
     Args:
@@ -72,17 +73,15 @@ def command(
         config: the onboard tables.
 
     Returns:
-        The state, and an acknowledgement of each telecommand.
+        An acknowledgement of each telecommand.
     """
     situation = Situation(violated, config)
     acks = []
     for message in measurements.telecommands:
-        outcome = HANDLERS[type(message)](state, message, situation)
-        if isinstance(outcome, FlightState):
-            state, outcome = outcome, TcAckResult.ACCEPTED
-        acks.append(_ack(message, outcome, state.tick))
-    acks += [_ack(message, TcAckResult.REPEATED, state.tick) for message in measurements.repeated]
-    return state, acks
+        acks.append(_ack(message, HANDLERS[type(message)](state, message, situation), state.tick))
+    for message in measurements.repeated:
+        acks.append(_ack(message, TcAckResult.REPEATED, state.tick))
+    return acks
 
 
 def decimal(mantissa: int, exponent: int) -> float:
@@ -94,40 +93,45 @@ def _ack(message: Telecommand, result: TcAckResult, tick: int) -> TcAck:
     return TcAck(result=result, command=message.ID, command_counter=message.counter, tick=tick)
 
 
-def _mode(state: FlightState, message: TcMode, situation: Situation) -> Outcome:
+def _mode(state: FlightState, message: TcMode, situation: Situation) -> TcAckResult:
     """SAFE at any time; out of it when all is well, but for a rate that DETUMBLE is to end.
 
     To a law that needs the attitude while it is valid.
     """
     if message.mode not in list(Mode):
         return TcAckResult.UNKNOWN
-    mode, now = Mode(message.mode), state.modes
-    free = now.trips < situation.config.modes.trips_to_stay_safe and not trips(situation.violated, mode)
+    mode = Mode(message.mode)
+    free = state.modes.trips < situation.config.modes.trips_to_stay_safe and not trips(
+        situation.violated, mode
+    )
     needs_attitude = mode in (Mode.ACQUIRE, Mode.POINT)
     if mode is not Mode.SAFE and not (free and (state.attitude.valid or not needs_attitude)):
         return TcAckResult.NOT_ALLOWED
-    return state._replace(modes=modes.request_mode(now, mode, state.tick))
+    modes.request_mode(state.modes, mode, state.tick)
+    return TcAckResult.ACCEPTED
 
 
-def _clear(state: FlightState, message: TcClear, situation: Situation) -> Outcome:
+def _clear(state: FlightState, message: TcClear, situation: Situation) -> TcAckResult:
     """Forget the trips, trust every sensor again and use every coil, also its gain if it was isolated."""
-    estimator = untraced(state.estimator)
+    state.estimator = untraced(state.estimator)
     for coil, fault in enumerate(state.health.coils.faults):
         if fault:
-            estimator = with_unknown_gain(estimator, coil, situation.config.estimator.mekf)
-    return state._replace(modes=state.modes._replace(trips=0), health=Health(), estimator=estimator)
+            state.estimator = with_unknown_gain(state.estimator, coil, situation.config.estimator.mekf)
+    state.modes.trips = 0
+    state.health = Health()
+    return TcAckResult.ACCEPTED
 
 
-def _law(state: FlightState, message: TcLaw, situation: Situation) -> Outcome:
+def _law(state: FlightState, message: TcLaw, situation: Situation) -> TcAckResult:
     """A new law begins without memory; the current one, commanded again, keeps its own."""
     own = situation.config.control.own
     name = own.name if own is not None and message.law == OWN_NUMBER else LAW_NAMES.get(message.law)
     config = situation.config.control
     if name is None or (name in LAWS and not _can_fly(LAWS[name], config)):
         return TcAckResult.UNKNOWN
-    if name == state.setpoint.law:
-        return state
-    return state._replace(setpoint=state.setpoint._replace(law=name), memory=())
+    if name != state.setpoint.law:
+        state.setpoint, state.memory = state.setpoint._replace(law=name), ()
+    return TcAckResult.ACCEPTED
 
 
 def _can_fly(law: LawEntry, config: ControlConfig) -> bool:
@@ -135,33 +139,36 @@ def _can_fly(law: LawEntry, config: ControlConfig) -> bool:
     return is_met(law.needs, config.pulsed, config.wheel_body_nms, axis_body)
 
 
-def _spin(state: FlightState, message: TcSpin, situation: Situation) -> Outcome:
+def _spin(state: FlightState, message: TcSpin, situation: Situation) -> TcAckResult:
     if abs(message.spin) > MAX_SPIN_RADPS:
         return TcAckResult.OUT_OF_RANGE
-    return state._replace(setpoint=state.setpoint._replace(spin_radps=message.spin))
+    state.setpoint = state.setpoint._replace(spin_radps=message.spin)
+    return TcAckResult.ACCEPTED
 
 
-def _gain(state: FlightState, message: TcGain, situation: Situation) -> Outcome:
+def _gain(state: FlightState, message: TcGain, situation: Situation) -> TcAckResult:
     if message.gain not in list(Gain):
         return TcAckResult.UNKNOWN
     value = decimal(message.mantissa, message.exponent)
     if message.mantissa < 0 or value > MAX_GAIN:
         return TcAckResult.OUT_OF_RANGE
     changed: dict[str, Any] = {Gain(message.gain).name.lower(): value}
-    return state._replace(setpoint=state.setpoint._replace(**changed))
+    state.setpoint = state.setpoint._replace(**changed)
+    return TcAckResult.ACCEPTED
 
 
-def _element(state: FlightState, message: TcOrbitElement, situation: Situation) -> Outcome:
+def _element(state: FlightState, message: TcOrbitElement, situation: Situation) -> TcAckResult:
     if message.element not in list(Element):
         return TcAckResult.UNKNOWN
     element, value = Element(message.element), decimal(message.mantissa, message.exponent)
     low, high = RANGES[element]
     if not low <= value <= high:
         return TcAckResult.OUT_OF_RANGE
-    return state._replace(upload=state.upload.with_element(element, value))
+    state.upload = state.upload.with_element(element, value)
+    return TcAckResult.ACCEPTED
 
 
-def _load(state: FlightState, message: TcOrbitLoad, situation: Situation) -> Outcome:
+def _load(state: FlightState, message: TcOrbitLoad, situation: Situation) -> TcAckResult:
     """Together the elements must describe a low orbit with a position around this tick.
 
     A batch of samples for a start begins anew: what was modelled of each is of the orbit before.
@@ -176,11 +183,12 @@ def _load(state: FlightState, message: TcOrbitLoad, situation: Situation) -> Out
     window = advance(None, state.tick, with_orbit(situation.config.ephemeris, elements))
     if window is None:
         return TcAckResult.OUT_OF_RANGE
-    estimator = state.estimator._replace(batch=EMPTY)
-    return state._replace(orbit=elements, upload=Upload(), ephemeris=window, estimator=estimator)
+    state.orbit, state.upload, state.ephemeris = elements, Upload(), window
+    state.estimator = state.estimator._replace(batch=EMPTY)
+    return TcAckResult.ACCEPTED
 
 
-def _parameter(state: FlightState, message: TcParameter, situation: Situation) -> Outcome:
+def _parameter(state: FlightState, message: TcParameter, situation: Situation) -> TcAckResult:
     """The filter continues from this value, and restarts from it; the inertia must stay positive definite.
 
     An implausible value is refused: the filter would restart from it again and again and never be trusted.
@@ -199,14 +207,16 @@ def _parameter(state: FlightState, message: TcParameter, situation: Situation) -
     inertias = [estimated_inertia(config.mekf.rotor, parameters) for parameters in held if parameters]
     if not all(map(positive_definite, inertias)):
         return TcAckResult.OUT_OF_RANGE
-    return state._replace(estimator=loaded)
+    state.estimator = loaded
+    return TcAckResult.ACCEPTED
 
 
-def _freeze(state: FlightState, message: TcFreeze, situation: Situation) -> Outcome:
-    return state._replace(estimator=freeze(state.estimator) if message.frozen else thaw(state.estimator))
+def _freeze(state: FlightState, message: TcFreeze, situation: Situation) -> TcAckResult:
+    state.estimator = freeze(state.estimator) if message.frozen else thaw(state.estimator)
+    return TcAckResult.ACCEPTED
 
 
-Handler = Callable[[FlightState, Any, Situation], Outcome]
+Handler = Callable[[FlightState, Any, Situation], TcAckResult]
 
 HANDLERS: dict[type[Telecommand], Handler] = {
     TcMode: _mode,

@@ -5,10 +5,12 @@ that is a code, and the event alone where it is a quantity: the reports of a jit
 restarts, are one kind.
 """
 
+from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import NamedTuple
+from typing import final
 
 from fsw.wire.messages import Severity
+from fsw.wire.value import Value
 
 
 class Event(IntEnum):
@@ -50,11 +52,16 @@ SEVERITY: dict[Event, Severity] = {
 }
 
 
-class Happening(NamedTuple):
+@final
+class Happening(Value):
     """An event to report, with its argument."""
 
-    event: Event
-    argument: int
+    FIELDS = ("event", "argument")
+    __slots__ = FIELDS
+
+    def __init__(self, event: Event, argument: int) -> None:
+        self.event = event
+        self.argument = argument
 
 
 QUANTITIES = frozenset(
@@ -71,40 +78,45 @@ MOST_KINDS = 32
 """Kinds remembered at once; events of further kinds are suppressed."""
 
 
-class LastReport(NamedTuple):
+@final
+class LastReport(Value):
     """A kind of event, and the tick in which it was last reported."""
 
-    event: int
-    argument: int
-    tick: int
+    FIELDS = ("event", "argument", "tick")
+    __slots__ = FIELDS
+
+    def __init__(self, event: int, argument: int, tick: int) -> None:
+        self.event = event
+        self.argument = argument
+        self.tick = tick
 
 
-class Throttle(NamedTuple):
+@final
+@dataclass(slots=True)
+class Throttle:
     """The kinds reported recently, and the number of events suppressed since boot."""
 
-    reported: tuple[LastReport, ...] = ()
+    reported: list[LastReport] = field(default_factory=list)
     held_back: int = 0
 
 
 def throttle_events(
-    state: Throttle, happenings: list[Happening], tick: int, spacing_ticks: int
-) -> tuple[Throttle, list[Happening]]:
-    """The events that may be reported in this tick.
-
-    Returns:
-        The state with the reported kinds and the count, and the happenings to report, in their order.
-    """
+    throttle: Throttle, happenings: list[Happening], tick: int, spacing_ticks: int
+) -> list[Happening]:
+    """The events that may be reported in this tick, in their order; notes them, and counts the others."""
     if not happenings:
-        return state, happenings
-    reported = [kind for kind in state.reported if tick - kind.tick < spacing_ticks]
+        return happenings
+    reported = [kind for kind in throttle.reported if tick - kind.tick < spacing_ticks]
     recent = {(kind.event, kind.argument) for kind in reported}
     passed = []
     for happening in happenings:
-        argument = 0 if happening.event in QUANTITIES else happening.argument
-        kind = (int(happening.event), argument)
-        if kind in recent or len(reported) >= MOST_KINDS:
+        argument = 0 if happening.event in QUANTITIES else int(happening.argument)
+        event = int(happening.event)
+        if (event, argument) in recent or len(reported) >= MOST_KINDS:
             continue
-        recent.add(kind)
-        reported.append(LastReport(kind[0], int(kind[1]), tick))
+        recent.add((event, argument))
+        reported.append(LastReport(event, argument, tick))
         passed.append(happening)
-    return Throttle(tuple(reported), state.held_back + len(happenings) - len(passed)), passed
+    throttle.reported = reported
+    throttle.held_back += len(happenings) - len(passed)
+    return passed

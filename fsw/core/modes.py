@@ -5,49 +5,55 @@ its dwell time is taken. Hysteresis lies in the conditions: the limits to leave 
 to enter it.
 """
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import final
 
 from fsw.core.algebra.vector import norm
 from fsw.core.estimation.attitude import Attitude
 from fsw.wire.messages import Mode
 
 
-class ModeConditions(NamedTuple):
-    """The conditions of the table, evaluated once a tick."""
+class Condition(IntEnum):
+    """The conditions of the table, by their place among those of a tick."""
 
-    tripped: bool
-    clear: bool
-    lost_attitude: bool
-    blind: bool
-    slow: bool
-    fast: bool
-    near: bool
-    far: bool
+    TRIPPED = 0
+    CLEAR = 1
+    LOST_ATTITUDE = 2
+    BLIND = 3
+    SLOW = 4
+    FAST = 5
+    NEAR = 6
+    FAR = 7
 
 
-class Transition(NamedTuple):
+Conditions = tuple[bool, ...]
+"""Which hold in a tick, by ``Condition``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Transition:
     """A transition: taken when ``condition`` has held for the dwell of that name."""
 
     source: Mode
     target: Mode
-    condition: str
+    condition: Condition
     dwell: str
 
 
 TABLE: tuple[Transition, ...] = (
-    Transition(Mode.SAFE, Mode.DETUMBLE, "clear", "recover_s"),
-    Transition(Mode.DETUMBLE, Mode.SAFE, "tripped", "none_s"),
-    Transition(Mode.DETUMBLE, Mode.SAFE, "blind", "lose_s"),
-    Transition(Mode.DETUMBLE, Mode.ACQUIRE, "slow", "settle_s"),
-    Transition(Mode.ACQUIRE, Mode.SAFE, "tripped", "none_s"),
-    Transition(Mode.ACQUIRE, Mode.DETUMBLE, "fast", "settle_s"),
-    Transition(Mode.ACQUIRE, Mode.DETUMBLE, "lost_attitude", "lose_s"),
-    Transition(Mode.ACQUIRE, Mode.POINT, "near", "hold_s"),
-    Transition(Mode.POINT, Mode.SAFE, "tripped", "none_s"),
-    Transition(Mode.POINT, Mode.DETUMBLE, "fast", "settle_s"),
-    Transition(Mode.POINT, Mode.DETUMBLE, "lost_attitude", "lose_s"),
-    Transition(Mode.POINT, Mode.ACQUIRE, "far", "hold_s"),
+    Transition(Mode.SAFE, Mode.DETUMBLE, Condition.CLEAR, "recover_s"),
+    Transition(Mode.DETUMBLE, Mode.SAFE, Condition.TRIPPED, "none_s"),
+    Transition(Mode.DETUMBLE, Mode.SAFE, Condition.BLIND, "lose_s"),
+    Transition(Mode.DETUMBLE, Mode.ACQUIRE, Condition.SLOW, "settle_s"),
+    Transition(Mode.ACQUIRE, Mode.SAFE, Condition.TRIPPED, "none_s"),
+    Transition(Mode.ACQUIRE, Mode.DETUMBLE, Condition.FAST, "settle_s"),
+    Transition(Mode.ACQUIRE, Mode.DETUMBLE, Condition.LOST_ATTITUDE, "lose_s"),
+    Transition(Mode.ACQUIRE, Mode.POINT, Condition.NEAR, "hold_s"),
+    Transition(Mode.POINT, Mode.SAFE, Condition.TRIPPED, "none_s"),
+    Transition(Mode.POINT, Mode.DETUMBLE, Condition.FAST, "settle_s"),
+    Transition(Mode.POINT, Mode.DETUMBLE, Condition.LOST_ATTITUDE, "lose_s"),
+    Transition(Mode.POINT, Mode.ACQUIRE, Condition.FAR, "hold_s"),
 )
 
 _ROWS_FROM = {mode: [(i, row) for i, row in enumerate(TABLE) if row.source is mode] for mode in Mode}
@@ -70,7 +76,9 @@ class ModeConfig:
     trips_to_stay_safe: int
 
 
-class ModeState(NamedTuple):
+@final
+@dataclass(slots=True)
+class ModeState:
     """The mode, since when, and since when each row's condition has held (-1: it does not).
 
     ``held``: the ground has commanded SAFE, and no transition leaves it.
@@ -78,19 +86,19 @@ class ModeState(NamedTuple):
 
     mode: Mode = Mode.SAFE
     since_tick: int = 0
-    held_since: tuple[int, ...] = (-1,) * len(TABLE)
+    held_since: list[int] = field(default_factory=lambda: [-1] * len(TABLE))
     trips: int = 0
     held: bool = False
 
 
-def judge(
+def judge_conditions(
     attitude: Attitude,
     spin_radps: float,
     tripped: bool,
     can_act: bool,
     state: ModeState,
     config: ModeConfig,
-) -> ModeConditions:
+) -> Conditions:
     """The conditions of the table at this tick; rates are relative to the spin of the setpoint.
 
     ``can_act``: the magnetometer is not isolated, or the law needs no field; otherwise, and without an
@@ -102,38 +110,42 @@ def judge(
     rate = norm((w1 - spin_radps, w2, w3))
     valid = attitude.valid
     blind = not (valid or can_act)
-    return ModeConditions(
-        tripped=tripped,
-        clear=not (tripped or blind or state.held) and state.trips < config.trips_to_stay_safe,
-        lost_attitude=not valid,
-        blind=blind,
-        slow=valid and rate < config.slow_radps,
-        fast=valid and rate > config.fast_radps,
-        near=valid and cosine > config.near_cosine,
-        far=valid and cosine < config.far_cosine,
+    return (
+        tripped,
+        not (tripped or blind or state.held) and state.trips < config.trips_to_stay_safe,
+        not valid,
+        blind,
+        valid and rate < config.slow_radps,
+        valid and rate > config.fast_radps,
+        valid and cosine > config.near_cosine,
+        valid and cosine < config.far_cosine,
     )
 
 
-def advance(state: ModeState, situation: ModeConditions, tick: int, config: ModeConfig) -> ModeState:
-    """The mode after this tick. At most one transition a tick; the dwell times restart in a new mode."""
-    held = [-1] * len(TABLE)
-    trips = state.trips + (situation.tripped and state.mode is not Mode.SAFE)
+def advance(state: ModeState, conditions: Conditions, tick: int, config: ModeConfig) -> None:
+    """Take at most one transition in this tick; the dwell times restart in a new mode."""
+    if conditions[Condition.TRIPPED] and state.mode is not Mode.SAFE:
+        state.trips += 1
     for index, row in _ROWS_FROM[state.mode]:
-        if not getattr(situation, row.condition):
+        if not conditions[row.condition]:
+            state.held_since[index] = -1
             continue
-        held[index] = state.held_since[index]
-        if held[index] < 0:
-            held[index] = tick
-        if tick - held[index] >= config.dwell_ticks[index]:
-            return ModeState(row.target, tick, (-1,) * len(TABLE), trips)
-    if trips == state.trips and held == list(state.held_since):
-        return state
-    return ModeState(state.mode, state.since_tick, tuple(held), trips, state.held)
+        if state.held_since[index] < 0:
+            state.held_since[index] = tick
+        if tick - state.held_since[index] >= config.dwell_ticks[index]:
+            enter(state, row.target, tick)
+            return
 
 
-def request_mode(state: ModeState, mode: Mode, tick: int) -> ModeState:
-    """The mode that the ground commands; a commanded SAFE is held."""
-    held = mode is Mode.SAFE
-    if mode is state.mode:
-        return state._replace(held=held)
-    return ModeState(mode, tick, trips=state.trips, held=held)
+def enter(state: ModeState, mode: Mode, tick: int) -> None:
+    """Begin a mode: no condition has held in it yet, and a SAFE is not held."""
+    state.mode, state.since_tick = mode, tick
+    state.held_since = [-1] * len(TABLE)
+    state.held = False
+
+
+def request_mode(state: ModeState, mode: Mode, tick: int) -> None:
+    """Begin the mode that the ground commands, if it is another; a commanded SAFE is held."""
+    if mode is not state.mode:
+        enter(state, mode, tick)
+    state.held = mode is Mode.SAFE

@@ -10,11 +10,13 @@ The purpose of each is in ``docs/requirements.md``.
 from collections.abc import Callable
 from enum import IntEnum
 from math import isfinite
-from typing import NamedTuple
+from typing import final
 
+from fsw.core.algebra.quaternion import Quaternion
 from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation.attitude import Attitude, rate_bounded
 from fsw.wire.messages import Mode
+from fsw.wire.value import Value
 
 
 class Monitor(IntEnum):
@@ -31,24 +33,49 @@ class Monitor(IntEnum):
     NO_SECOND_SENDER = 9
 
 
-class MonitorInput(NamedTuple):
+@final
+class MonitorInput(Value):
     """The inputs of the monitors in one tick."""
 
-    attitude: Attitude
-    owed_impulse_body_nms: Vec3
-    field_age_ticks: int
-    status_age_ticks: int
-    unexpected_drive: bool
-    orbit_known: bool
-    second_sender: bool
-    stale_after_ticks: int
+    FIELDS = (
+        "attitude",
+        "owed_impulse_body_nms",
+        "field_age_ticks",
+        "status_age_ticks",
+        "unexpected_drive",
+        "orbit_known",
+        "second_sender",
+        "stale_after_ticks",
+    )
+    __slots__ = FIELDS
+
+    def __init__(
+        self,
+        attitude: Attitude,
+        owed_impulse_body_nms: Vec3,
+        field_age_ticks: int,
+        status_age_ticks: int,
+        unexpected_drive: bool,
+        orbit_known: bool,
+        second_sender: bool,
+        stale_after_ticks: int,
+    ) -> None:
+        self.attitude = attitude
+        self.owed_impulse_body_nms = owed_impulse_body_nms
+        self.field_age_ticks = field_age_ticks
+        self.status_age_ticks = status_age_ticks
+        self.unexpected_drive = unexpected_drive
+        self.orbit_known = orbit_known
+        self.second_sender = second_sender
+        self.stale_after_ticks = stale_after_ticks
 
 
 UNIT_TOLERANCE = 1e-6
 """How far the square of the quaternion's norm may be off."""
 
 
-def _square(q0: float, q1: float, q2: float, q3: float) -> float:
+def _square(q: Quaternion) -> float:
+    q0, q1, q2, q3 = q
     return q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3
 
 
@@ -59,7 +86,7 @@ MONITORS: tuple[tuple[Monitor, Callable[[MonitorInput], bool]], ...] = (
     ),
     (
         Monitor.QUATERNION_UNIT,
-        lambda w: abs(_square(*w.attitude.q_body_from_orbit) - 1.0) < UNIT_TOLERANCE,
+        lambda w: abs(_square(w.attitude.q_body_from_orbit) - 1.0) < UNIT_TOLERANCE,
     ),
     (Monitor.OWED_FINITE, lambda w: isfinite(sum(w.owed_impulse_body_nms))),
     (Monitor.FIELD_FRESH, lambda w: w.field_age_ticks < w.stale_after_ticks),

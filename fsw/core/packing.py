@@ -1,4 +1,4 @@
-"""A state as bytes: every field of every part finds its own way in, so that none can be left out.
+"""A state as bytes, and copied: every field of every part finds its own way, so that none can be left out.
 
 What each class consists of is looked up once. Its fields count in alphabetical order, an array by its shape
 and numbers, whatever its layout in memory, a member of an enumeration by its value. The bytes are those of
@@ -12,13 +12,15 @@ from enum import Enum
 from functools import cache
 from operator import attrgetter
 from types import UnionType
-from typing import Any, Final, Union, final, get_args, get_origin, get_type_hints
+from typing import Any, Final, TypeVar, Union, final, get_args, get_origin, get_type_hints
 from zlib import crc32
 
 import numpy as np
 
 _MARSHAL_VERSION: Final = 2
 """Without references to earlier objects: equal values are equal bytes, shared or not."""
+
+State = TypeVar("State")
 
 _LEAVES: Final = frozenset({type(None), bool, int, float, str})
 
@@ -48,15 +50,22 @@ class _Plan:
     """How values of one class are taken apart.
 
     ``parts`` gives them in the order of ``names``; ``nested`` are the places of those that may consist of
-    parts themselves. Without names ``parts`` gives what stands for the value.
+    parts themselves. Without names ``parts`` gives what stands for the value. ``in_place``: they are changed.
     """
 
-    __slots__ = ("names", "nested", "parts")
+    __slots__ = ("in_place", "names", "nested", "parts")
 
-    def __init__(self, names: tuple[str, ...], nested: tuple[int, ...], parts: Callable[[Any], Any]) -> None:
+    def __init__(
+        self,
+        parts: Callable[[Any], Any],
+        names: tuple[str, ...] = (),
+        nested: tuple[int, ...] = (),
+        in_place: bool = False,
+    ) -> None:
+        self.parts = parts
         self.names = names
         self.nested = nested
-        self.parts = parts
+        self.in_place = in_place
 
 
 def _take_apart(value: Any, checked: bool) -> Any:  # noqa: ANN401  (any part of a state)
@@ -84,18 +93,19 @@ def _take_apart(value: Any, checked: bool) -> Any:  # noqa: ANN401  (any part of
 @cache
 def _plan(kind: type) -> _Plan:
     if issubclass(kind, Enum):
-        return _Plan((), (), attrgetter("value"))
+        return _Plan(attrgetter("value"))
     if issubclass(kind, np.ndarray):
-        return _Plan((), (), _array)
+        return _Plan(_array)
     if issubclass(kind, float):
-        return _Plan((), (), float)
+        return _Plan(float)
     names = tuple(sorted(field_names(kind)))
     if not names:
         raise TypeError(f"a {kind.__name__} cannot be packed")
     declared = _declarations(kind)
     nested = [index for index, name in enumerate(names) if not _is_plain(declared.get(name, object))]
     parts = attrgetter(*names)
-    return _Plan(names, tuple(nested), parts if len(names) > 1 else lambda value: (parts(value),))
+    in_place = is_dataclass(kind) and not kind.__dataclass_params__.frozen  # type: ignore[attr-defined]
+    return _Plan(parts if len(names) > 1 else lambda value: (parts(value),), names, tuple(nested), in_place)
 
 
 def field_names(kind: type) -> tuple[str, ...]:
@@ -125,3 +135,26 @@ def _is_plain(declared: object) -> bool:
 
 def _array(array: Any) -> object:  # noqa: ANN401  (of any shape and type)
     return (array.shape, array.dtype.str, array.tobytes())
+
+
+def copy_state(state: State) -> State:
+    """An independent copy of a state: what is changed in place anew, what never changes shared."""
+    copied: State = _copy(state)
+    return copied
+
+
+def _copy(value: Any) -> Any:  # noqa: ANN401  (any part of a state)
+    kind: Any = type(value)
+    if kind in _LEAVES:
+        return value
+    if kind is tuple or kind is list:
+        return kind([_copy(part) for part in value])
+    if kind is np.ndarray:
+        return value.copy()
+    plan = _plan(kind)
+    if not plan.in_place:
+        return value
+    parts = list(plan.parts(value))
+    for index in plan.nested:
+        parts[index] = _copy(parts[index])
+    return kind(**dict(zip(plan.names, parts, strict=True)))

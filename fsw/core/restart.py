@@ -12,33 +12,30 @@ from fsw.core.actuation.wheel import WheelView
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.estimation.estimator import anew
-from fsw.core.events import Throttle
 from fsw.core.fdir import fdir
-from fsw.core.gate.second_sender import SecondSenderWatch
 from fsw.core.laws.interface import FieldSample
 from fsw.core.modes import ModeState
 from fsw.core.state import FlightState
 
 
-def restarted(state: FlightState, tick: int, config: FlightConfig) -> FlightState:
-    """The state for which ``tick`` is the first of a new count.
+def begin_count(state: FlightState, tick: int, config: FlightConfig) -> None:
+    """Make ``tick`` the first of a new count.
 
     A throttled event stays throttled for the rest of its time, a second sender detected for all of its time.
     """
-    other, events = state.second_sender, state.events
-    reported = tuple(kind._replace(tick=tick - (state.tick - kind.tick)) for kind in events.reported)
+    ahead, coil = tick - state.tick, state.coil
+    state.tick = -1
+    if state.second_sender.signs:
+        state.second_sender.tick = tick
+    state.ephemeris = None
+    state.estimator = anew(state.estimator)
     fdir.discard_proof(state.health)
-    return state._replace(
-        tick=-1,
-        second_sender=SecondSenderWatch(other.signs, tick, other.can_id) if other.signs else other,
-        ephemeris=None,
-        estimator=anew(state.estimator),
-        attitude=UNKNOWN,
-        modes=ModeState(since_tick=tick, trips=state.modes.trips, held=state.modes.held),
-        sample=FieldSample(),
-        memory=(),
-        pulses=boot(tick, config.coils.pulses),
-        coil=CoilView(LOCKOUT_UNKNOWN, seq=state.coil.seq, refusals=state.coil.refusals),
-        events=Throttle(reported, events.held_back),
-        wheel=None if state.wheel is None else WheelView(refused=state.wheel.refused),
-    )
+    state.attitude = UNKNOWN
+    state.modes = ModeState(since_tick=tick, trips=state.modes.trips, held=state.modes.held)
+    state.sample = FieldSample()
+    state.memory = ()
+    state.pulses = boot(tick, config.coils.pulses)
+    state.coil = CoilView(LOCKOUT_UNKNOWN, seq=coil.seq, refusals=coil.refusals)
+    state.events.reported = [kind.replace(tick=kind.tick + ahead) for kind in state.events.reported]
+    if state.wheel is not None:
+        state.wheel = WheelView(refused=state.wheel.refused)

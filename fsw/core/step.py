@@ -1,4 +1,4 @@
-"""The flight loop as one pure function, from what the boards sent to what is sent and reported."""
+"""The flight loop as one function, from what the boards sent to what is sent and reported."""
 
 from dataclasses import replace
 
@@ -18,17 +18,18 @@ from fsw.core.estimation.samples import sun_direction, usable_field
 from fsw.core.fdir import fdir
 from fsw.core.fdir.fdir import Evidence
 from fsw.core.fdir.observation import Observation
-from fsw.core.gate import calibration, second_sender
+from fsw.core.gate import calibration
 from fsw.core.gate.measurements import Measurements
 from fsw.core.gate.readings import admit
-from fsw.core.gate.sync_watch import Belief, SyncWatch, judge, near
+from fsw.core.gate.second_sender import watch_senders
+from fsw.core.gate.sync_watch import Belief, judge_sync, near
 from fsw.core.laws import by_mode
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
 from fsw.core.laws.plan.constant_torque import constant_torque
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, plausible, reference_at, with_orbit
 from fsw.core.packing import checksum
-from fsw.core.restart import restarted
-from fsw.core.state import FlightState, Inbox, initial_state
+from fsw.core.restart import begin_count
+from fsw.core.state import FlightState, Inbox
 from fsw.core.supervisor import supervise
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilDipole, CoilFire, TickDone, WheelTorque
@@ -39,7 +40,7 @@ Outbox = tuple[Frame, ...]
 def boot(config: FlightConfig) -> FlightState:
     """The state before the first SYNC."""
     driven = config.wheel is not None
-    return initial_state(
+    return FlightState(
         pulses.boot(0, config.coils.pulses),
         config.control.setpoint,
         telemetry.first_counters(with_wheel=driven),
@@ -47,93 +48,78 @@ def boot(config: FlightConfig) -> FlightState:
     )
 
 
-def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> tuple[FlightState, Outbox]:
-    """One tick: (state, inbox, config) -> (state, outbox), the outbox closed by TICK_DONE.
+def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> Outbox:
+    """One tick: update the state by what the boards sent; the answer is closed by TICK_DONE.
 
     A SYNC that is not believed is counted and answered with nothing; one that is repeated because the answer
     was not received, with TICK_DONE alone. Only the first and one that advances take the frames of the inbox.
     """
-    before, tick = state, inbox.tick
-    belief, syncs = judge(state.syncs, state.tick, tick, config.leap_ticks)
+    before, tick = telemetry.Before(state), inbox.tick
+    belief = judge_sync(state.syncs, state.tick, tick, config.leap_ticks)
     if belief is Belief.IGNORED or belief is Belief.UNANSWERED:
-        state = state._replace(ignored_syncs=state.ignored_syncs + 1, syncs=syncs)
-        return state, (_done(state, tick),) if belief is Belief.UNANSWERED else ()
-    state = state._replace(health=state.health.copy())
-    state, inbox = _begin(state, inbox, belief, config)
+        state.ignored_syncs += 1
+        return (_done(state, tick),) if belief is Belief.UNANSWERED else ()
+    frames = inbox.frames
+    if belief is Belief.RESTARTED:
+        begin_count(state, tick, config)
+        frames = ()
+    _skip_ticks(state, tick, config)
     model = with_orbit(config.ephemeris, state.orbit)
-    state, measurements = _gate(state, inbox, syncs, config)
+    measurements = _gate(state, tick, frames, config)
+    state.time_error_s = inbox.unix_time_s - (config.epoch_unix_s + tick // config.tick_hz)
     config = _with_wheel(state, before.tick, config)
-    state, reference = _predict(state, model, before.tick, config)
+    reference = _predict(state, model, before.tick, config)
     observation = _update(state, measurements, reference, config)
-    state = _judge(state, observation, config)
-    state, violated = supervise(state, config)
-    state, acks = command(state, observation.measurements, violated, config)
-    law_input, demand = _control(state, observation, model, config)
-    state, requests = _schedule(state, observation.measurements, law_input, demand, config)
-    replies = (*requests, *acks)
-    state, frames = telemetry.report(before, state, observation, violated, replies, config)
-    return state, (*frames, _done(state, tick))
+    _judge(state, observation, config)
+    violated = supervise(state, config)
+    acks = command(state, observation.measurements, violated, config)
+    law_input = _law_input(state, observation, model, config)
+    demand = by_mode.demand(state.modes.mode, law_input, state.memory, state.setpoint, config.control)
+    requests = _schedule(state, observation.measurements, law_input, demand, config)
+    answer = telemetry.report(before, state, observation, violated, (*requests, *acks), config)
+    return (*answer, _done(state, tick))
 
 
-def takes_inbox(before: FlightState, after: FlightState, leap_ticks: int) -> bool:
-    """Whether a step has taken the frames of its inbox: the SYNC was the first, or advanced the count."""
-    return after.tick != before.tick and (before.tick < 0 or near(before.tick, after.tick, leap_ticks))
+def takes_inbox(before: int, after: int, leap_ticks: int) -> bool:
+    """Whether a step from one tick to another has taken its frames: from none, or forward in the count."""
+    return after != before and (before < 0 or near(before, after, leap_ticks))
 
 
 def _done(state: FlightState, tick: int) -> Frame:
     return TickDone(tick, checksum(state)).encode()
 
 
-def _begin(
-    state: FlightState, inbox: Inbox, belief: Belief, config: FlightConfig
-) -> tuple[FlightState, Inbox]:
+def _skip_ticks(state: FlightState, tick: int, config: FlightConfig) -> None:
     """At the first tick of a count every timer starts in full; skipped ticks stop the timers.
 
     What the coils drove in skipped ticks is not known.
     """
-    tick, timing = inbox.tick, config.coils.pulses
-    if belief is Belief.RESTARTED:
-        state, inbox = restarted(state, tick, config), inbox._replace(frames=())
+    timing = config.coils.pulses
     if state.tick < 0:
-        state = state._replace(pulses=pulses.boot(tick, timing), field_tick=tick, status_tick=tick)
+        state.pulses = pulses.boot(tick, timing)
+        state.field_tick = state.status_tick = tick
     elif state.tick < tick - 1:
-        timers = pulses.delay(state.pulses, tick, tick - state.tick - 1)
-        state = state._replace(pulses=timers, coil=state.coil._replace(past_am2=(), idle_ticks=0))
-    return state, inbox
+        state.pulses = pulses.delay(state.pulses, tick, tick - state.tick - 1)
+        state.coil = state.coil._replace(past_am2=(), idle_ticks=0)
 
 
-def _gate(
-    state: FlightState, inbox: Inbox, syncs: SyncWatch, config: FlightConfig
-) -> tuple[FlightState, Measurements]:
+def _gate(state: FlightState, tick: int, frames: tuple[Frame, ...], config: FlightConfig) -> Measurements:
     """Accept what the boards sent, and compare the coil driver's currents with the requests."""
-    tick = inbox.tick
-    gate = replace(state.gate, counters=state.gate.counters.copy())
-    readings = admit(inbox.frames, gate, skipped=0 <= state.tick < tick - 1)
+    readings = admit(frames, state.gate, skipped=0 <= state.tick < tick - 1)
     measurements = calibration.measure(readings, config.calibration)
     read_back.remove_offset(measurements, state.coil, tick, config.read_back)
     view = update_view(state.coil, measurements, tick, config.coils)
     view = own_field.subtract_own_field(view, measurements, config.estimator.blank_ticks, config.own_field)
-    expected_s = config.epoch_unix_s + tick // config.tick_hz
+    state.tick, state.coil, state.syncs.strange_tick = tick, view, -1
+    if measurements.field is not None:
+        state.field_tick = tick
+    if measurements.coil is not None:
+        state.status_tick = tick
+    pulsed = config.coils.dipoles is None
+    watch_senders(state.second_sender, measurements, view.seq, pulsed, tick, config.second_sender)
+    state.wheel = wheel.seen(state.wheel, measurements, tick, config.wheel)
     fdir.judge_current(state.health, view, measurements, tick, config.fdir)
-    state = state._replace(
-        tick=tick,
-        syncs=syncs if syncs.strange_tick < 0 else syncs._replace(strange_tick=-1),
-        field_tick=tick if measurements.field is not None else state.field_tick,
-        status_tick=tick if measurements.coil is not None else state.status_tick,
-        time_error_s=inbox.unix_time_s - expected_s,
-        gate=gate,
-        second_sender=second_sender.watch(
-            state.second_sender,
-            measurements,
-            view.seq,
-            config.coils.dipoles is None,
-            tick,
-            config.second_sender,
-        ),
-        coil=view,
-        wheel=wheel.seen(state.wheel, measurements, tick, config.wheel),
-    )
-    return state, measurements
+    return measurements
 
 
 def _with_wheel(state: FlightState, before: int, config: FlightConfig) -> FlightConfig:
@@ -147,27 +133,22 @@ def _with_wheel(state: FlightState, before: int, config: FlightConfig) -> Flight
 
 def _predict(
     state: FlightState, model: EphemerisModel, before: int, config: FlightConfig
-) -> tuple[FlightState, Reference | None]:
+) -> Reference | None:
     """Carry ephemeris and estimate to this tick; the reference is None where the orbit has no position."""
-    ephemeris = advance(state.ephemeris, state.tick, model)
-    if ephemeris is None:
-        return _without_orbit(state), None
-    reference = reference_at(ephemeris, state.tick, config.ephemeris)
-    if not plausible(reference):
-        return _without_orbit(state), None
-    state = state._replace(ephemeris=ephemeris)
-    if state.estimator.estimate is None and not state.estimator.batch.samples:
-        return state, reference
-    tick, view, coils = state.tick, state.coil, config.coils
-    driven_am2 = fdir.driven_am2(state.health, view, config.fdir)
-    drives = driven(view, driven_am2, state.status_tick == tick, range(before + 1, tick + 1), coils)
-    return state._replace(estimator=predict(state.estimator, reference, drives, config.estimator)), reference
-
-
-def _without_orbit(state: FlightState) -> FlightState:
-    """The state where the orbit has no position: nothing carries the estimate on, so it ends."""
-    fdir.discard_proof(state.health)
-    return state._replace(ephemeris=None, estimator=anew(state.estimator))
+    tick = state.tick
+    state.ephemeris = advance(state.ephemeris, tick, model)
+    reference = None if state.ephemeris is None else reference_at(state.ephemeris, tick, config.ephemeris)
+    if reference is None or not plausible(reference):  # nothing carries the estimate on, so it ends
+        state.ephemeris = None
+        state.estimator = anew(state.estimator)
+        fdir.discard_proof(state.health)
+        return None
+    if state.estimator.estimate is not None or state.estimator.batch.samples:
+        driven_am2 = fdir.driven_am2(state.health, state.coil, config.fdir)
+        ticks, reported = range(before + 1, tick + 1), state.status_tick == tick
+        drives = driven(state.coil, driven_am2, reported, ticks, config.coils)
+        state.estimator = predict(state.estimator, reference, drives, config.estimator)
+    return reference
 
 
 def _update(
@@ -187,24 +168,16 @@ def _update(
     return Observation(measurements, reference, updated, attitude, used, findings)
 
 
-def _judge(state: FlightState, observation: Observation, config: FlightConfig) -> FlightState:
+def _judge(state: FlightState, observation: Observation, config: FlightConfig) -> None:
     """Judge sensors and coils by all samples, those of isolated sensors included."""
+    state.estimator, state.attitude = observation.estimator, observation.attitude
     reference, findings, tick = observation.reference, observation.findings, state.tick
-    estimator, attitude = observation.estimator, observation.attitude
     if reference is not None and findings is not None:
         settled = state.syncs.settled(tick)
         evidence = Evidence(tick, findings, state.coil, reference, observation.used, settled)
-        estimator, attitude = fdir.judge(state.health, estimator, attitude, evidence, config.fdir)
-    return state._replace(estimator=estimator, attitude=attitude)
-
-
-def _control(
-    state: FlightState, observation: Observation, model: EphemerisModel, config: FlightConfig
-) -> tuple[LawInput, Demand | None]:
-    """What the law of this mode knows, and what it demands."""
-    law_input = _law_input(state, observation, model, config)
-    demand = by_mode.demand(state.modes.mode, law_input, state.memory, state.setpoint, config.control)
-    return law_input, demand
+        state.estimator, state.attitude = fdir.judge(
+            state.health, state.estimator, state.attitude, evidence, config.fdir
+        )
 
 
 def _law_input(
@@ -242,14 +215,17 @@ def _schedule(
     law_input: LawInput,
     demand: Demand | None,
     config: FlightConfig,
-) -> tuple[FlightState, list[CoilFire | CoilDipole | WheelTorque]]:
+) -> list[CoilFire | CoilDipole | WheelTorque]:
     """At most one request to the coil driver, and one to the wheel."""
     faults, b_body_t = state.health.coils.faults, law_input.b_body_t
-    timers, view, request = actuate(
+    state.pulses, state.coil, request = actuate(
         state.pulses, state.coil, demand, b_body_t, measurements, state.tick, config.coils, faults
     )
-    memory = demand.memory if demand is not None else ()
-    turning, torque = wheel.request(state.wheel, demand, state.tick, config.wheel)
-    state = state._replace(sample=law_input.sample, memory=memory, pulses=timers, coil=view, wheel=turning)
-    coils = [] if request is None else [calibration.for_outputs(request, config.calibration)]
-    return state, [*coils, *([] if torque is None else [torque])]
+    state.wheel, torque = wheel.request(state.wheel, demand, state.tick, config.wheel)
+    state.sample, state.memory = law_input.sample, demand.memory if demand is not None else ()
+    requests: list[CoilFire | CoilDipole | WheelTorque] = []
+    if request is not None:
+        requests.append(calibration.for_outputs(request, config.calibration))
+    if torque is not None:
+        requests.append(torque)
+    return requests

@@ -7,15 +7,15 @@ from fsw.core.monitors import Monitor, MonitorInput, first_violation, trips
 from fsw.core.state import FlightState
 
 
-def supervise(state: FlightState, config: FlightConfig) -> tuple[FlightState, Monitor | None]:
-    """Judge this tick.
+def supervise(state: FlightState, config: FlightConfig) -> Monitor | None:
+    """Judge this tick, and take the transition of the mode table that is due.
 
     Args:
         state: of this tick except for its mode, which is that of the tick before.
         config: the onboard tables.
 
     Returns:
-        The state in the mode of this tick, and the monitor that is violated, if any.
+        The monitor that is violated, if any.
     """
     watched = MonitorInput(
         attitude=state.attitude,
@@ -30,11 +30,9 @@ def supervise(state: FlightState, config: FlightConfig) -> tuple[FlightState, Mo
     violated = first_violation(watched)
     can_act = not state.health.sensors.field.fault or open_loop(state.setpoint)
     tripped = trips(violated, state.modes.mode)
-    situation = modes.judge(
+    conditions = modes.judge_conditions(
         state.attitude, state.setpoint.spin_radps, tripped, can_act, state.modes, config.modes
     )
-    after = modes.advance(state.modes, situation, state.tick, config.modes)
-    number = 0 if violated is None else violated
-    if after is state.modes and number == state.violated:
-        return state, violated
-    return state._replace(modes=after, violated=number), violated
+    modes.advance(state.modes, conditions, state.tick, config.modes)
+    state.violated = 0 if violated is None else int(violated)
+    return violated

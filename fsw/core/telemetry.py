@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from math import sqrt
+from typing import final
 
 from fsw.core.config import FlightConfig
 from fsw.core.estimation import mekf
@@ -11,6 +12,7 @@ from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.parameters import Layout, component_places
 from fsw.core.events import SEVERITY, Event, Happening, Throttle, throttle_events
 from fsw.core.fdir import fault_events
+from fsw.core.fdir.fault_events import find_faults
 from fsw.core.fdir.observation import Observation
 from fsw.core.gate.measurements import Measurements
 from fsw.core.gate.sync_watch import near
@@ -53,9 +55,9 @@ COUNTED = (
 _SLOT = {can_id: slot for slot, can_id in enumerate(COUNTED)}
 
 
-def first_counters(with_wheel: bool) -> tuple[int, ...]:
+def first_counters(with_wheel: bool) -> list[int]:
     """The counters of fsw's messages at boot; that of ``WHEEL_TORQUE`` only where there is a wheel."""
-    return (0,) * (len(COUNTED) - (not with_wheel))
+    return [0] * (len(COUNTED) - (not with_wheel))
 
 
 def boot_frame(table_crc: int) -> Frame:
@@ -63,27 +65,54 @@ def boot_frame(table_crc: int) -> Frame:
     return FswBoot(reason=0, version=CONTRACT_VERSION, table_crc=table_crc).encode()
 
 
+@final
+class Before:
+    """What the events of a tick are found by: how these were before it."""
+
+    __slots__ = (
+        "faults",
+        "mode",
+        "restarts",
+        "second_sender",
+        "started",
+        "strange_tick",
+        "tick",
+        "time_error_s",
+        "trips",
+        "violated",
+    )
+
+    def __init__(self, state: FlightState) -> None:
+        self.tick = state.tick
+        self.strange_tick = state.syncs.strange_tick
+        self.time_error_s = state.time_error_s
+        self.mode = state.modes.mode
+        self.trips = state.modes.trips
+        self.violated = state.violated
+        self.started = state.estimator.estimate is not None
+        self.restarts = state.estimator.restarts
+        self.faults = find_faults(state.health)
+        self.second_sender = state.second_sender.detected
+
+
 def report(
-    before: FlightState,
+    before: Before,
     state: FlightState,
     observation: Observation,
     violated: Monitor | None,
     replies: Sequence[CountedMessage],
     config: FlightConfig,
-) -> tuple[FlightState, list[Frame]]:
+) -> list[Frame]:
     """The frames of this tick: requests and acknowledgements, then telemetry as it is due."""
-    events, of_events = event_messages(
-        before, state, observation.measurements, violated, config.event_spacing_ticks, config.leap_ticks
-    )
+    found = happenings(before, state, observation.measurements, violated, config.leap_ticks)
     messages = [
         *replies,
         *navigation_messages(state, observation.used, observation.reference, config.rates),
         *parameter_messages(state, config.estimator.mekf.layout, config.rates),
-        *of_events,
+        *event_messages(state.events, found, state.tick, config.event_spacing_ticks),
         *heartbeat_messages(state, config.rates),
     ]
-    frames, sent = number(messages, state.sent)
-    return state._replace(events=events, sent=sent), frames
+    return number(messages, state.sent)
 
 
 def navigation_messages(
@@ -122,17 +151,11 @@ def heartbeat_messages(state: FlightState, rates: RateTable) -> list[CountedMess
 
 
 def event_messages(
-    before: FlightState,
-    after: FlightState,
-    measurements: Measurements,
-    violated: Monitor | None,
-    spacing_ticks: int,
-    leap_ticks: int,
-) -> tuple[Throttle, list[CountedMessage]]:
-    """The events of this tick that may be sent, and the throttle after it."""
-    found = happenings(before, after, measurements, violated, leap_ticks)
-    throttle, passed = throttle_events(after.events, found, after.tick, spacing_ticks)
-    return throttle, [event_message(happening, after.tick) for happening in passed]
+    throttle: Throttle, found: list[Happening], tick: int, spacing_ticks: int
+) -> list[CountedMessage]:
+    """Those events of this tick that may be sent."""
+    passed = throttle_events(throttle, found, tick, spacing_ticks)
+    return [event_message(happening, tick) for happening in passed]
 
 
 def attitude_messages(attitude: Attitude) -> list[CountedMessage]:
@@ -183,43 +206,37 @@ def heartbeat_message(tick: int, modes: ModeState, rejects: int) -> CountedMessa
 
 
 def happenings(
-    before: FlightState,
-    after: FlightState,
-    measurements: Measurements,
-    violated: Monitor | None,
-    leap_ticks: int,
+    before: Before, state: FlightState, measurements: Measurements, violated: Monitor | None, leap_ticks: int
 ) -> list[Happening]:
     """The events of this tick: changes only, so that nothing is reported again while it lasts."""
-    found = _plant(before, after, measurements, leap_ticks) if before.tick >= 0 else []
-    tripped = after.modes.trips > before.modes.trips
+    found = _plant(before, state.tick, measurements, leap_ticks) if before.tick >= 0 else []
+    tripped = state.modes.trips > before.trips
     if violated is not None and (tripped or violated != before.violated):
         found.append(Happening(Event.MONITOR_TRIPPED, violated))
-    if after.modes.mode is not before.modes.mode:
-        found.append(Happening(Event.MODE_CHANGED, after.modes.mode))
-    if after.estimator.restarts != before.estimator.restarts:
-        found.append(Happening(Event.FILTER_RESTARTED, after.estimator.restarts))
-    if before.estimator.estimate is None and after.estimator.estimate is not None:
-        found.append(Happening(Event.FILTER_STARTED, after.estimator.restarts))
-    faults_before = fault_events.find_faults(before.health)
-    found += fault_events.happenings(faults_before, fault_events.find_faults(after.health))
-    if after.second_sender.detected and not before.second_sender.detected:
-        found.append(Happening(Event.SECOND_SENDER, after.second_sender.can_id))
+    if state.modes.mode is not before.mode:
+        found.append(Happening(Event.MODE_CHANGED, state.modes.mode))
+    restarts = state.estimator.restarts
+    if restarts != before.restarts:
+        found.append(Happening(Event.FILTER_RESTARTED, restarts))
+    if not before.started and state.estimator.estimate is not None:
+        found.append(Happening(Event.FILTER_STARTED, restarts))
+    found += fault_events.happenings(before.faults, find_faults(state.health))
+    if state.second_sender.detected and not before.second_sender:
+        found.append(Happening(Event.SECOND_SENDER, state.second_sender.can_id))
     if measurements.refused is not None:
         found.append(Happening(Event.REQUEST_REFUSED, measurements.refused.reason))
-    if after.time_error_s != before.time_error_s:
-        found.append(Happening(Event.TIME_MISMATCH, after.time_error_s))
+    if state.time_error_s != before.time_error_s:
+        found.append(Happening(Event.TIME_MISMATCH, state.time_error_s))
     return found
 
 
-def _plant(
-    before: FlightState, after: FlightState, measurements: Measurements, leap_ticks: int
-) -> list[Happening]:
+def _plant(before: Before, tick: int, measurements: Measurements, leap_ticks: int) -> list[Happening]:
     """A restart of the plant, and frames under its identifiers that it cannot have sent."""
     found = []
-    if not near(before.tick, after.tick, leap_ticks):
+    if not near(before.tick, tick, leap_ticks):
         found.append(Happening(Event.PLANT_RESTARTED, before.tick))
-    elif before.syncs.strange_tick >= 0:
-        found.append(Happening(Event.STRANGE_SYNC, before.syncs.strange_tick))
+    elif before.strange_tick >= 0:
+        found.append(Happening(Event.STRANGE_SYNC, before.strange_tick))
     if measurements.end_ticks >= 0:
         found.append(Happening(Event.FALSE_END, measurements.end_ticks))
     return found
@@ -227,19 +244,18 @@ def _plant(
 
 def event_message(happening: Happening, tick: int) -> CountedMessage:
     """FSW_EVENT; a time out of range saturates, and the number of a tick wraps."""
-    event, argument = happening
+    event, argument = happening.event, happening.argument
     if event == Event.TIME_MISMATCH:
         argument = max(LEAST_ARGUMENT, min(argument, MOST_ARGUMENT))
     return FswEvent(severity=SEVERITY[event], event=event, tick=tick, argument=argument)
 
 
-def number(messages: list[CountedMessage], sent: tuple[int, ...]) -> tuple[list[Frame], tuple[int, ...]]:
-    """Give each message its counter and encode it; also return the counters afterwards."""
-    counters = list(sent)
+def number(messages: list[CountedMessage], sent: list[int]) -> list[Frame]:
+    """Give each message its counter and encode it; count it in ``sent``."""
     frames = []
     for message in messages:
         slot = _SLOT[message.ID]
-        message.counter = counters[slot]
+        message.counter = sent[slot]
         frames.append(message.encode())
-        counters[slot] = (counters[slot] + 1) & 0xF
-    return frames, tuple(counters)
+        sent[slot] = (sent[slot] + 1) & 0xF
+    return frames

@@ -8,7 +8,6 @@ import numpy as np
 
 from fsw.core.commands import HANDLERS, Situation
 from fsw.core.orbit.tle import tle_elements
-from fsw.core.state import FlightState
 from fsw.core.step import boot
 from fsw.table.calibration import MagnetometerTable
 from fsw.table.config import flight_config
@@ -251,12 +250,12 @@ def _telecommands(scenario: Scenario) -> Iterator[str]:
     if not scenario.telecommand:
         return
     config = flight_config(flight_table(scenario))
-    state, situation = boot(config), Situation(None, config)
+    situation = Situation(None, config)
     for place, telecommand in enumerate(scenario.telecommand):
         for message in telecommand.messages():
             if isinstance(message, SAME_AT_ANY_TIME):
-                answer = HANDLERS[type(message)](state, message, situation)
-                if not isinstance(answer, FlightState):
+                answer = HANDLERS[type(message)](boot(config), message, situation)
+                if answer is not TcAckResult.ACCEPTED:
                     yield (
                         f"telecommand[{place}], {telecommand.message} at {telecommand.at_s:g} s, will be "
                         f"answered {answer.name.lower()!r}: {_ANSWERS[answer]}"

@@ -6,12 +6,13 @@ from math import nextafter
 
 import numpy as np
 import pytest
+from flight_states import stepped
 
 from fsw.bus.hub import Hub
 from fsw.bus.link import LoopLink
 from fsw.core.packing import field_names, pack
 from fsw.core.state import Inbox
-from fsw.core.step import boot, step
+from fsw.core.step import boot
 from fsw.input.schema import merge
 from fsw.table.config import flight_config
 from fsw.table.table import load_flight_table
@@ -57,7 +58,7 @@ class World:
 
     def step(self, change=lambda inbox: inbox):
         """One tick, with what is changed between the boards and the flight software; its messages."""
-        self.state, outbox = step(self.state, change(self.inbox()), self.config)
+        self.state, outbox = stepped(self.state, change(self.inbox()), self.config)
         for frame in outbox:
             self.plant.receive(frame)
         self.plant.end_tick()
@@ -98,7 +99,7 @@ def without():
 
     def dropper(*classes):
         ids = {message.ID for message in classes}
-        return lambda inbox: inbox._replace(frames=tuple(f for f in inbox.frames if f.can_id not in ids))
+        return lambda inbox: inbox.replace(frames=tuple(f for f in inbox.frames if f.can_id not in ids))
 
     return dropper
 

@@ -1,11 +1,12 @@
 """The flight node: collects what is on the bus, and answers each SYNC with one step."""
 
 import pytest
+from flight_states import stepped
 
 from fsw.core.gate.second_sender import SIGNS
 from fsw.core.gate.sync_watch import LEAP_S
 from fsw.core.state import Inbox
-from fsw.core.step import boot, step
+from fsw.core.step import boot
 from fsw.node import MOST_INBOX_FRAMES, NO_PLANT_S, End, FlightNode
 from fsw.table.config import flight_config
 from fsw.table.table import load_flight_table
@@ -56,7 +57,7 @@ def test_answers_sync_with_a_step_over_what_came_before_it(node, config):
     node.receive(FIELD)
     node.receive(SUN)
     answer = node.receive(sync(config, 0))
-    state, expected = step(boot(config), Inbox(0, config.epoch_unix_s, (FIELD, SUN)), config)
+    state, expected = stepped(boot(config), Inbox(0, config.epoch_unix_s, (FIELD, SUN)), config)
     assert answer == expected
     assert node.state.gate == state.gate
     assert TickDone.decode(answer[-1].data).tick == 0

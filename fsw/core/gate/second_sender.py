@@ -5,7 +5,8 @@ request that it never made, are signs of a second sender. One alone may be a fra
 still on its way, or noise with the right CRC: several in quick succession reveal one.
 """
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import final
 
 from fsw.core.gate.measurements import Measurements, Refusal
 from fsw.wire.messages import CoilDipole, CoilFire, CoilRefusedReason
@@ -16,7 +17,8 @@ SIGNS = 3
 REQUESTS = frozenset({CoilFire.ID, CoilDipole.ID})
 
 
-class SecondSenderConfig(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class SecondSenderConfig:
     """How far apart a sign and the one before may be to count together.
 
     ``request_ticks`` for requests, of which there may be one per back-off; ``other_ticks`` for whatever else
@@ -27,7 +29,9 @@ class SecondSenderConfig(NamedTuple):
     other_ticks: int
 
 
-class SecondSenderWatch(NamedTuple):
+@final
+@dataclass(slots=True)
+class SecondSenderWatch:
     """Ticks with a sign, ``SIGNS`` at most; the last of them, and the identifier of the frame."""
 
     signs: int = 0
@@ -40,35 +44,33 @@ class SecondSenderWatch(NamedTuple):
         return self.signs >= SIGNS
 
 
-NO_SIGNS = SecondSenderWatch()
-
-
-def watch(
-    before: SecondSenderWatch,
+def watch_senders(
+    watch: SecondSenderWatch,
     measurements: Measurements,
     seq: int,
     pulsed: bool,
     tick: int,
     config: SecondSenderConfig,
-) -> SecondSenderWatch:
-    """The watch after this tick.
+) -> None:
+    """Note a sign of this tick; without one for long enough, forget those before.
 
     Args:
-        before: the watch before it.
+        watch: signs before this tick.
         measurements: of this tick.
         seq: number of the request that the coil driver accepted last; fsw's own has this or the next.
         pulsed: whether the coil driver is pulsed: its refusals then carry request numbers.
         tick: this one.
         config: the limits.
     """
-    can_id = measurements.under_own_id
+    can_id, elapsed = measurements.under_own_id, tick - watch.tick
     if not can_id and measurements.refused is not None and pulsed and _of_another(measurements.refused, seq):
         can_id = CoilFire.ID
-    if not can_id:
-        return NO_SIGNS if before.signs and tick - before.tick > config.request_ticks else before
-    apart = config.request_ticks if can_id in REQUESTS or before.detected else config.other_ticks
-    signs = before.signs if before.signs and tick - before.tick <= apart else 0
-    return SecondSenderWatch(min(signs + 1, SIGNS), tick, can_id)
+    if can_id:
+        apart = config.request_ticks if can_id in REQUESTS or watch.detected else config.other_ticks
+        watch.signs = min(watch.signs + 1, SIGNS) if elapsed <= apart else 1
+        watch.tick, watch.can_id = tick, can_id
+    elif watch.signs and elapsed > config.request_ticks:
+        watch.signs, watch.tick, watch.can_id = 0, -1, 0
 
 
 def _of_another(refused: Refusal, seq: int) -> bool:

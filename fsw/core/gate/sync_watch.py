@@ -13,8 +13,9 @@ advance tick by tick, nothing here can decide which is the false one.
 Whether the time is in doubt is another matter: a bus that loses a SYNC now and then shows the right one.
 """
 
+from dataclasses import dataclass
 from enum import Enum, auto
-from typing import NamedTuple
+from typing import final
 
 LEAP_S = 60
 """A SYNC no further ahead is believed at once: those between were lost. A new count settles in as long."""
@@ -39,7 +40,9 @@ class Belief(Enum):
     """A tick of a plant that has restarted."""
 
 
-class SyncWatch(NamedTuple):
+@final
+@dataclass(slots=True)
+class SyncWatch:
     """SYNCs in doubt.
 
     ``doubted``: their ticks, the latest last; ``settled_tick``: the count is settled from here on;
@@ -57,28 +60,37 @@ class SyncWatch(NamedTuple):
         return tick >= self.timed_tick
 
 
-def judge(watch: SyncWatch, current: int, tick: int, leap_ticks: int) -> tuple[Belief, SyncWatch]:
-    """How a SYNC is judged, and the watch after it.
+def judge_sync(watch: SyncWatch, current: int, tick: int, leap_ticks: int) -> Belief:
+    """How a SYNC is judged.
 
     Args:
-        watch: SYNCs in doubt before it.
+        watch: SYNCs in doubt, with this one afterwards.
         current: the tick that was answered last; -1: none yet, and any is believed.
         tick: the one that SYNC names.
         leap_ticks: ``LEAP_S``.
     """
     if current < 0:
-        return Belief.NEXT, watch
+        return Belief.NEXT
     if near(current, tick, leap_ticks):
-        return Belief.NEXT, _gone_on(watch, current, tick, leap_ticks)
+        _go_on(watch, current, tick, leap_ticks)
+        return Belief.NEXT
+    repeated = tick in watch.doubted
     if tick == current:
-        if tick in watch.doubted:
-            return Belief.UNANSWERED, watch._replace(doubted=_without(watch.doubted, tick))
-        return Belief.IGNORED, watch._replace(doubted=_with(watch.doubted, tick))
-    if tick in watch.doubted or tick - 1 in watch.doubted:
-        doubted = _with(_without(watch.doubted, tick, tick - 1), current)
-        settled_tick = tick + leap_ticks
-        return Belief.RESTARTED, SyncWatch(doubted, settled_tick, timed_tick=settled_tick)
-    return Belief.IGNORED, watch._replace(doubted=_with(watch.doubted, tick), strange_tick=tick)
+        if repeated:
+            _trust(watch, tick)
+            return Belief.UNANSWERED
+        _doubt(watch, tick)
+        return Belief.IGNORED
+    if repeated or tick - 1 in watch.doubted:
+        _trust(watch, tick)
+        _trust(watch, tick - 1)
+        _doubt(watch, current)
+        watch.settled_tick = watch.timed_tick = tick + leap_ticks
+        watch.strange_tick = -1
+        return Belief.RESTARTED
+    _doubt(watch, tick)
+    watch.strange_tick = tick
+    return Belief.IGNORED
 
 
 def near(current: int, tick: int, leap_ticks: int) -> bool:
@@ -86,23 +98,25 @@ def near(current: int, tick: int, leap_ticks: int) -> bool:
     return current < tick <= current + leap_ticks
 
 
-def _gone_on(watch: SyncWatch, current: int, tick: int, leap_ticks: int) -> SyncWatch:
-    """The watch after a tick not far ahead: a skip may come from a forged SYNC.
+def _go_on(watch: SyncWatch, current: int, tick: int, leap_ticks: int) -> None:
+    """A tick not far ahead is believed: a skip may come from a forged SYNC.
 
     A duplicate of the tick before, which an answer that was lost would have repeated, is then nothing more.
     """
-    if current in watch.doubted:
-        watch = watch._replace(doubted=_without(watch.doubted, current))
+    _trust(watch, current)
     if tick > current + 1:
-        settled_tick = tick + leap_ticks
-        timed_tick = watch.timed_tick if tick <= current + 1 + FEW_TICKS else settled_tick
-        return watch._replace(settled_tick=settled_tick, timed_tick=timed_tick)
-    return watch._replace(doubted=()) if watch.doubted and current >= watch.settled_tick else watch
+        watch.settled_tick = tick + leap_ticks
+        if tick > current + 1 + FEW_TICKS:
+            watch.timed_tick = watch.settled_tick
+    elif watch.doubted and current >= watch.settled_tick:
+        watch.doubted = ()
 
 
-def _with(doubted: tuple[int, ...], tick: int) -> tuple[int, ...]:
-    return (*_without(doubted, tick), tick)[-MOST_DOUBTED:]
+def _doubt(watch: SyncWatch, tick: int) -> None:
+    _trust(watch, tick)
+    watch.doubted = (*watch.doubted, tick)[-MOST_DOUBTED:]
 
 
-def _without(doubted: tuple[int, ...], *ticks: int) -> tuple[int, ...]:
-    return tuple(other for other in doubted if other not in ticks)
+def _trust(watch: SyncWatch, tick: int) -> None:
+    if tick in watch.doubted:
+        watch.doubted = tuple([other for other in watch.doubted if other != tick])

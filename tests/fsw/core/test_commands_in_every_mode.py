@@ -4,6 +4,7 @@ from functools import cache
 from random import Random
 
 import pytest
+from flight_states import altered, stepped
 from replies import of
 
 from fsw.core.commands import LAW_NAMES
@@ -14,7 +15,7 @@ from fsw.core.fdir.sensors.watch import Watch
 from fsw.core.modes import ModeState
 from fsw.core.orbit.elements import RANGES
 from fsw.core.state import Inbox
-from fsw.core.step import boot, step
+from fsw.core.step import boot
 from fsw.table.config import flight_config
 from fsw.wire.messages import (
     CLASSES,
@@ -62,7 +63,7 @@ def flown(name, knowledge="filter"):
         told = Sync.decode(sync.data)
         inboxes.append(Inbox(told.tick, told.unix_time_s, tuple(frames)))
         if len(inboxes) <= BEFORE:
-            state, outbox = step(state, inboxes[-1], config)
+            state, outbox = stepped(state, inboxes[-1], config)
             for frame in outbox:
                 plant.receive(frame)
         plant.end_tick()
@@ -73,11 +74,11 @@ def obey(flight, mode, *telecommands):
     """What is said: all are acknowledged, and the flight goes on for some ticks."""
     config, state, inboxes = flight
     attitude = state.attitude._replace(valid=True)
-    state = state._replace(attitude=attitude, modes=ModeState(mode, state.tick))
+    state = altered(state, attitude=attitude, modes=ModeState(mode, state.tick))
     sent = tuple(message.encode() for message in telecommands)
     said = []
     for inbox in (inboxes[0]._replace(frames=(*sent, *inboxes[0].frames)), *inboxes[1:]):
-        state, outbox = step(state, inbox, config)
+        state, outbox = stepped(state, inbox, config)
         said += [CLASSES[frame.can_id].decode(frame.data) for frame in outbox]
     assert state.tick == inboxes[-1].tick
     assert [ack.command for ack in of(TcAck, said)] == [message.ID for message in telecommands]
@@ -139,7 +140,7 @@ def test_clearing_reports_isolated_cells_as_readmitted(mode):
     config, state, inboxes = flown("cubesat-cells")
     health = state.health.copy()
     health.sensors.cells = [CellWatch(Watch(fault)) for fault in (0, 4, 0, 2, 0, 0)]
-    said = obey((config, state._replace(health=health), inboxes), mode, TcClear())
+    said = obey((config, altered(state, health=health), inboxes), mode, TcClear())
     readmitted = [e.argument for e in of(FswEvent, said) if e.event == Event.SENSOR_READMITTED]
     assert readmitted == [100 * Sensor.CELL_2 + 4, 100 * Sensor.CELL_4 + 2]
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from random import Random
 
 import pytest
+from flight_states import altered
 
 from fsw.core.commands import LAW_NAMES
 from fsw.core.estimation import estimator
@@ -39,7 +40,7 @@ from fsw.wire.messages import (
 
 def with_telecommands(*messages):
     frames = tuple(message.encode() for message in messages)
-    return lambda inbox: inbox._replace(frames=(*frames, *inbox.frames))
+    return lambda inbox: inbox.replace(frames=(*frames, *inbox.frames))
 
 
 def of(kind, messages):
@@ -63,10 +64,10 @@ class TestInTheLoop:
         world, other = make_world(), make_world()
         frame = TcMode(Mode.SAFE).encode()
         broken = frame.replace(data=bytes((frame.data[0] ^ 0x20,)) + frame.data[1:])
-        replies = world.step(lambda inbox: inbox._replace(frames=(broken, *inbox.frames)))
+        replies = world.step(lambda inbox: inbox.replace(frames=(broken, *inbox.frames)))
         assert of(TcAck, replies) == []
         other.step()
-        expected = other.state._replace(gate=replace(other.state.gate, rejected=1))
+        expected = altered(other.state, gate=replace(other.state.gate, rejected=1))
         assert checksum(world.state) == checksum(expected)
 
     def test_a_safe_that_the_ground_asked_for_lasts_until_it_asks_for_more(self, make_world):
@@ -86,7 +87,7 @@ class TestInTheLoop:
         world = make_world()
         world.fly(10)
         stuck = ModeState(Mode.SAFE, trips=world.config.modes.trips_to_stay_safe)
-        world.state = world.state._replace(modes=stuck)
+        world.state = altered(world.state, modes=stuck)
         world.fly(30)
         assert world.state.modes.mode is Mode.SAFE
         replies = world.step(with_telecommands(TcClear()))
@@ -207,7 +208,7 @@ class TestFrozenParameters:
         world = make_world(**MATCHED)
         world.fly(120)
         world.step(with_telecommands(TcParameter(Component.MAG_BIAS_X, -9, 170), TcMode(Mode.SAFE)))
-        world.state = world.state._replace(estimator=estimator.restart(world.state.estimator))
+        world.state = altered(world.state, estimator=estimator.restart(world.state.estimator))
         while world.state.estimator.estimate is None:
             world.step()
         assert world.state.estimator.estimate.parameters.mag_bias_t == (1.7e-7, 0.0, 0.0)

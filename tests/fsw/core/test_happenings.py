@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
+from flight_states import altered
 from gate_samples import measured
 
 from fsw.core import telemetry
@@ -27,26 +28,26 @@ NOTHING = measured()
 
 
 def told(before, after, readings=NOTHING):
-    return telemetry.happenings(before, after, readings, None, LEAP_TICKS)
+    return telemetry.happenings(telemetry.Before(before), after, readings, None, LEAP_TICKS)
 
 
 @pytest.mark.parametrize(("tick", "events"), [(-1, []), (0, [Happening(Event.FALSE_END, 7)])])
 def test_an_end_is_false_from_the_second_tick_on(state, tick, events):
     ended = measured(end=PlantEnd(7, counter=3))
-    assert told(state._replace(tick=tick), state._replace(tick=tick + 1), ended) == events
+    assert told(altered(state, tick=tick), altered(state, tick=tick + 1), ended) == events
 
 
 @pytest.mark.parametrize(("tick", "events"), [(-1, []), (0, [Happening(Event.PLANT_RESTARTED, 0)])])
 def test_so_is_a_restart(state, tick, events):
-    assert told(state._replace(tick=tick), state._replace(tick=10**9)) == events
+    assert told(altered(state, tick=tick), altered(state, tick=10**9)) == events
 
 
 def test_a_second_sender_is_told_once_with_the_identifier_that_named_it(state):
-    suspected = state._replace(second_sender=SecondSenderWatch(SIGNS - 1, 8, NavRate.ID), tick=8)
-    named = state._replace(second_sender=SecondSenderWatch(SIGNS, 9, CoilFire.ID), tick=9)
+    suspected = altered(state, second_sender=SecondSenderWatch(SIGNS - 1, 8, NavRate.ID), tick=8)
+    named = altered(state, second_sender=SecondSenderWatch(SIGNS, 9, CoilFire.ID), tick=9)
     assert told(suspected, named) == [Happening(Event.SECOND_SENDER, CoilFire.ID)]
-    assert told(named, named._replace(tick=10)) == []
-    assert told(named, state._replace(tick=10)) == []
+    assert told(named, altered(named, tick=10)) == []
+    assert told(named, altered(state, tick=10)) == []
 
 
 @pytest.mark.parametrize(

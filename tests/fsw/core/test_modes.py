@@ -6,7 +6,7 @@ from math import cos, pi, radians, sin
 import pytest
 
 from fsw.core.estimation.attitude import Attitude
-from fsw.core.modes import TABLE, ModeConditions, ModeConfig, ModeState, advance, judge
+from fsw.core.modes import TABLE, Condition, ModeConfig, ModeState, advance, judge_conditions
 from fsw.table.sections import ModesTable
 from fsw.wire.messages import Mode
 
@@ -21,30 +21,34 @@ CONFIG = ModeConfig(
     axis_only=False,
     trips_to_stay_safe=3,
 )
-QUIET = ModeConditions(*[False] * len(ModeConditions._fields))
+QUIET = (False,) * len(Condition)
 START = 1000
-ROWS = [pytest.param(index, row, id=f"{row.source.name}-{row.condition}") for index, row in enumerate(TABLE)]
+ROWS = [
+    pytest.param(index, row, id=f"{row.source.name}-{row.condition.name}") for index, row in enumerate(TABLE)
+]
 
 
 def only(*conditions):
-    return QUIET._replace(**dict.fromkeys(conditions, True))
+    return tuple([condition in conditions for condition in Condition])
+
+
+def long_in(mode):
+    """In this mode, every condition to leave it has held for long."""
+    return ModeState(mode, held_since=[0 if row.source is mode else -1 for row in TABLE])
 
 
 def fly(state, situations, start=START, config=CONFIG):
     """The mode after each tick."""
     modes = []
     for tick, situation in enumerate(situations, start):
-        state = advance(state, situation, tick, config)
+        advance(state, situation, tick, config)
         modes.append(state.mode)
     return modes
 
 
 class TestTable:
-    def test_conditions_exist(self):
-        assert {row.condition for row in TABLE} <= set(ModeConditions._fields)
-
     def test_every_condition_is_used(self):
-        assert {row.condition for row in TABLE} == set(ModeConditions._fields)
+        assert {row.condition for row in TABLE} == set(Condition)
 
     def test_dwell_times_exist_in_the_onboard_table(self):
         assert {row.dwell for row in TABLE} - {"none_s"} <= set(ModesTable.model_fields)
@@ -62,10 +66,10 @@ class TestTable:
     def test_every_mode_but_safe_trips_to_safe_before_anything_else_and_at_once(self):
         for mode in set(Mode) - {Mode.SAFE}:
             first = next(row for row in TABLE if row.source is mode)
-            assert (first.target, first.condition, first.dwell) == (Mode.SAFE, "tripped", "none_s")
+            assert (first.target, first.condition, first.dwell) == (Mode.SAFE, Condition.TRIPPED, "none_s")
 
     def test_losing_the_attitude_is_the_business_of_every_mode_that_needs_it(self):
-        sources = {row.source for row in TABLE if row.condition == "lost_attitude"}
+        sources = {row.source for row in TABLE if row.condition is Condition.LOST_ATTITUDE}
         assert sources == {Mode.ACQUIRE, Mode.POINT}
 
     def test_safe_is_left_towards_detumble_alone(self):
@@ -82,7 +86,7 @@ class TestEveryTransition:
     def test_the_new_mode_begins_afresh(self, index, row):
         state = ModeState(row.source, since_tick=17)
         for tick in range(START, START + DWELL_TICKS[index] + 1):
-            state = advance(state, only(row.condition), tick, CONFIG)
+            advance(state, only(row.condition), tick, CONFIG)
         assert (state.mode, state.since_tick) == (row.target, START + DWELL_TICKS[index])
         assert set(state.held_since) == {-1}
 
@@ -94,10 +98,11 @@ class TestEveryTransition:
 
     def test_a_lost_sync_does_not_stretch_the_dwell(self, index, row):
         """Dwell is in ticks of the clock, not in steps."""
-        state = advance(ModeState(row.source), only(row.condition), START, CONFIG)
+        state = ModeState(row.source)
+        advance(state, only(row.condition), START, CONFIG)
         if DWELL_TICKS[index]:
             assert state.mode is row.source
-            state = advance(state, only(row.condition), START + DWELL_TICKS[index], CONFIG)
+            advance(state, only(row.condition), START + DWELL_TICKS[index], CONFIG)
         assert state.mode is row.target
 
 
@@ -114,43 +119,37 @@ def test_without_any_condition_no_mode_is_left(mode):
 
 
 def test_a_trip_wins_over_everything_else():
-    everything = ModeConditions(*[True] * len(ModeConditions._fields))._replace(clear=False)
+    everything = only(*set(Condition) - {Condition.CLEAR})
     for mode in (Mode.DETUMBLE, Mode.ACQUIRE, Mode.POINT):
-        held = tuple(0 if row.source is mode else -1 for row in TABLE)
-        assert advance(ModeState(mode, held_since=held), everything, START, CONFIG).mode is Mode.SAFE
+        assert fly(long_in(mode), [everything]) == [Mode.SAFE]
 
 
 def test_being_fast_wins_over_being_near():
-    held = tuple(0 if row.source is Mode.ACQUIRE else -1 for row in TABLE)
-    assert (
-        advance(ModeState(Mode.ACQUIRE, held_since=held), only("fast", "near"), START, CONFIG).mode
-        is Mode.DETUMBLE
-    )
+    assert fly(long_in(Mode.ACQUIRE), [only(Condition.FAST, Condition.NEAR)]) == [Mode.DETUMBLE]
 
 
 class TestTrips:
-    def trip(self, state, tick):
-        return advance(state._replace(mode=Mode.POINT), only("tripped"), tick, CONFIG)
-
     def test_a_trip_is_counted_once_while_it_lasts(self):
         state = ModeState(Mode.POINT)
         for tick in range(50):
-            state = advance(state, only("tripped"), tick, CONFIG)
+            advance(state, only(Condition.TRIPPED), tick, CONFIG)
         assert (state.mode, state.trips) == (Mode.SAFE, 1)
 
     def test_a_violation_in_safe_keeps_it_there_and_is_no_trip(self):
-        state = advance(ModeState(Mode.SAFE, trips=1), only("tripped"), START, CONFIG)
+        state = ModeState(Mode.SAFE, trips=1)
+        advance(state, only(Condition.TRIPPED), START, CONFIG)
         assert (state.mode, state.trips) == (Mode.SAFE, 1)
 
     def test_safe_is_left_after_the_first_and_the_second_trip_but_never_after_the_third(self):
         state = ModeState()
         for trip in (1, 2, 3):
-            state = self.trip(state, START * trip)
+            state.mode = Mode.POINT
+            advance(state, only(Condition.TRIPPED), START * trip, CONFIG)
             assert (state.mode, state.trips) == (Mode.SAFE, trip)
             attitude = Attitude((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 0.0, True)
             modes = set()
             for tick in range(START * trip + 1, START * trip + 900):
-                state = advance(state, judge(attitude, 0.0, False, True, state, CONFIG), tick, CONFIG)
+                advance(state, judge_conditions(attitude, 0.0, False, True, state, CONFIG), tick, CONFIG)
                 modes.add(state.mode)
             assert (Mode.DETUMBLE in modes) is (trip < 3)
         assert modes == {Mode.SAFE}
@@ -163,8 +162,13 @@ def known(angle_deg=0.0, rate_degps=0.0, axis=(0.48, 0.64, 0.6)):
 
 
 def judged(attitude, tripped=False, config=CONFIG, spin_radps=0.0, has_field=True, **state):
-    situation = judge(attitude, spin_radps, tripped, has_field, ModeState(**state), config)
-    return {name for name, holds in situation._asdict().items() if holds}
+    holding = judge_conditions(attitude, spin_radps, tripped, has_field, ModeState(**state), config)
+    assert len(holding) == len(Condition)
+    return {condition.name.lower() for condition in Condition if holding[condition]}
+
+
+def holding(attitude):
+    return judge_conditions(attitude, 0.0, False, True, ModeState(), CONFIG)
 
 
 class TestConditions:
@@ -248,31 +252,22 @@ class TestHysteresis:
     @pytest.mark.parametrize("mode", [Mode.DETUMBLE, Mode.ACQUIRE])
     def test_a_rate_that_wavers_about_one_threshold_changes_nothing(self, mode):
         for threshold_degps in (0.3, 0.6):
-            wavering = [
-                judge(known(30.0, threshold_degps + 0.01 * sin(n)), 0.0, False, True, ModeState(), CONFIG)
-                for n in range(3000)
-            ]
+            wavering = [holding(known(30.0, threshold_degps + 0.01 * sin(n))) for n in range(3000)]
             assert set(fly(ModeState(mode), wavering)) == {mode}
 
     @pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
     def test_an_angle_that_wavers_about_one_threshold_changes_nothing(self, mode):
         for threshold_deg in (20.0, 40.0):
-            wavering = [
-                judge(known(threshold_deg + sin(n), 0.1), 0.0, False, True, ModeState(), CONFIG)
-                for n in range(3000)
-            ]
+            wavering = [holding(known(threshold_deg + sin(n), 0.1)) for n in range(3000)]
             assert set(fly(ModeState(mode), wavering)) == {mode}
 
     def test_between_the_thresholds_every_mode_stays(self):
-        between = judge(known(30.0, 0.45), 0.0, False, True, ModeState(), CONFIG)
+        between = holding(known(30.0, 0.45))
         for mode in (Mode.DETUMBLE, Mode.ACQUIRE, Mode.POINT):
             assert set(fly(ModeState(mode), [between] * 3000)) == {mode}
 
     def test_a_slow_swing_through_both_thresholds_goes_there_and_back_once(self):
-        swing = [
-            judge(known(30.0 - 30.0 * cos(pi * n / 5000.0), 0.1), 0.0, False, True, ModeState(), CONFIG)
-            for n in range(10000)
-        ]
+        swing = [holding(known(30.0 - 30.0 * cos(pi * n / 5000.0), 0.1)) for n in range(10000)]
         modes = fly(ModeState(Mode.ACQUIRE), swing)
         changes = [b for a, b in zip([Mode.ACQUIRE, *modes], modes, strict=False) if a is not b]
         assert changes == [Mode.POINT, Mode.ACQUIRE, Mode.POINT]

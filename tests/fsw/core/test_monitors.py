@@ -22,27 +22,27 @@ WELL = MonitorInput(
 
 
 def with_q(*q):
-    return WELL._replace(attitude=WELL.attitude._replace(q_body_from_orbit=q))
+    return WELL.replace(attitude=WELL.attitude._replace(q_body_from_orbit=q))
 
 
 def with_rate(*omega):
-    return WELL._replace(attitude=WELL.attitude._replace(omega_body_orbit_radps=omega))
+    return WELL.replace(attitude=WELL.attitude._replace(omega_body_orbit_radps=omega))
 
 
 def owing(*impulse):
-    return WELL._replace(owed_impulse_body_nms=impulse)
+    return WELL.replace(owed_impulse_body_nms=impulse)
 
 
 @pytest.mark.parametrize(
     "watched",
     [
         WELL,
-        WELL._replace(attitude=UNKNOWN),
-        WELL._replace(attitude=WELL.attitude._replace(valid=False)),
+        WELL.replace(attitude=UNKNOWN),
+        WELL.replace(attitude=WELL.attitude._replace(valid=False)),
         with_q(1.0, 0.0, 0.0, 0.0),
         with_q(*(c * (1.0 + 4e-7) for c in Q)),
         with_rate(0.499, -0.499, 0.499),
-        WELL._replace(field_age_ticks=0, status_age_ticks=0),
+        WELL.replace(field_age_ticks=0, status_age_ticks=0),
     ],
 )
 def test_all_is_well(watched):
@@ -63,11 +63,11 @@ TRIPS = [
     (Monitor.RATE_BOUNDED, with_rate(0.0, 0.0, 1e6)),
     (Monitor.OWED_FINITE, owing(nan, 0.0, 0.0)),
     (Monitor.OWED_FINITE, owing(0.0, inf, -inf)),
-    (Monitor.FIELD_FRESH, WELL._replace(field_age_ticks=60)),
-    (Monitor.COIL_STATUS_FRESH, WELL._replace(status_age_ticks=60)),
-    (Monitor.COIL_AS_COMMANDED, WELL._replace(unexpected_drive=True)),
-    (Monitor.ORBIT_KNOWN, WELL._replace(orbit_known=False)),
-    (Monitor.NO_SECOND_SENDER, WELL._replace(second_sender=True)),
+    (Monitor.FIELD_FRESH, WELL.replace(field_age_ticks=60)),
+    (Monitor.COIL_STATUS_FRESH, WELL.replace(status_age_ticks=60)),
+    (Monitor.COIL_AS_COMMANDED, WELL.replace(unexpected_drive=True)),
+    (Monitor.ORBIT_KNOWN, WELL.replace(orbit_known=False)),
+    (Monitor.NO_SECOND_SENDER, WELL.replace(second_sender=True)),
 ]
 
 
@@ -107,7 +107,7 @@ def test_of_several_violations_the_first_of_the_list_is_named():
         60,
     )
     assert first_violation(everything) is Monitor.ATTITUDE_FINITE
-    assert first_violation(everything._replace(attitude=WELL.attitude)) is Monitor.OWED_FINITE
+    assert first_violation(everything.replace(attitude=WELL.attitude)) is Monitor.OWED_FINITE
 
 
 def test_the_rate_is_judged_by_component():

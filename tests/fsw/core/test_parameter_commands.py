@@ -1,12 +1,14 @@
 """Parameters of the filter by telecommand: loaded, frozen, thawed; and what a clear leaves of the state."""
 
 import pytest
+from flight_states import altered
 
 from fsw.core.estimation.parameters import NOTHING as AS_THE_TABLE
 from fsw.core.estimation.parameters import component_places, with_component
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.sensors.credibility import is_credible
 from fsw.core.modes import ModeState
+from fsw.core.packing import pack
 from fsw.wire.messages import (
     Component,
     Mode,
@@ -84,7 +86,7 @@ class TestParameter:
         assert after.estimator.estimate.parameters == with_component(before.parameters, parameter, value)
         first = config.estimator.mekf.initial_parameters
         assert after.estimator.first == with_component(first, parameter, value)
-        assert after._replace(estimator=state.estimator) == state
+        assert pack(altered(after, estimator=state.estimator)) == pack(state)
 
     def test_a_second_one_keeps_the_first(self, obey, estimating):
         config, state = estimating
@@ -96,7 +98,7 @@ class TestParameter:
 
     def test_before_the_filter_has_started_it_waits_for_the_start(self, obey, estimating):
         config, state = estimating
-        waiting = state._replace(estimator=state.estimator._replace(estimate=None))
+        waiting = altered(state, estimator=state.estimator._replace(estimate=None))
         after, results = obey(waiting, TcParameter(Component.MAG_BIAS_Z, -9, 250), config=config)
         assert results == [TcAckResult.ACCEPTED]
         assert after.estimator.estimate is None
@@ -124,7 +126,7 @@ class TestParameter:
     def test_of_an_inertia_that_no_body_has_is_refused(self, obey, refused, estimating, sent, started):
         """Each number by itself could be a body's."""
         config, state = estimating
-        start = state if started else state._replace(estimator=state.estimator._replace(estimate=None))
+        start = state if started else altered(state, estimator=state.estimator._replace(estimate=None))
         for one in sent:
             assert obey(start, one, config=config)[1] == [TcAckResult.ACCEPTED]
         assert obey(start, *sent[:-1], config=config)[1] == [TcAckResult.ACCEPTED] * 2
@@ -141,7 +143,7 @@ class TestParameter:
         mixed = state.estimator._replace(first=small.first)
         if of_the_estimate:
             mixed = small._replace(first=state.estimator.first)
-        refused(TcAckResult.OUT_OF_RANGE, product, start=state._replace(estimator=mixed), config=config)
+        refused(TcAckResult.OUT_OF_RANGE, product, start=altered(state, estimator=mixed), config=config)
 
     def test_that_the_filter_does_not_carry(self, refused, config):
         known = component_places(config.estimator.mekf.layout)
@@ -169,14 +171,14 @@ class TestClear:
         config, state = estimating
         estimator = state.estimator
         traced = estimator._replace(estimate=estimator.estimate._replace(trace=object()))
-        after, results = obey(state._replace(estimator=traced), TcClear(), config=config)
+        after, results = obey(altered(state, estimator=traced), TcClear(), config=config)
         assert results == [TcAckResult.ACCEPTED]
         assert after.estimator.estimate.trace is None
         assert after.estimator.estimate.parameters == estimator.estimate.parameters
 
     @pytest.mark.parametrize("held", [True, False])
     def test_a_commanded_safe_stays_commanded(self, obey, state, held):
-        safe = state._replace(modes=ModeState(Mode.SAFE, 7, trips=2, held=held))
+        safe = altered(state, modes=ModeState(Mode.SAFE, 7, trips=2, held=held))
         after, _ = obey(safe, TcClear())
         assert after.modes == ModeState(Mode.SAFE, 7, trips=0, held=held)
 

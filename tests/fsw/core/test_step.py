@@ -4,11 +4,12 @@ from copy import deepcopy
 from itertools import pairwise
 
 import pytest
+from flight_states import stepped
 from replies import events_of, of
 
 from fsw.core.algebra.vector import dot, norm
 from fsw.core.packing import checksum
-from fsw.core.step import boot, step
+from fsw.core.step import boot
 from fsw.core.telemetry import Event
 from fsw.wire.messages import (
     CLASSES,
@@ -35,7 +36,7 @@ def flight(make_world):
     for _ in range(300):
         states.append(world.state)
         inboxes.append(world.inbox())
-        world.state, outbox = step(world.state, inboxes[-1], world.config)
+        world.state, outbox = stepped(world.state, inboxes[-1], world.config)
         for frame in outbox:
             world.plant.receive(frame)
         world.plant.end_tick()
@@ -48,7 +49,7 @@ class TestPurity:
     def test_the_same_input_gives_the_same_output_twice(self, flight, snapshot):
         config, inboxes, states, outboxes = flight
         for tick in (0, 1, 99, 100, 101, 299):
-            again, outbox = step(states[tick], inboxes[tick], config)
+            again, outbox = stepped(states[tick], inboxes[tick], config)
             assert outbox == outboxes[tick]
             assert snapshot(again) == snapshot(states[tick + 1])
 
@@ -69,7 +70,7 @@ class TestPurity:
         for tick in (100, 250):
             state, inbox = states[tick], inboxes[tick]
             before, kept = snapshot(state), deepcopy(inbox)
-            step(state, inbox, config)
+            stepped(state, inbox, config)
             assert snapshot(state) == before
             assert inbox == kept
         for name, kept in arrays.items():
@@ -79,7 +80,7 @@ class TestPurity:
         config, inboxes, states, outboxes = flight
         state = boot(config)
         for inbox, outbox in zip(inboxes, outboxes, strict=True):
-            state, again = step(state, inbox, config)
+            state, again = stepped(state, inbox, config)
             assert again == outbox
         assert snapshot(state) == snapshot(states[-1])
 
@@ -88,7 +89,7 @@ class TestPurity:
         ours, other = boot(config), make_world(seed=11)
         for inbox, outbox in zip(inboxes[:120], outboxes[:120], strict=True):
             other.step()
-            ours, again = step(ours, inbox, config)
+            ours, again = stepped(ours, inbox, config)
             assert again == outbox
 
 
@@ -158,14 +159,14 @@ class TestTicks:
     def test_a_tick_that_repeats_or_goes_back_is_counted_and_not_answered(self, flight):
         config, inboxes, states, _ = flight
         for tick in (150, 149, 0):
-            after, outbox = step(states[151], inboxes[tick], config)
+            after, outbox = stepped(states[151], inboxes[tick], config)
             assert outbox == ()
             assert after.ignored_syncs == states[151].ignored_syncs + 1
             assert after.tick == 150
 
     def test_nothing_else_changes(self, flight, snapshot):
         config, inboxes, states, _ = flight
-        after, _ = step(states[151], inboxes[150], config)
+        after, _ = stepped(states[151], inboxes[150], config)
         before, now = snapshot(states[151]), snapshot(after)
         assert {path for path in now if before.get(path) != now[path]} == {
             "state.ignored_syncs",
@@ -175,8 +176,8 @@ class TestTicks:
     def test_the_flight_goes_on_after_it(self, flight):
         """Only the count differs, and with it the checksum."""
         config, inboxes, states, outboxes = flight
-        disturbed, _ = step(states[151], inboxes[150], config)
-        _, outbox = step(disturbed, inboxes[151], config)
+        disturbed, _ = stepped(states[151], inboxes[150], config)
+        _, outbox = stepped(disturbed, inboxes[151], config)
         assert outbox[:-1] == outboxes[151][:-1]
         assert outbox[-1] != outboxes[151][-1]
 
@@ -187,7 +188,7 @@ class TestTicks:
         before = world.state.tick
         lost = world.inbox()
         world.plant.end_tick()
-        replies = world.step(lambda inbox: inbox._replace(frames=lost.frames + inbox.frames))
+        replies = world.step(lambda inbox: inbox.replace(frames=lost.frames + inbox.frames))
         assert of(TickDone, replies)[0].tick == before + 2
         assert world.state.gate.rejected == world.state.gate.missed == 0
         assert world.state.estimator.restarts == 0
@@ -223,7 +224,7 @@ class TestTicks:
         config, inboxes, states, outboxes = flight
         state, reports, fires = states[100], [], []
         for inbox in inboxes[100:130]:
-            state, outbox = step(state, inbox._replace(unix_time_s=inbox.unix_time_s + error_s), config)
+            state, outbox = stepped(state, inbox.replace(unix_time_s=inbox.unix_time_s + error_s), config)
             reports += [FswEvent.decode(f.data) for f in outbox if f.can_id == FswEvent.ID]
             fires.append([f for f in outbox if f.can_id == CoilFire.ID])
         assert [(m.event, m.argument) for m in reports if m.event == Event.TIME_MISMATCH] == [
@@ -259,7 +260,7 @@ class TestEvents:
         world = make_world()
         world.fly(10)
         refused = CoilRefused(coil=1, seq=7, reason=8, tick=9, counter=4).encode()
-        replies = world.step(lambda inbox: inbox._replace(frames=(*inbox.frames, refused)))
+        replies = world.step(lambda inbox: inbox.replace(frames=(*inbox.frames, refused)))
         assert [(m.event, m.argument) for m in of(FswEvent, replies)] == [(Event.REQUEST_REFUSED, 8)]
         assert world.state.coil.refusals == 1
         assert of(FswEvent, world.step()) == []

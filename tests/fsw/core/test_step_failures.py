@@ -23,7 +23,7 @@ def lose_syncs(world, ticks):
         frames += world.inbox().frames
         world.plant.end_tick()
     inbox = world.inbox()
-    return inbox._replace(frames=frames + inbox.frames)
+    return inbox.replace(frames=frames + inbox.frames)
 
 
 class TestLostSyncs:
@@ -116,7 +116,7 @@ class TestSilence:
 
     def test_without_any_board_from_the_start_nothing_is_ever_fired(self, make_world):
         world = make_world()
-        ticks = world.fly(250, lambda inbox: inbox._replace(frames=()))
+        ticks = world.fly(250, lambda inbox: inbox.replace(frames=()))
         assert world.state.modes.mode is Mode.SAFE
         assert world.state.estimator.estimate is None
         assert not any(of(CoilFire, replies) for replies in ticks)
@@ -130,7 +130,7 @@ class TestSilence:
         def drive(inbox):
             frames = [f for f in inbox.frames if f.can_id != CoilStatus.ID]
             frames.append(rogue.replace(counter=inbox.tick & 0xF).encode())
-            return inbox._replace(frames=tuple(frames))
+            return inbox.replace(frames=tuple(frames))
 
         world.step(drive)
         assert world.state.modes.mode is not Mode.SAFE

@@ -4,13 +4,13 @@ from dataclasses import replace
 from math import acos, degrees, inf, nan
 
 import pytest
+from flight_states import altered, stepped
 from replies import of
 
 from fsw.core.fdir.sensors.pair import Standing
 from fsw.core.orbit.ephemeris import advance
 from fsw.core.packing import checksum
 from fsw.core.state import Inbox
-from fsw.core.step import step
 from fsw.core.telemetry import Event
 from fsw.wire.messages import (
     CoilFire,
@@ -26,9 +26,9 @@ def test_an_orbit_that_has_decayed_leads_to_safe(make_world, decaying):
     world.fly(40)
     assert world.state.modes.mode is not Mode.SAFE
     tick = 30 * 86400
-    world.state = world.state._replace(tick=tick - 1, field_tick=tick - 1, status_tick=tick - 1)
+    world.state = altered(world.state, tick=tick - 1, field_tick=tick - 1, status_tick=tick - 1)
     inbox = Inbox(tick, world.config.epoch_unix_s + tick, world.inbox().frames)
-    state, outbox = step(world.state, inbox, world.config)
+    state, outbox = stepped(world.state, inbox, world.config)
     assert state.modes.mode is Mode.SAFE
     assert state.ephemeris is None
     assert not state.attitude.valid
@@ -46,8 +46,8 @@ def test_an_ephemeris_of_what_is_no_number_is_made_anew(make_world, vector, brok
     assert world.state.attitude.valid
     whole = world.state.ephemeris
     spoiled = replace(whole.nodes[1], **{vector: (broken, 1.0, 1.0)})
-    world.state = world.state._replace(
-        ephemeris=replace(whole, nodes=(whole.nodes[0], spoiled, *whole.nodes[2:]))
+    world.state = altered(
+        world.state, ephemeris=replace(whole, nodes=(whole.nodes[0], spoiled, *whole.nodes[2:]))
     )
     replies = world.step()
     assert not world.state.attitude.valid

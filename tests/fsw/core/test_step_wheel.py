@@ -1,10 +1,13 @@
 """A driven wheel in the flight loop: real frames of plant and boards, and what is lost or forged of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from flight_states import altered
 
 from fsw.core.packing import checksum
-from fsw.core.restart import restarted
+from fsw.core.restart import begin_count
 from fsw.wire.messages import Mode, WheelStatus, WheelTorque
 
 WHEEL = {
@@ -82,7 +85,7 @@ def test_a_report_that_cannot_be_changes_nothing_but_the_count(acting):
     def forged(inbox):
         jumped = WheelStatus(1, 1, 590.0, 0.0, counter=acting.state.tick + 1)
         frames = tuple(frame for frame in inbox.frames if frame.can_id != WheelStatus.ID)
-        return inbox._replace(frames=(*frames, jumped.encode()))
+        return inbox.replace(frames=(*frames, jumped.encode()))
 
     before = acting.state.wheel
     acting.step(forged)
@@ -93,7 +96,7 @@ def test_a_report_that_cannot_be_changes_nothing_but_the_count(acting):
 def test_in_safe_it_coasts(acting, without):
     world = acting
     while world.state.modes.mode is not Mode.SAFE:
-        world.state = world.state._replace(modes=world.state.modes._replace(mode=Mode.SAFE, held=True))
+        world.state = altered(world.state, modes=replace(world.state.modes, mode=Mode.SAFE, held=True))
     assert not any(torques(messages) for messages in world.fly(5))
     assert world.state.wheel.asked_nm == 0.0
 
@@ -107,10 +110,10 @@ def test_its_view_counts_in_the_checksum(acting):
         ("asked_nm", 1e-9),
         ("change_nms", 1e-9),
     ):
-        assert checksum(state._replace(wheel=state.wheel._replace(**{field: value}))) != checksum(state)
+        assert checksum(altered(state, wheel=state.wheel._replace(**{field: value}))) != checksum(state)
 
 
 def test_after_a_restart_of_the_plant_its_momentum_is_not_known(acting):
-    state = acting.state._replace(wheel=acting.state.wheel._replace(refused=3))
-    begun = restarted(state, 5, acting.config)
-    assert (begun.wheel.tick, begun.wheel.known, begun.wheel.refused) == (-1, False, 3)
+    state = altered(acting.state, wheel=acting.state.wheel._replace(refused=3))
+    begin_count(state, 5, acting.config)
+    assert (state.wheel.tick, state.wheel.known, state.wheel.refused) == (-1, False, 3)

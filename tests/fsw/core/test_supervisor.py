@@ -4,6 +4,7 @@ from math import degrees
 from typing import NamedTuple
 
 import pytest
+from flight_states import altered
 
 from fsw.core.algebra.vector import norm
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
@@ -39,10 +40,10 @@ def supervised(world):
     """The modes after the supervision of a state with changes, in POINT, and the monitor that is violated."""
 
     def judge(attitude=WELL, mode=Mode.POINT, **changes):
-        state = world.state._replace(modes=ModeState(mode), attitude=attitude, **changes)
-        after, violated = supervise(state, world.config)
-        assert after.violated == (violated or 0)
-        return Supervision(after.modes, violated)
+        state = altered(world.state, modes=ModeState(mode), attitude=attitude, **changes)
+        violated = supervise(state, world.config)
+        assert state.violated == (violated or 0)
+        return Supervision(state.modes, violated)
 
     return judge
 
@@ -94,7 +95,7 @@ def test_an_orbit_that_is_not_known_trips(supervised):
 def test_a_second_sender_trips_once_it_is_named(supervised):
     signs = SecondSenderWatch(SIGNS, TICK, 0x080)
     assert supervised(second_sender=signs).violated is Monitor.NO_SECOND_SENDER
-    assert supervised(second_sender=signs._replace(signs=SIGNS - 1)).violated is None
+    assert supervised(second_sender=SecondSenderWatch(SIGNS - 1, signs.tick, signs.can_id)).violated is None
 
 
 def test_a_trip_leads_to_safe_in_the_same_tick_and_is_counted(supervised):

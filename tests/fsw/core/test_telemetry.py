@@ -1,9 +1,11 @@
 """What fsw reports: values, saturation, counters, and events on changes alone."""
 
+from dataclasses import replace
 from math import inf, nan
 
 import numpy as np
 import pytest
+from flight_states import altered
 from gate_samples import measured
 
 from fsw.core import telemetry
@@ -37,13 +39,12 @@ from fsw.wire.messages import (
     intact,
 )
 
-FIRST = first_counters(with_wheel=True)
 ATTITUDE = Attitude((0.8, 0.36, -0.288, 0.384), (0.011, -0.007, 0.005), 0.02, 3e-4, True)
 
 
 @pytest.fixture(scope="module")
 def state(make_world):
-    return boot(make_world().config)._replace(modes=ModeState(Mode.POINT, trips=1))
+    return altered(boot(make_world().config), modes=ModeState(Mode.POINT, trips=1))
 
 
 def telemetry_rates(parameter_ticks):
@@ -126,7 +127,7 @@ class TestParameter:
 
     def reports(self, state, estimate, carried, tick):
         rates = telemetry_rates(10)
-        running = state._replace(tick=tick, estimator=EstimatorState(estimate))
+        running = altered(state, tick=tick, estimator=EstimatorState(estimate))
         return telemetry.parameter_messages(running, layout(carried), rates)
 
     def test_each_that_is_carried_has_its_turn_and_no_other(self, state):
@@ -163,28 +164,30 @@ class TestParameter:
 class TestNumbering:
     def test_each_message_counts_for_itself(self):
         nav, rate, beat = NavAttitude(1, 0.1, 0.2, 0.3), NavRate(1, 0.0, 0.0, 0.0), FswHeartbeat(0, 0, 0, 0)
-        counters, observed = FIRST, {NavAttitude.ID: [], NavRate.ID: [], FswHeartbeat.ID: []}
+        counters, observed = (
+            first_counters(with_wheel=True),
+            {NavAttitude.ID: [], NavRate.ID: [], FswHeartbeat.ID: []},
+        )
         for tick in range(40):
-            frames, counters = telemetry.number([nav, rate] + [beat] * (tick % 5 == 0), counters)
-            for frame in frames:
+            for frame in telemetry.number([nav, rate] + [beat] * (tick % 5 == 0), counters):
                 assert intact(frame)
                 observed[frame.can_id].append(CLASSES[frame.can_id].decode(frame.data).counter)
         assert observed[NavAttitude.ID] == observed[NavRate.ID] == [n % 16 for n in range(40)]
         assert observed[FswHeartbeat.ID] == list(range(8))
 
     def test_several_of_a_kind_in_one_tick(self):
-        event = FswEvent(0, 1, 2, 3)
-        frames, counters = telemetry.number([event] * 3, FIRST)
+        event, counters = FswEvent(0, 1, 2, 3), first_counters(with_wheel=True)
+        frames = telemetry.number([event] * 3, counters)
         assert [FswEvent.decode(frame.data).counter for frame in frames] == [0, 1, 2]
         assert counters[COUNTED.index(FswEvent.ID)] == 3
 
     def test_order_and_values_stay(self):
         messages = [CoilFire(-2, 1, 5, 7, 3000), NavAttitude(1, 0.5, -0.25, 0.125)]
-        frames, _ = telemetry.number(messages, FIRST)
+        frames = telemetry.number(messages, first_counters(with_wheel=True))
         assert [CLASSES[frame.can_id].decode(frame.data) for frame in frames] == messages
 
     def test_all_that_fsw_sends_now_and_then_is_numbered(self):
-        assert len(set(COUNTED)) == len(COUNTED) == len(FIRST)
+        assert len(set(COUNTED)) == len(COUNTED) == len(first_counters(with_wheel=True))
         assert set(COUNTED) == {
             m.ID
             for m in (
@@ -210,39 +213,39 @@ class TestEvents:
     NOTHING = measured()
 
     def found(self, before, after, readings=NOTHING, violated=None):
-        return telemetry.happenings(before, after, readings, violated, 60)
+        return telemetry.happenings(telemetry.Before(before), after, readings, violated, 60)
 
     def test_nothing_happened(self, state):
-        assert self.found(state, state._replace(tick=7)) == []
+        assert self.found(state, altered(state, tick=7)) == []
 
     def test_a_new_mode(self, state):
-        after = state._replace(modes=state.modes._replace(mode=Mode.ACQUIRE))
+        after = altered(state, modes=replace(state.modes, mode=Mode.ACQUIRE))
         assert self.found(state, after) == [Happening(Event.MODE_CHANGED, Mode.ACQUIRE)]
 
     def test_a_trip_is_told_with_its_monitor_before_the_mode_that_follows(self, state):
-        after = state._replace(modes=ModeState(Mode.SAFE, trips=2))
+        after = altered(state, modes=ModeState(Mode.SAFE, trips=2))
         assert self.found(state, after, violated=Monitor.FIELD_FRESH) == [
             Happening(Event.MONITOR_TRIPPED, Monitor.FIELD_FRESH),
             Happening(Event.MODE_CHANGED, Mode.SAFE),
         ]
 
     def test_a_violation_that_begins_in_safe_is_told_too(self, state):
-        safe = state._replace(modes=ModeState(Mode.SAFE, trips=2))
-        after = safe._replace(tick=8, violated=Monitor.ORBIT_KNOWN)
+        safe = altered(state, modes=ModeState(Mode.SAFE, trips=2))
+        after = altered(safe, tick=8, violated=Monitor.ORBIT_KNOWN)
         told = [Happening(Event.MONITOR_TRIPPED, Monitor.ORBIT_KNOWN)]
         assert self.found(safe, after, violated=Monitor.ORBIT_KNOWN) == told
-        other = safe._replace(violated=Monitor.FIELD_FRESH)
+        other = altered(safe, violated=Monitor.FIELD_FRESH)
         assert self.found(other, after, violated=Monitor.ORBIT_KNOWN) == told
 
     def test_a_violation_that_lasts_is_told_once(self, state):
-        safe = state._replace(modes=ModeState(Mode.SAFE, trips=2), violated=Monitor.FIELD_FRESH)
-        assert self.found(safe, safe._replace(tick=8), violated=Monitor.FIELD_FRESH) == []
+        safe = altered(state, modes=ModeState(Mode.SAFE, trips=2), violated=Monitor.FIELD_FRESH)
+        assert self.found(safe, altered(safe, tick=8), violated=Monitor.FIELD_FRESH) == []
 
     def test_the_filter_starts_and_restarts(self, state):
         known = Estimate((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), AS_THE_TABLE, np.eye(6))
-        running = state._replace(estimator=EstimatorState(known))
-        lost = state._replace(estimator=EstimatorState(None, restarts=1))
-        again = state._replace(estimator=EstimatorState(known, restarts=1))
+        running = altered(state, estimator=EstimatorState(known))
+        lost = altered(state, estimator=EstimatorState(None, restarts=1))
+        again = altered(state, estimator=EstimatorState(known, restarts=1))
         assert self.found(state, running) == [Happening(Event.FILTER_STARTED, 0)]
         assert self.found(running, running) == []
         assert self.found(running, lost) == [Happening(Event.FILTER_RESTARTED, 1)]
@@ -256,7 +259,7 @@ class TestEvents:
 
     @pytest.mark.parametrize("error_s", [1, -1, -86400])
     def test_a_clock_that_is_off_is_told_when_it_changes(self, state, error_s):
-        off = state._replace(time_error_s=error_s)
+        off = altered(state, time_error_s=error_s)
         assert self.found(state, off) == [Happening(Event.TIME_MISMATCH, error_s)]
         assert self.found(off, off) == []
         assert self.found(off, state) == [Happening(Event.TIME_MISMATCH, 0)]

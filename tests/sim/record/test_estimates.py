@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from flight_states import altered
 
+from fsw.core.packing import copy_state
 from sim.record.estimates import EstimateRecorder
 from sim.record.run_dir import BUS_LOG
 from sim.replay.log_replay import replay
@@ -11,7 +13,7 @@ from sim.replay.log_replay import replay
 @pytest.fixture(scope="module")
 def states(recorded_run, config_of):
     seen = []
-    replay(recorded_run / BUS_LOG, config_of(recorded_run), seen.append)
+    replay(recorded_run / BUS_LOG, config_of(recorded_run), lambda state: seen.append(copy_state(state)))
     return seen
 
 
@@ -44,7 +46,7 @@ def test_ticks_that_were_not_flown_are_unknown(states):
 
 
 def test_the_last_estimate_is_kept_whole_though_the_filter_has_lost_it(states):
-    lost = states[200]._replace(estimator=type(states[200].estimator)())
+    lost = altered(states[200], estimator=type(states[200].estimator)())
     assert recorded([*states[:200], lost], 300).last is states[199].estimator.estimate
     assert recorded(states, 40).last is states[39].estimator.estimate
     assert recorded([lost], 300).last is None
@@ -56,7 +58,7 @@ def test_ticks_beyond_the_histories_are_passed_over(states):
 
 def test_before_the_filter_has_started_nothing_is_known(states):
     state = states[50]
-    waiting = state._replace(estimator=type(state.estimator)(), attitude=state.attitude._replace(valid=False))
+    waiting = altered(state, estimator=type(state.estimator)(), attitude=state.attitude._replace(valid=False))
     estimates = recorded([waiting], 300)
     assert np.isnan(estimates.q_body_from_orbit).all()
     assert np.isnan(estimates.omega_body_orbit_radps).all()
@@ -65,7 +67,7 @@ def test_before_the_filter_has_started_nothing_is_known(states):
 def test_perfect_knowledge_has_an_attitude_and_no_covariance(fly_run, config_of):
     path = fly_run(ticks=20, knowledge="perfect")
     seen = []
-    replay(path / BUS_LOG, config_of(path), seen.append)
+    replay(path / BUS_LOG, config_of(path), lambda state: seen.append(copy_state(state)))
     estimates = recorded(seen, 20)
     assert np.isfinite(estimates.q_body_from_orbit).all()
     assert estimates.valid.all()

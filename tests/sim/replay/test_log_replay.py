@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from fsw.core.packing import copy_state
 from fsw.table.config import flight_config
 from fsw.wire.candump_line import format_line, format_time
 from fsw.wire.frame import Frame
@@ -93,7 +94,7 @@ class TestUnaltered:
 
     def test_the_state_of_every_tick_is_handed_out(self, recorded_run, config):
         states = []
-        replay(recorded_run / BUS_LOG, config, states.append)
+        replay(recorded_run / BUS_LOG, config, lambda state: states.append(copy_state(state)))
         assert [state.tick for state in states] == list(range(TICKS))
         assert states[-1].estimator.estimate is not None
 

@@ -5,6 +5,7 @@ from random import Random
 
 import pytest
 
+from fsw.core.packing import copy_state
 from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.wire.candump_line import format_line, format_time
@@ -101,7 +102,7 @@ def fly_with(tmp_path, monkeypatch):
 def test_replays_bit_exact(tmp_path, fly_with, frames_of):
     bus, config = fly_with(frames_of)
     states = []
-    result = replay(tmp_path / BUS_LOG, config, states.append)
+    result = replay(tmp_path / BUS_LOG, config, lambda state: states.append(copy_state(state)))
     assert bus.count > 5
     assert result.bit_exact, result.first_bit_difference
     assert result.ended

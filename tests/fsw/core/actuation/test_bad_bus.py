@@ -30,7 +30,7 @@ def test_reports_of_the_coil_driver_may_come_a_tick_late(world):
         statuses = [frame for frame in inbox.frames if frame.can_id == CoilStatus.ID]
         others = [frame for frame in inbox.frames if frame.can_id != CoilStatus.ID]
         before, held[:] = list(held), statuses
-        return inbox._replace(frames=(*before, *others))
+        return inbox.replace(frames=(*before, *others))
 
     said = world.fly(FLOWN_S, late)
     assert len(fires(said)) >= 3

@@ -1,6 +1,7 @@
 """The offset of the read-back: a current of coils that are off, which is none."""
 
 import pytest
+from flight_states import altered
 from gate_samples import measured
 
 from fsw.core.actuation.actuator import CoilView
@@ -47,13 +48,13 @@ def test_what_is_flown_with_an_offset_is_what_is_flown_without(make_world):
     """Until the first pulse, but for what the gate keeps of the frames; 1 mA of 25 mA at level 1."""
 
     def shifted(inbox):
-        return inbox._replace(frames=tuple(map(with_offset, inbox.frames)))
+        return inbox.replace(frames=tuple(map(with_offset, inbox.frames)))
 
     sound, other = make_world(), make_world()
     sound.fly(95)
     other.fly(95, shifted)
     assert sound.state.estimator.estimate is not None
-    assert checksum(other.state._replace(gate=sound.state.gate)) == checksum(sound.state)
+    assert checksum(altered(other.state, gate=sound.state.gate)) == checksum(sound.state)
 
 
 def with_offset(frame):

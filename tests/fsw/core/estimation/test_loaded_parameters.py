@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from flight_states import altered
 from gate_samples import measured
 
 from fsw.core.estimation import estimator
@@ -158,7 +159,7 @@ class TestFreeze:
     def test_values_stay_through_updates_and_attitude_and_rate_do_not(self, make_world):
         world = make_world(flight={"uncertainty": BOUNDS})
         world.fly(110)
-        world.state = world.state._replace(estimator=freeze(world.state.estimator))
+        world.state = altered(world.state, estimator=freeze(world.state.estimator))
         frozen = [world.state.estimator.estimate]
         for _ in range(30):
             world.step()
@@ -181,7 +182,7 @@ class TestFreeze:
         worlds = [make_world(flight={"uncertainty": dict.fromkeys(NONE, 0.0)}) for _ in range(2)]
         for world in worlds:
             world.fly(60)
-        worlds[1].state = worlds[1].state._replace(estimator=freeze(worlds[1].state.estimator))
+        worlds[1].state = altered(worlds[1].state, estimator=freeze(worlds[1].state.estimator))
         for world in worlds:
             world.fly(30)
         free, frozen = (world.state.estimator.estimate for world in worlds)
@@ -221,7 +222,7 @@ class TestFastTurn:
         world.fly(60)
         loaded = load(world.state.estimator, Component.TORQUE_Z, 3e-8, world.config.estimator.mekf)
         fast = loaded._replace(turning=Turning.FAST, frozen=frozen)
-        world.state = world.state._replace(estimator=fast)
+        world.state = altered(world.state, estimator=fast)
         world.step()
         return fast, world.state.estimator
 

@@ -6,7 +6,7 @@ import pytest
 from gate_samples import measured
 
 from fsw.core.events import Event
-from fsw.core.gate.second_sender import NO_SIGNS, SIGNS, SecondSenderConfig, watch
+from fsw.core.gate.second_sender import SIGNS, SecondSenderConfig, SecondSenderWatch, watch_senders
 from fsw.core.monitors import Monitor
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
@@ -37,11 +37,11 @@ def refusal(seq, reason=CoilRefusedReason.LOCKOUT):
     return measured(refused=CoilRefused(1, seq & 0xFF, reason, 0))
 
 
-def watched(heard, pulsed=True):
+def watched(heard, pulsed=True, seq=SEQ):
     """What is known after ``heard``, readings by tick."""
-    known = NO_SIGNS
+    known = SecondSenderWatch()
     for tick, readings in heard.items():
-        known = watch(known, readings, SEQ, pulsed, tick, CONFIG)
+        watch_senders(known, readings, seq, pulsed, tick, CONFIG)
     return known
 
 
@@ -77,7 +77,7 @@ class TestNamed:
     def test_any_sign_keeps_it_named_until_it_has_been_away_for_long_enough(self):
         named = {tick: under(CoilFire.ID) for tick in range(3)} | {122: under(NavRate.ID)}
         assert watched(named | {242: measured()}).detected
-        assert watched(named | {243: measured()}) == NO_SIGNS
+        assert watched(named | {243: measured()}) == SecondSenderWatch()
         assert not watched(named | {243: under(CoilFire.ID)}).detected
 
 
@@ -86,18 +86,18 @@ class TestNotNamed:
     @pytest.mark.parametrize("seq", [SEQ, SEQ + 1])
     def test_by_own_requests_refused(self, seq):
         """The one that was accepted last, come again, and the one after it."""
-        assert watched({tick: refusal(seq) for tick in range(50)}) == NO_SIGNS
+        assert watched({tick: refusal(seq) for tick in range(50)}) == SecondSenderWatch()
 
     def test_by_refusals_of_what_was_broken_on_its_way(self):
         broken = {tick: refusal(5 * tick, CoilRefusedReason.MALFORMED) for tick in range(50)}
-        assert watched(broken) == NO_SIGNS
+        assert watched(broken) == SecondSenderWatch()
 
     def test_by_refusals_of_a_continuous_driver_which_counts_otherwise(self):
-        assert watched({tick: refusal(5 * tick) for tick in range(50)}, pulsed=False) == NO_SIGNS
+        assert watched({tick: refusal(5 * tick) for tick in range(50)}, pulsed=False) == SecondSenderWatch()
 
     def test_when_the_sequence_number_wraps(self):
-        assert watch(NO_SIGNS, refusal(0), 255, True, 9, CONFIG) == NO_SIGNS
-        assert watch(NO_SIGNS, refusal(255), 0, True, 9, CONFIG) != NO_SIGNS
+        assert watched({9: refusal(0)}, seq=255) == SecondSenderWatch()
+        assert watched({9: refusal(255)}, seq=0) != SecondSenderWatch()
 
 
 class TestInFlight:
@@ -128,7 +128,7 @@ class TestInFlight:
             if not first <= inbox.tick < end:
                 return inbox
             fire = CoilFire(2, 1, rng.randrange(256), (inbox.tick + 9) & 0xFF, 3000, inbox.tick & 0xF)
-            return inbox._replace(frames=(*inbox.frames, fire.encode()))
+            return inbox.replace(frames=(*inbox.frames, fire.encode()))
 
         replies = world.fly(180, joined)
         assert self.events(replies, Event.SECOND_SENDER) == [(first + SIGNS - 1, CoilFire.ID)]
@@ -143,7 +143,7 @@ class TestInFlight:
         broken = FIRE.replace(data=bytes((FIRE.data[0] ^ 1,)) + FIRE.data[1:])
         short = Frame(TickDone.ID, TickDone(5, 6).encode().data[:-1])
         strange = (broken, short, Frame(CoilFire.ID | 0x8000_0000, FIRE.data))
-        replies = world.fly(130, lambda inbox: inbox._replace(frames=(*inbox.frames, *strange)))
+        replies = world.fly(130, lambda inbox: inbox.replace(frames=(*inbox.frames, *strange)))
         assert self.events(replies, Event.SECOND_SENDER) == []
         assert self.fired(replies)
 
@@ -151,13 +151,13 @@ class TestInFlight:
     def test_what_was_still_on_its_way_when_fsw_booted_is_no_second_sender(self, world):
         replies = world.fly(
             120,
-            lambda inbox: inbox._replace(frames=(FIRE, FIRE, *inbox.frames)) if inbox.tick < 2 else inbox,
+            lambda inbox: inbox.replace(frames=(FIRE, FIRE, *inbox.frames)) if inbox.tick < 2 else inbox,
         )
         assert self.events(replies, Event.SECOND_SENDER) == []
         assert self.fired(replies)
 
     def test_it_costs_no_sensor_reading(self, world):
-        world.fly(5, lambda inbox: inbox._replace(frames=(FIRE, *inbox.frames)))
+        world.fly(5, lambda inbox: inbox.replace(frames=(FIRE, *inbox.frames)))
         assert world.state.gate.rejected == 0
         assert world.state.field_tick == 4
         assert any(frame.can_id == MagField.ID for frame in world.inbox().frames)

@@ -1,11 +1,12 @@
 """Which SYNC is believed: what is near, what is strange, and what two strange ones in a row are."""
 
+from dataclasses import replace
 from itertools import pairwise
 from random import Random
 
 import pytest
 
-from fsw.core.gate.sync_watch import FEW_TICKS, LEAP_S, MOST_DOUBTED, Belief, SyncWatch, judge, near
+from fsw.core.gate.sync_watch import FEW_TICKS, LEAP_S, MOST_DOUBTED, Belief, SyncWatch, judge_sync, near
 from fsw.core.packing import pack
 
 FAR = 10**9
@@ -23,7 +24,7 @@ class Count:
 
     def hear(self, tick):
         """A SYNC: what it is taken for."""
-        belief, self.watch = judge(self.watch, self.tick, tick, self.leap_ticks)
+        belief = judge_sync(self.watch, self.tick, tick, self.leap_ticks)
         if belief in (Belief.NEXT, Belief.RESTARTED):
             self.tick = tick
         return belief
@@ -179,7 +180,7 @@ class TestTheTime:
         before = pack(count.watch)
         count.hear(AT + 2 + FEW_TICKS)
         assert pack(count.watch) != before
-        assert pack(count.watch) != pack(count.watch._replace(timed_tick=1))
+        assert pack(count.watch) != pack(replace(count.watch, timed_tick=1))
 
 
 class TestTheTickThatWasAnswered:

@@ -6,6 +6,7 @@ from math import isfinite
 from pathlib import Path
 
 import pytest
+from flight_states import altered
 
 from fsw.core import laws
 from fsw.core.algebra.quaternion import normalise
@@ -127,15 +128,15 @@ def test_a_law_is_a_function_and_takes_back_what_it_remembered(name, mode):
 
 def test_every_law_has_its_own_place_in_the_checksum():
     state = boot(CONFIG)
-    sums = {checksum(state._replace(setpoint=SETPOINT._replace(law=name))) for name in LAWS}
+    sums = {checksum(altered(state, setpoint=SETPOINT._replace(law=name))) for name in LAWS}
     assert len(sums) == len(LAWS)
 
 
 @pytest.mark.parametrize("field", ["k_w", "k_a", "k_i", "spin_radps"])
 def test_every_number_of_the_setpoint_shows_in_the_checksum(field):
-    state = boot(CONFIG)._replace(setpoint=SETPOINT)
+    state = altered(boot(CONFIG), setpoint=SETPOINT)
     changed = SETPOINT._replace(**{field: getattr(SETPOINT, field) * (1.0 + 2.0**-52)})
-    assert checksum(state._replace(setpoint=changed)) != checksum(state)
+    assert checksum(altered(state, setpoint=changed)) != checksum(state)
 
 
 @pytest.mark.parametrize("memory", [(), (0.0,), (1.0,), (0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (0.0, 5e-324)])
@@ -145,7 +146,7 @@ def test_memory_shows_in_the_checksum_by_value_place_and_length(memory):
     same = [
         other
         for other in others
-        if checksum(state._replace(memory=other)) == checksum(state._replace(memory=memory))
+        if checksum(altered(state, memory=other)) == checksum(altered(state, memory=memory))
     ]
     assert same == [memory]
 
@@ -154,8 +155,8 @@ def test_what_is_held_and_paid_and_driven_shows_in_the_checksum():
     state = boot(CONFIG)
     one = (0.0, 5e-324, 0.0)
     changed = [
-        state._replace(pulses=state.pulses._replace(held_am2=one)),
-        state._replace(coil=state.coil._replace(paid_body_nms=one)),
-        state._replace(coil=state.coil._replace(driven_am2=one)),
+        altered(state, pulses=state.pulses._replace(held_am2=one)),
+        altered(state, coil=state.coil._replace(paid_body_nms=one)),
+        altered(state, coil=state.coil._replace(driven_am2=one)),
     ]
     assert len({checksum(each) for each in (state, *changed)}) == 4

@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+from flight_states import altered, stepped
 
 from fsw.core.estimation.estimator import restart
 from fsw.core.estimation.start.batch import EMPTY
-from fsw.core.packing import checksum, pack
-from fsw.core.restart import restarted
+from fsw.core.packing import checksum, copy_state, pack
+from fsw.core.restart import begin_count
 from fsw.core.state import Inbox
-from fsw.core.step import boot, step
+from fsw.core.step import boot
 from fsw.table.config import flight_config
 from fsw.wire.messages import Mode, Sync, TcMode
 from sim.plant.plant import Plant
@@ -24,7 +25,7 @@ def searching():
     state = boot(config)
     while state.estimator.batch.search is None or state.estimator.batch.search.steps < 3:
         assert state.tick < 600
-        state, outbox = step(state, inbox_of(plant), config)
+        state, outbox = stepped(state, inbox_of(plant), config)
         for frame in outbox:
             plant.receive(frame)
         plant.end_tick()
@@ -40,38 +41,40 @@ def inbox_of(plant):
 
 def test_it_goes_on_by_a_few_samples_in_each_tick(searching):
     config, state, inbox = searching
-    after, _ = step(state, inbox, config)
+    after, _ = stepped(state, inbox, config)
     before, search = state.estimator.batch.search, after.estimator.batch.search
     assert (search.steps, search.at) != (before.steps, before.at)
-    assert checksum(after) != checksum(after._replace(estimator=state.estimator))
+    assert checksum(after) != checksum(altered(after, estimator=state.estimator))
 
 
 def test_a_change_of_mode_does_not_touch_it(searching):
     config, state, inbox = searching
     mode = Mode.SAFE if state.modes.mode is not Mode.SAFE else Mode.DETUMBLE
-    told = inbox._replace(frames=(TcMode(mode).encode(), *inbox.frames))
-    quiet, commanded = step(state, inbox, config)[0], step(state, told, config)[0]
+    told = inbox.replace(frames=(TcMode(mode).encode(), *inbox.frames))
+    quiet, commanded = stepped(state, inbox, config)[0], stepped(state, told, config)[0]
     assert commanded.modes.mode is mode is not quiet.modes.mode
     assert pack(commanded.estimator.batch) == pack(quiet.estimator.batch)
 
 
 def test_without_a_sample_it_goes_on_all_the_same(searching):
     config, state, inbox = searching
-    silent, _ = step(state, inbox._replace(frames=()), config)
-    usual, _ = step(state, inbox, config)
+    silent, _ = stepped(state, inbox.replace(frames=()), config)
+    usual, _ = stepped(state, inbox, config)
     assert pack(silent.estimator.batch) == pack(usual.estimator.batch)
 
 
 def test_a_new_count_of_ticks_and_a_restart_of_the_filter_end_it(searching):
     config, state, _ = searching
-    assert restarted(state, 7, config).estimator.batch == EMPTY
+    again = copy_state(state)
+    begin_count(again, 7, config)
+    assert again.estimator.batch == EMPTY
     assert restart(state.estimator).batch == EMPTY
 
 
 def test_the_step_is_pure(searching):
     config, state, inbox = searching
     before = pack(state.estimator.batch)
-    first, second = step(state, inbox, config), step(state, inbox, config)
+    first, second = stepped(state, inbox, config), stepped(state, inbox, config)
     assert checksum(first[0]) == checksum(second[0])
     assert pack(state.estimator.batch) == before
     np.testing.assert_array_equal(*(one.estimator.batch.search.q for one, _ in (first, second)))

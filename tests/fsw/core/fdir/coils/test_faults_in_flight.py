@@ -3,6 +3,7 @@
 from math import acos, degrees
 
 import pytest
+from flight_states import altered
 from gate_samples import measured
 
 from fsw.core.actuation.actuator import CoilView
@@ -43,7 +44,7 @@ def current_times(coil, factor):
                     frames.append(status.replace(current_ma=round(factor * status.current_ma)).encode())
                     continue
             frames.append(frame)
-        return inbox._replace(frames=tuple(frames))
+        return inbox.replace(frames=tuple(frames))
 
     return change
 
@@ -54,7 +55,7 @@ def told_by_driver(**values):
             CoilStatus.decode(f.data).replace(**values).encode() if f.can_id == CoilStatus.ID else f
             for f in inbox.frames
         ]
-        return inbox._replace(frames=tuple(frames))
+        return inbox.replace(frames=tuple(frames))
 
     return change
 
@@ -107,7 +108,7 @@ def teach(world, coil, error, sigma):
     covariance[place, place] = sigma**2
     parameters = state.estimate.parameters._replace(coil_error=tuple(errors))
     taught = state.estimate._replace(parameters=parameters, covariance=covariance, trace=None)
-    world.state = world.state._replace(estimator=state._replace(estimate=taught))
+    world.state = altered(world.state, estimator=state._replace(estimate=taught))
 
 
 @pytest.mark.long
@@ -119,7 +120,7 @@ def test_a_weak_coil_beside_an_estimate_that_is_not_proven_leaves_the_attitude(m
     world.fly_until_valid()
     teach(world, 1, -0.6, 0.02)
     health = world.state.health
-    world.state = world.state._replace(health=health._replace(sensors=health.sensors._replace(pair=Pair())))
+    world.state = altered(world.state, health=health._replace(sensors=health.sensors._replace(pair=Pair())))
     world.fly(1)
     assert not world.state.attitude.valid
     assert world.fly_until_valid() < 300
@@ -137,9 +138,9 @@ def test_a_coil_that_was_mended_and_cleared_is_taken_for_sound(make_world):
     teach(world, 1, -0.6, 0.02)
     health = world.state.health
     coils = health.coils._replace(faults=(0, CoilFault.WEAK, 0), until_retest=(0, 21600, 0))
-    world.state = world.state._replace(health=health._replace(coils=coils))
+    world.state = altered(world.state, health=health._replace(coils=coils))
     world.fly(5)
-    world.step(lambda inbox: inbox._replace(frames=(*inbox.frames, TcClear(counter=1).encode())))
+    world.step(lambda inbox: inbox.replace(frames=(*inbox.frames, TcClear(counter=1).encode())))
     errors = world.state.estimator.estimate.parameters.coil_error
     assert errors[0] == pytest.approx(0.01, abs=2e-3), "of the others nothing is forgotten"
     assert errors[4] == 0.0
@@ -181,10 +182,10 @@ def test_a_coil_that_is_named_is_not_fired_before_its_time_or_until_the_ground_c
     world = make_world()
     world.fly(SETTLED)
     health = world.state.health.coils._replace(faults=(1, 0, 3), until_retest=(2000, 0, 2000))
-    world.state = world.state._replace(health=world.state.health._replace(coils=health))
+    world.state = altered(world.state, health=world.state.health._replace(coils=health))
     said = fly(world, 900)
     assert {coil for _, coil in fires(said)} == {1}
-    world.step(lambda inbox: inbox._replace(frames=(*inbox.frames, TcClear(counter=3).encode())))
+    world.step(lambda inbox: inbox.replace(frames=(*inbox.frames, TcClear(counter=3).encode())))
     assert world.state.health.coils.faults == (0, 0, 0)
     assert {coil for _, coil in fires(fly(world, 900))} & {0, 2}
 

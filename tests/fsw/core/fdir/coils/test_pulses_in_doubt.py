@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from flight_states import stepped
 
 from fsw.core.algebra.vector import sub
-from fsw.core.step import step
 from fsw.core.telemetry import Event
 from fsw.wire.messages import CLASSES, CoilFire, CoilStatus, FswEvent
 
@@ -23,8 +23,8 @@ def fly(world, ticks, coil, loses_requests, every=1):
         lost = pulses and pulses % every == 0 and view.fired.coil == coil
         if lost and view.fired_tick < inbox.tick <= view.fired_tick + 3:
             frames = tuple(frame for frame in inbox.frames if frame.can_id != CoilStatus.ID)
-            inbox = inbox._replace(frames=frames)
-        world.state, outbox = step(world.state, inbox, world.config)
+            inbox = inbox.replace(frames=frames)
+        world.state, outbox = stepped(world.state, inbox, world.config)
         for frame in outbox:
             own = frame.can_id == CoilFire.ID and CoilFire.decode(frame.data).coil == coil
             pulses += own
@@ -68,7 +68,7 @@ def test_the_rate_is_as_uncertain_as_ticks_skipped_in_a_pulse_leave_it(make_worl
     for _ in range(skipped):
         lost += world.inbox().frames
         world.plant.end_tick()
-    world.step(lambda inbox: inbox._replace(frames=(*lost, *inbox.frames)))
+    world.step(lambda inbox: inbox.replace(frames=(*lost, *inbox.frames)))
     world.fly(4)
     state, truth = world.state, world.plant.truth()
     assert world.state.estimator.estimate.covariance[3:6, 3:6].trace() > 4.0 * before.trace()

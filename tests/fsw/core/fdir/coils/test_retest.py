@@ -1,6 +1,7 @@
 """A coil that was isolated is tried again: what has passed is believed, what has not, one pulse finds."""
 
 import pytest
+from flight_states import altered
 
 from fsw.core.estimation.loaded import load
 from fsw.core.fdir.coils.health import CoilHealth
@@ -23,7 +24,7 @@ def world(make_world):
 def isolate(world, *faults, until=(0, 0, 0)):
     health = world.state.health
     coils = health.coils._replace(faults=faults, until_retest=until)
-    world.state = world.state._replace(health=health._replace(coils=coils))
+    world.state = altered(world.state, health=health._replace(coils=coils))
 
 
 def without_current(coil):
@@ -33,7 +34,7 @@ def without_current(coil):
             told = CoilStatus.decode(frame.data) if frame.can_id == CoilStatus.ID else None
             cut = told is not None and told.coil == coil and told.level
             frames.append(told.replace(current_ma=0).encode() if cut else frame)
-        return inbox._replace(frames=tuple(frames))
+        return inbox.replace(frames=tuple(frames))
 
     return change
 

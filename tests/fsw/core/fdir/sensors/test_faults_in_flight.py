@@ -82,7 +82,7 @@ class Watcher:
     def fly(self, ticks, change=lambda frame: frame):
         for _ in range(ticks):
             q = self.world.plant.truth().q_body_from_orbit
-            said = self.world.step(lambda inbox: inbox._replace(frames=tuple(map(change, inbox.frames))))
+            said = self.world.step(lambda inbox: inbox.replace(frames=tuple(map(change, inbox.frames))))
             known = self.world.state.attitude
             cosine = abs(sum(a * b for a, b in zip(q, known.q_body_from_orbit, strict=True)))
             self.errors_deg.append(2.0 * degrees(acos(min(1.0, cosine))))

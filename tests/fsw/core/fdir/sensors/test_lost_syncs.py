@@ -24,7 +24,7 @@ def offset(inbox):
         said = MagField.decode(frame.data)
         return said.replace(b_x=said.b_x + 15000.0).encode()
 
-    return inbox._replace(frames=tuple(map(change, inbox.frames)))
+    return inbox.replace(frames=tuple(map(change, inbox.frames)))
 
 
 def regularly():
