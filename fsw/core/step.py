@@ -99,8 +99,8 @@ def _skip_ticks(state: FlightState, tick: int, config: FlightConfig) -> None:
         state.pulses = pulses.boot(tick, timing)
         state.field_tick = state.status_tick = tick
     elif state.tick < tick - 1:
-        state.pulses = pulses.delay(state.pulses, tick, tick - state.tick - 1)
-        state.coil = state.coil._replace(past_am2=(), idle_ticks=0)
+        pulses.delay(state.pulses, tick, tick - state.tick - 1)
+        state.coil.past_am2, state.coil.idle_ticks = (), 0
 
 
 def _gate(state: FlightState, tick: int, frames: tuple[Frame, ...], config: FlightConfig) -> Measurements:
@@ -108,16 +108,18 @@ def _gate(state: FlightState, tick: int, frames: tuple[Frame, ...], config: Flig
     readings = admit(frames, state.gate, skipped=0 <= state.tick < tick - 1)
     measurements = calibration.measure(readings, config.calibration)
     read_back.remove_offset(measurements, state.coil, tick, config.read_back)
-    view = update_view(state.coil, measurements, tick, config.coils)
-    view = own_field.subtract_own_field(view, measurements, config.estimator.blank_ticks, config.own_field)
-    state.tick, state.coil, state.syncs.strange_tick = tick, view, -1
+    view = state.coil
+    update_view(view, measurements, tick, config.coils)
+    own_field.subtract_own_field(view, measurements, config.estimator.blank_ticks, config.own_field)
+    state.tick, state.syncs.strange_tick = tick, -1
     if measurements.field is not None:
         state.field_tick = tick
     if measurements.coil is not None:
         state.status_tick = tick
     pulsed = config.coils.dipoles is None
     watch_senders(state.second_sender, measurements, view.seq, pulsed, tick, config.second_sender)
-    state.wheel = wheel.seen(state.wheel, measurements, tick, config.wheel)
+    if state.wheel is not None and config.wheel is not None:
+        wheel.update_view(state.wheel, measurements, tick, config.wheel)
     fdir.judge_current(state.health, view, measurements, tick, config.fdir)
     return measurements
 
@@ -218,14 +220,15 @@ def _schedule(
 ) -> list[CoilFire | CoilDipole | WheelTorque]:
     """At most one request to the coil driver, and one to the wheel."""
     faults, b_body_t = state.health.coils.faults, law_input.b_body_t
-    state.pulses, state.coil, request = actuate(
+    request = actuate(
         state.pulses, state.coil, demand, b_body_t, measurements, state.tick, config.coils, faults
     )
-    state.wheel, torque = wheel.request(state.wheel, demand, state.tick, config.wheel)
     state.sample, state.memory = law_input.sample, demand.memory if demand is not None else ()
     requests: list[CoilFire | CoilDipole | WheelTorque] = []
     if request is not None:
         requests.append(calibration.for_outputs(request, config.calibration))
-    if torque is not None:
-        requests.append(torque)
+    if state.wheel is not None and config.wheel is not None:
+        torque = wheel.request(state.wheel, demand, state.tick, config.wheel)
+        if torque is not None:
+            requests.append(torque)
     return requests

@@ -60,8 +60,8 @@ class ShippedScheduler:
             self._state = pulses.boot(heard.tick, self._config.pulses)
         readings = Readings(coil=heard.status, coil_boot=_BOOTED if heard.booted else None)
         measurements = measure(readings, NO_CALIBRATION)
-        self._view = update_view(self._view, measurements, heard.tick, self._config)
-        self._state, self._view, request = actuate(
+        update_view(self._view, measurements, heard.tick, self._config)
+        request = actuate(
             self._state, self._view, demand, heard.b_body_t, measurements, heard.tick, self._config
         )
         if not isinstance(request, CoilFire):

@@ -92,12 +92,10 @@ class Flight:
         if self.state is None:
             self.state = pulses.boot(tick, self.config.pulses)
         readings = measure(admit(tuple(frames), self.gate), NO_CALIBRATION)
-        self.view = update_view(self.view, readings, tick, self.config)
+        update_view(self.view, readings, tick, self.config)
         m_body_am2, b_body_t = demand
         asked = Asked(m_body_am2) if mode is not Mode.SAFE else None
-        self.state, self.view, request = actuate(
-            self.state, self.view, asked, b_body_t, readings, tick, self.config
-        )
+        request = actuate(self.state, self.view, asked, b_body_t, readings, tick, self.config)
         if request is None:
             return []
         self.sent += 1

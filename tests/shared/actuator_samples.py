@@ -1,5 +1,8 @@
 """A scheduler whose timers ran out long ago, over a board on which all coils are free."""
 
+from copy import deepcopy
+from dataclasses import replace
+
 from gate_samples import measured
 
 from fsw.core.actuation import pulses
@@ -42,7 +45,7 @@ COILS = ActuatorConfig(CONFIG, dipoles=None)
 
 def ready(owed=OWED_FOR[0]):
     """All own timers ran out long ago."""
-    return pulses.boot(0, CONFIG)._replace(ready_tick=(0, 0, 0), owed_impulse_body_nms=owed)
+    return replace(pulses.boot(0, CONFIG), ready_tick=(0, 0, 0), owed_impulse_body_nms=owed)
 
 
 def status(coil, lockout_ms=0, level=0, seq=0):
@@ -55,16 +58,30 @@ ALL_FREE = CoilView(lockout_ms=(0, 0, 0))
 BOARD_IS_THERE = measured(coil=status(0))
 
 
+def then(change, state, *arguments):
+    """The state after a change in place; the one before stays as it was."""
+    changed = deepcopy(state)
+    change(changed, *arguments)
+    return changed
+
+
+def answered(state, view, *rest):
+    """State and view after ``actuate``, and the request; those before stay as they were."""
+    state, view = deepcopy((state, view))
+    request = actuate(state, view, *rest)
+    return state, view, request
+
+
 def run(state=None, view=ALL_FREE, demand=None, readings=BOARD_IS_THERE, tick=TICK, config=CONFIG):
     """Under a law that asks for nothing more, unless told otherwise."""
     asked = Demand() if demand is None else demand
     coils = ActuatorConfig(config, dipoles=None)
-    return actuate(ready() if state is None else state, view, asked, B_BODY_T, readings, tick, coils)
+    return answered(ready() if state is None else state, view, asked, B_BODY_T, readings, tick, coils)
 
 
 def run_safe(state, view, readings=BOARD_IS_THERE, tick=TICK):
     """While no law flies."""
-    return actuate(state, view, None, B_BODY_T, readings, tick, COILS)
+    return answered(state, view, None, B_BODY_T, readings, tick, COILS)
 
 
 def refusal(tick):

@@ -1,10 +1,11 @@
 """From the demand of a law to a request to the coil driver, and the view of the driver's reports."""
 
+from dataclasses import dataclass, field
 from math import ceil
-from typing import NamedTuple
+from typing import final
 
 from fsw.core.actuation import dipoles, pulses
-from fsw.core.actuation.dipoles import NOTHING_ASKED, DipoleConfig, RequestedDipole
+from fsw.core.actuation.dipoles import DipoleConfig, RequestedDipole
 from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale
 from fsw.core.gate.measurements import Measurements
@@ -21,14 +22,16 @@ MOST_IDLE_TICKS = 10_000
 """The count of idle ticks stops here: longer than any sample is late."""
 
 
-class CoilView(NamedTuple):
+@final
+@dataclass(slots=True)
+class CoilView:
     """The last reports of the coil driver, and the last request to it.
 
     ``lockout_ms`` by coil, -1 where the board has not reported it yet; ``driven_coil`` and ``driven_level``
     over the tick that just ended, ``driven_am2`` the mean dipole over it, body axes; ``fired_tick`` is -1
     before the first request; ``paid_body_nms`` is the impulse of the last request; ``idle_ticks``: reports
     in a row of no level and no current. ``past_am2``: the nominal dipoles driven over the last ticks, the
-    newest first, where the coils' own field is known. ``asked``: the last request to a continuous driver.
+    newest first, where the coils' own field is known. ``requested``: the last request to a continuous driver.
     """
 
     lockout_ms: tuple[int, int, int] = LOCKOUT_UNKNOWN
@@ -42,50 +45,55 @@ class CoilView(NamedTuple):
     paid_body_nms: Vec3 = ZERO
     idle_ticks: int = 0
     past_am2: tuple[Vec3, ...] = ()
-    asked: RequestedDipole = NOTHING_ASKED
+    requested: RequestedDipole = field(default_factory=RequestedDipole)
+
+    @property
+    def as_fired(self) -> bool:
+        """Whether what is driven is the last pulse that was requested."""
+        return self.driven_coil == self.fired.coil and self.driven_level == self.fired.level
 
 
-class ActuatorConfig(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class ActuatorConfig:
     """The limits of the pulses, and the continuous driver that is there instead, if any."""
 
     pulses: PulseConfig
     dipoles: DipoleConfig | None
 
 
-def update_view(view: CoilView, measurements: Measurements, tick: int, config: ActuatorConfig) -> CoilView:
-    """The view after the reports of the coil driver in this tick.
+def update_view(view: CoilView, measurements: Measurements, tick: int, config: ActuatorConfig) -> None:
+    """Take the reports of the coil driver in this tick.
 
     A board that has just booted has not reported its lockouts. Without a status, the last request counts as
     driven while it is under way.
     """
-    lockout = list(view.lockout_ms if not measurements.coil_booted else LOCKOUT_UNKNOWN)
+    if measurements.coil_booted:
+        view.lockout_ms = LOCKOUT_UNKNOWN
+    if measurements.refused is not None:
+        view.refusals += 1
     status = measurements.coil
     if status is not None:
-        lockout[status.coil] = status.lockout_ms
-        coil, level, seq = status.coil, status.level, status.seq
+        a, b, c = view.lockout_ms
+        view.lockout_ms = (
+            status.lockout_ms if status.coil == 0 else a,
+            status.lockout_ms if status.coil == 1 else b,
+            status.lockout_ms if status.coil == 2 else c,
+        )
+        view.driven_coil, view.driven_level, view.seq = status.coil, status.level, status.seq
     else:
-        coil, level, seq = view.fired.coil, requested_level(view, tick, config.pulses), view.seq
-    if config.dipoles is None:
-        driven_am2 = scale(pulses.dipole_am2(level, config.pulses.levels_am2), config.pulses.coil_axes[coil])
-    elif measurements.dipole is not None:
-        driven_am2 = dipoles.dipole_am2(measurements.dipole, config.dipoles)
-    else:
-        driven_am2 = view.asked.over(tick)
+        view.driven_coil = view.fired.coil
+        view.driven_level = requested_level(view, tick, config.pulses)
     idle = status is not None and status.level == 0 and status.current_ma == 0
-    return CoilView(
-        lockout_ms=(lockout[0], lockout[1], lockout[2]),
-        driven_coil=coil,
-        driven_level=level,
-        driven_am2=driven_am2,
-        seq=seq,
-        refusals=view.refusals + (measurements.refused is not None),
-        fired_tick=view.fired_tick,
-        fired=view.fired,
-        paid_body_nms=view.paid_body_nms,
-        idle_ticks=min(view.idle_ticks + 1, MOST_IDLE_TICKS) if idle else 0,
-        past_am2=view.past_am2,
-        asked=view.asked._replace(reported=measurements.dipole is not None) if config.dipoles else view.asked,
-    )
+    view.idle_ticks = min(view.idle_ticks + 1, MOST_IDLE_TICKS) if idle else 0
+    if config.dipoles is None:
+        level_am2 = pulses.dipole_am2(view.driven_level, config.pulses.levels_am2)
+        view.driven_am2 = scale(level_am2, config.pulses.coil_axes[view.driven_coil])
+        return
+    view.requested.reported = measurements.dipole is not None
+    if measurements.dipole is not None:
+        view.driven_am2 = dipoles.dipole_am2(measurements.dipole, config.dipoles)
+    else:
+        view.driven_am2 = view.requested.over(tick)
 
 
 def requested_level(view: CoilView, tick: int, config: PulseConfig) -> int:
@@ -110,15 +118,20 @@ def wait_ticks(
     if 0 not in own:
         return own
     soonest = 0 if measurements.coil is not None else 1
-    a, b, c = (
-        wait if wait == NEVER else max(wait, soonest, _lockout_ticks(lockout_ms, config))
-        for wait, lockout_ms in zip(own, view.lockout_ms, strict=True)
+    (a, b, c), (of_a, of_b, of_c) = own, view.lockout_ms
+    return (
+        _longer_wait(a, soonest, of_a, config),
+        _longer_wait(b, soonest, of_b, config),
+        _longer_wait(c, soonest, of_c, config),
     )
-    return a, b, c
 
 
-def _lockout_ticks(lockout_ms: int, config: PulseConfig) -> int:
-    return config.backoff_ticks if lockout_ms < 0 else ceil(lockout_ms / (1000.0 * config.tick_s))
+def _longer_wait(own: int, soonest: int, lockout_ms: int, config: PulseConfig) -> int:
+    """Of the coil's own timer and the lockout that the board has reported."""
+    if own == NEVER:
+        return own
+    lockout_ticks = config.backoff_ticks if lockout_ms < 0 else ceil(lockout_ms / (1000.0 * config.tick_s))
+    return max(own, soonest, lockout_ticks)
 
 
 def unexpected(view: CoilView, tick: int, config: PulseConfig) -> bool:
@@ -126,7 +139,7 @@ def unexpected(view: CoilView, tick: int, config: PulseConfig) -> bool:
     if view.driven_level == 0:
         return False
     under_way = view.fired_tick < tick <= view.fired_tick + config.pulse_ticks + LATE_TICKS
-    return not under_way or (view.driven_coil, view.driven_level) != view.fired
+    return not under_way or not view.as_fired
 
 
 def actuate(
@@ -138,32 +151,31 @@ def actuate(
     tick: int,
     config: ActuatorConfig,
     faults: tuple[int, int, int] = (0, 0, 0),
-) -> tuple[PulseState, CoilView, CoilFire | CoilDipole | None]:
+) -> CoilFire | CoilDipole | None:
     """Turn the demand of the law into at most one request.
 
     Args:
-        state: scheduler state.
-        view: after ``update_view``.
+        state: of the scheduler, updated.
+        view: after ``update_view``; the request is remembered there.
         demand: of the law; None: nothing is owed and nothing is sent.
         b_body_t: field, body axes, T.
         measurements: of this tick; without a status of the coil driver nothing is sent.
         tick: tick that is answered.
         config: the coils.
         faults: by coil; one with a fault is not fired.
-
-    Returns:
-        Scheduler state, view, and the request to send or None.
     """
     if demand is None:
-        return state._replace(owed_impulse_body_nms=ZERO, held_am2=ZERO), view, None
+        state.owed_impulse_body_nms = state.held_am2 = ZERO
+        return None
     if config.dipoles is not None:
-        state, request = dipoles.request(state, demand, b_body_t, tick, config.dipoles, config.pulses)
+        request = dipoles.request(state, demand, b_body_t, tick, config.dipoles, config.pulses)
         if measurements.dipole is None:
-            return state, view, None
-        return state, view._replace(asked=dipoles.asked(request, tick, config.dipoles)), request
+            return None
+        dipoles.remember(view.requested, request, tick, config.dipoles)
+        return request
     if _refused(view, measurements, tick):
-        state = state._replace(owed_impulse_body_nms=add(state.owed_impulse_body_nms, view.paid_body_nms))
-        view = view._replace(fired=NO_PULSE, paid_body_nms=ZERO)
+        state.owed_impulse_body_nms = add(state.owed_impulse_body_nms, view.paid_body_nms)
+        view.fired, view.paid_body_nms = NO_PULSE, ZERO
     return _pulse(state, view, demand, b_body_t, measurements.coil is not None, tick, config.pulses, faults)
 
 
@@ -175,11 +187,12 @@ def _refused(view: CoilView, measurements: Measurements, tick: int) -> bool:
     refused, status = measurements.refused, measurements.coil
     if refused is None or tick > view.fired_tick + 2 or refused.tick != view.fired_tick & 0xFF:
         return False
-    if status is not None and status.level and (status.coil, status.level) == view.fired:
+    fired = view.fired
+    if status is not None and status.level and status.coil == fired.coil and status.level == fired.level:
         return False
     if refused.reason in OF_ANY_FRAME:
         return status is not None
-    return refused.coil == view.fired.coil and refused.seq != view.seq
+    return refused.coil == fired.coil and refused.seq != view.seq
 
 
 def _pulse(
@@ -191,20 +204,20 @@ def _pulse(
     tick: int,
     config: PulseConfig,
     faults: tuple[int, int, int],
-) -> tuple[PulseState, CoilView, CoilFire | None]:
+) -> CoilFire | None:
     """At most one pulse, and only when the coil's own timer and the board's last report of it agree."""
     owing = demand.impulse_body_nms is None and demand.pulse is None
     if owing:
-        state = pulses.owe(state, cross(demand.m_body_am2, b_body_t), b_body_t, config)
-    elif state.owed_impulse_body_nms != ZERO:
-        state = state._replace(owed_impulse_body_nms=ZERO)
+        pulses.owe(state, cross(demand.m_body_am2, b_body_t), b_body_t, config)
+    else:
+        state.owed_impulse_body_nms = ZERO
     pulse = _chosen(state, demand, b_body_t, tick, config, faults)
     if pulse is None or not status_fresh or view.lockout_ms[pulse.coil] != 0:
-        return state, view, None
-    request = CoilFire(pulse.level, pulse.coil, (view.seq + 1) & 0xFF, tick, config.duration_ms)
-    paid = pulses.impulse(pulse, b_body_t, config) if owing else ZERO
-    view = view._replace(fired_tick=tick, fired=pulse, paid_body_nms=paid)
-    return pulses.fire(state, pulse, paid, tick, config), view, request
+        return None
+    view.fired_tick, view.fired = tick, pulse
+    view.paid_body_nms = pulses.impulse(pulse, b_body_t, config) if owing else ZERO
+    pulses.fire(state, pulse, view.paid_body_nms, tick, config)
+    return CoilFire(pulse.level, pulse.coil, (view.seq + 1) & 0xFF, tick, config.duration_ms)
 
 
 def _chosen(

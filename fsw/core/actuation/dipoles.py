@@ -6,7 +6,7 @@ samples while it is off. An impulse law keeps the timing of the pulses; only its
 
 from dataclasses import dataclass
 from math import isfinite
-from typing import NamedTuple
+from typing import final
 
 from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, dot, scale, transform
@@ -33,28 +33,28 @@ class DipoleConfig:
     coils_from_body: Mat3 | None = None
 
 
-class RequestedDipole(NamedTuple):
-    """The last request: the tick that it answered, and its dipole as it is on the wire, body axes, A m^2.
+@final
+@dataclass(slots=True)
+class RequestedDipole:
+    """The last request: the tick that it answered, -1: none yet, and its dipole as it is on the wire.
 
-    ``reported``: whether the board has said what it drove over the tick that just ended.
+    The dipole in body axes, A m^2. ``reported``: whether the board has said what it drove over the tick that
+    just ended.
     """
 
-    tick: int
-    m_body_am2: Vec3
+    tick: int = -1
+    m_body_am2: Vec3 = ZERO
     reported: bool = False
 
     def over(self, tick: int) -> Vec3:
-        """The dipole asked for over the tick that ends at this one."""
+        """The dipole requested over the tick that ends at this one."""
         return self.m_body_am2 if tick == self.tick + 1 else ZERO
 
 
-NOTHING_ASKED = RequestedDipole(-1, ZERO)
-
-
-def asked(request: CoilDipole, tick: int, config: DipoleConfig) -> RequestedDipole:
-    """What is remembered of a request."""
-    on_the_wire = CoilDipole.decode(request.encode().data)
-    return RequestedDipole(tick, dipole_am2((on_the_wire.m_x, on_the_wire.m_y, on_the_wire.m_z), config))
+def remember(requested: RequestedDipole, request: CoilDipole, tick: int, config: DipoleConfig) -> None:
+    """Take this for the last request."""
+    sent = CoilDipole.decode(request.encode().data)
+    requested.tick, requested.m_body_am2 = tick, dipole_am2((sent.m_x, sent.m_y, sent.m_z), config)
 
 
 def dipole_am2(fractions: Vec3, config: DipoleConfig) -> Vec3:
@@ -65,15 +65,15 @@ def dipole_am2(fractions: Vec3, config: DipoleConfig) -> Vec3:
 
 def request(
     state: PulseState, demand: Demand, b_body_t: Vec3, tick: int, config: DipoleConfig, timing: PulseConfig
-) -> tuple[PulseState, CoilDipole]:
+) -> CoilDipole:
     """The dipole of this tick."""
     if demand.impulse_body_nms is None:
-        return state, saturate(demand.m_body_am2, config)
+        return saturate(demand.m_body_am2, config)
     if tick >= state.busy_until:
-        state = state._replace(held_am2=ZERO)
+        state.held_am2 = ZERO
         if tick >= max(state.ready_tick) and dot(b_body_t, b_body_t) > 0.0:
-            state = _begin(state, demand.impulse_body_nms, b_body_t, tick, config, timing)
-    return state, saturate(state.held_am2, config)
+            _begin(state, demand.impulse_body_nms, b_body_t, tick, config, timing)
+    return saturate(state.held_am2, config)
 
 
 def _begin(
@@ -83,10 +83,10 @@ def _begin(
     tick: int,
     config: DipoleConfig,
     timing: PulseConfig,
-) -> PulseState:
+) -> None:
     """Hold the best dipole for the length of a pulse, then none for the back-off."""
     if config.genetic:
-        m_body_am2 = search(
+        state.held_am2 = search(
             impulse_body_nms,
             b_body_t,
             timing.pulse_s,
@@ -96,10 +96,10 @@ def _begin(
         )
     else:
         paid = best_impulse(impulse_body_nms, b_body_t, config.inertia_kgm2)
-        m_body_am2 = scale(1.0 / (timing.pulse_s * dot(b_body_t, b_body_t)), cross(b_body_t, paid))
-    end = tick + timing.pulse_ticks
-    again = end + timing.backoff_ticks
-    return state._replace(ready_tick=(again, again, again), busy_until=end, held_am2=m_body_am2)
+        state.held_am2 = scale(1.0 / (timing.pulse_s * dot(b_body_t, b_body_t)), cross(b_body_t, paid))
+    state.busy_until = tick + timing.pulse_ticks
+    again = state.busy_until + timing.backoff_ticks
+    state.ready_tick = (again, again, again)
 
 
 def saturate(m_body_am2: Vec3, config: DipoleConfig) -> CoilDipole:
@@ -113,4 +113,5 @@ def saturate(m_body_am2: Vec3, config: DipoleConfig) -> CoilDipole:
     if not isfinite(sum(fractions)):
         return CoilDipole(0.0, 0.0, 0.0)
     most = max(abs(fractions[0]), abs(fractions[1]), abs(fractions[2]))
-    return CoilDipole(*(scale(MOST / most, fractions) if most > MOST else fractions))
+    x, y, z = scale(MOST / most, fractions) if most > MOST else fractions
+    return CoilDipole(x, y, z)

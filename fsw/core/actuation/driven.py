@@ -36,8 +36,8 @@ def driven(
         *skipped, asked_am2 = [_requested_am2(view, tick, config.pulses) for tick in ticks]
         together = sqrt(config.pulses.pulse_ticks)
     else:
-        *skipped, asked_am2 = [view.asked.over(tick) for tick in ticks]
-        reported, together = view.asked.reported, 1.0
+        *skipped, asked_am2 = [view.requested.over(tick) for tick in ticks]
+        reported, together = view.requested.reported, 1.0
     doubted_am2 = sub(asked_am2, view.driven_am2) if reported else asked_am2
     stray_am2 = sub(m_body_am2, view.driven_am2)
     return [

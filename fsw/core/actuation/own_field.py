@@ -34,8 +34,8 @@ class OwnField:
 
 def subtract_own_field(
     view: CoilView, measurements: Measurements, blank_ticks: int, config: OwnField | None
-) -> CoilView:
-    """Free the field sample of what the coils add, or mark it; the view with what was driven in this tick.
+) -> None:
+    """Free the field sample of what the coils add, or mark it; remember what was driven in this tick.
 
     Args:
         view: after ``update_view``.
@@ -45,22 +45,22 @@ def subtract_own_field(
     """
     if config is None:
         measurements.quiet = view.idle_ticks > blank_ticks
-        return view
-    view = _remembered(view, measurements, config)
+        return
+    _remember(view, measurements, config)
     shown = view.past_am2[config.newest : config.oldest + 1]
-    if len(shown) <= config.oldest - config.newest or any(m_am2 != shown[0] for m_am2 in shown):
+    if len(shown) <= config.oldest - config.newest or any([m_am2 != shown[0] for m_am2 in shown]):
         measurements.quiet = False
     else:
         _subtract(measurements, shown[0], config)
-    return view
 
 
-def _remembered(view: CoilView, measurements: Measurements, config: OwnField) -> CoilView:
-    """The view with what was driven in the tick that just ended; all is forgotten if that is uncertain."""
+def _remember(view: CoilView, measurements: Measurements, config: OwnField) -> None:
+    """Add what was driven in the tick that just ended; forget all if that is uncertain."""
     if not _certain(measurements, config):
-        return view._replace(past_am2=())
+        view.past_am2 = ()
+        return
     m_am2 = scale(dipole_am2(view.driven_level, config.levels_am2), AXES[view.driven_coil])
-    return view._replace(past_am2=(m_am2, *view.past_am2)[: config.oldest + 1])
+    view.past_am2 = (m_am2, *view.past_am2)[: config.oldest + 1]
 
 
 def _certain(measurements: Measurements, config: OwnField) -> bool:
@@ -68,7 +68,8 @@ def _certain(measurements: Measurements, config: OwnField) -> bool:
     status = measurements.coil
     if status is None or status.level == 0:
         return status is not None and status.current_ma == 0
-    low, high = (part * config.current_ma[abs(status.level) - 1] for part in SOUND)
+    nominal_ma = config.current_ma[abs(status.level) - 1]
+    low, high = SOUND[0] * nominal_ma, SOUND[1] * nominal_ma
     return low <= (status.current_ma if status.level > 0 else -status.current_ma) <= high
 
 

@@ -16,7 +16,7 @@ Source: Tavares et al. (ConSat, PoSAT-1) for the limits and the choice; the modu
 
 from dataclasses import dataclass
 from math import copysign
-from typing import NamedTuple
+from typing import final
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, cross, dot, norm, scale, sub, transform
 from fsw.core.laws.plan.pulse_model import AXES, NEVER, Pulse
@@ -42,7 +42,9 @@ class PulseConfig:
     coil_axes: Mat3 = AXES
 
 
-class PulseState(NamedTuple):
+@final
+@dataclass(slots=True)
+class PulseState:
     """The scheduler's own timers and the impulse still owed.
 
     ``ready_tick[coil]`` is the first tick in answer to which that coil may fire again; ``busy_until`` the
@@ -74,18 +76,23 @@ def boot(tick: int, config: PulseConfig) -> PulseState:
     return PulseState(ready_tick=(first, first, first), busy_until=tick)
 
 
-def delay(state: PulseState, tick: int, skipped: int) -> PulseState:
-    """The state after the count has skipped to ``tick``: running timers are extended by the skipped ticks.
+def delay(state: PulseState, tick: int, skipped: int) -> None:
+    """Extend the running timers by the skipped ticks, when the count has skipped to ``tick``.
 
     Lost ticks cannot be distinguished from ticks that never occurred, and a back-off must not end early.
     """
     before = tick - skipped - 1
-    a, b, c = (ready + skipped if ready > before else ready for ready in state.ready_tick)
-    busy = state.busy_until
-    return state._replace(ready_tick=(a, b, c), busy_until=busy + skipped if busy > before else busy)
+    a, b, c = state.ready_tick
+    state.ready_tick = (
+        a + skipped if a > before else a,
+        b + skipped if b > before else b,
+        c + skipped if c > before else c,
+    )
+    if state.busy_until > before:
+        state.busy_until += skipped
 
 
-def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseConfig) -> PulseState:
+def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseConfig) -> None:
     """Add one tick of the demanded torque: r <- (1 - h / tau) r + T h, |r| at most what one pulse can pay.
 
     Without that bound a strong demand would go on being paid long after its cause is gone.
@@ -94,7 +101,7 @@ def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseCo
     r1, r2, r3 = state.owed_impulse_body_nms
     t1, t2, t3 = torque_body_nm
     owed = (keep * r1 + h * t1, keep * r2 + h * t2, keep * r3 + h * t3)
-    return PulseState(state.ready_tick, state.busy_until, _within_a_pulse(owed, b_body_t, config))
+    state.owed_impulse_body_nms = _within_a_pulse(owed, b_body_t, config)
 
 
 def due(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseConfig) -> Vec3:
@@ -117,11 +124,13 @@ def wait_ticks(
     state: PulseState, tick: int, faults: tuple[int, int, int] = (0, 0, 0)
 ) -> tuple[int, int, int]:
     """By coil, ticks until its own timer lets it fire (0: in answer to this tick); ``NEVER`` with a fault."""
-    a, b, c = (
-        NEVER if fault else max(ready - tick, state.busy_until - tick, 0)
-        for ready, fault in zip(state.ready_tick, faults, strict=True)
+    busy = max(state.busy_until - tick, 0)
+    a, b, c = state.ready_tick
+    return (
+        NEVER if faults[0] else max(a - tick, busy),
+        NEVER if faults[1] else max(b - tick, busy),
+        NEVER if faults[2] else max(c - tick, busy),
     )
-    return a, b, c
 
 
 def choose(
@@ -156,26 +165,26 @@ def choose(
             continue
         gain = scale(config.pulse_s, cross(config.coil_axes[coil], b_body_t))
         along, square = dot(weighted, gain), dot(gain, transform(metric, gain))
-        for index, level_am2 in enumerate(config.levels_am2, start=1):
+        for index in range(3):
+            level_am2 = config.levels_am2[index]
             change = level_am2 * (level_am2 * square - 2.0 * abs(along))
             if change < least:
-                least, best = change, Pulse(coil, index if along > 0.0 else -index)
+                least, best = change, Pulse(coil, index + 1 if along > 0.0 else -index - 1)
     return best
 
 
-def fire(state: PulseState, pulse: Pulse, paid_body_nms: Vec3, tick: int, config: PulseConfig) -> PulseState:
-    """The state once ``pulse`` has been requested in answer to ``tick``: timers set, impulse paid."""
+def fire(state: PulseState, pulse: Pulse, paid_body_nms: Vec3, tick: int, config: PulseConfig) -> None:
+    """Set the timers and take the impulse for paid: ``pulse`` has been requested in answer to ``tick``."""
     end = tick + config.pulse_ticks
     again = end + config.backoff_ticks
-    ready = tuple(
-        again if config.shared or coil == pulse.coil else before
-        for coil, before in enumerate(state.ready_tick)
+    a, b, c = state.ready_tick
+    state.ready_tick = (
+        again if config.shared or pulse.coil == 0 else a,
+        again if config.shared or pulse.coil == 1 else b,
+        again if config.shared or pulse.coil == 2 else c,
     )
-    return PulseState(
-        ready_tick=(ready[0], ready[1], ready[2]),
-        busy_until=end,
-        owed_impulse_body_nms=sub(state.owed_impulse_body_nms, paid_body_nms),
-    )
+    state.busy_until = end
+    state.owed_impulse_body_nms = sub(state.owed_impulse_body_nms, paid_body_nms)
 
 
 def impulse(pulse: Pulse, b_body_t: Vec3, config: PulseConfig) -> Vec3:

@@ -8,9 +8,9 @@ The filter gets the measured momentum, and the torque on the body from its chang
 refused request need no model there. Where a report is missing, the change comes with the next.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import isfinite, sqrt
-from typing import NamedTuple
+from typing import final
 
 from fsw.core.algebra.vector import scale
 from fsw.core.estimation.estimator import EstimatorConfig
@@ -32,37 +32,38 @@ UNIT_NM = 2.0**-24
 MOST_REFUSED = 1_000_000
 
 
-class WheelView(NamedTuple):
+@final
+@dataclass(slots=True)
+class WheelView:
     """The last report that was accepted, at ``tick`` (-1: none counts), and the number refused.
 
     ``change_nms``: change of momentum from the last report to this tick's, zero without a report;
-    ``asked_nm``: the motor torque of the last request.
+    ``requested_nm``: the motor torque of the last request, zero without one in the last tick.
     """
 
     speed_radps: float = 0.0
     tick: int = -1
     change_nms: float = 0.0
-    asked_nm: float = 0.0
+    requested_nm: float = 0.0
     refused: int = 0
     known: bool = False
     """Whether there has been a report since boot."""
 
 
-def seen(
-    view: WheelView | None, measurements: Measurements, tick: int, wheel: Wheel | None
-) -> WheelView | None:
-    """The view after the reports of this tick; None without a wheel."""
-    if view is None or wheel is None:
-        return None
+def update_view(view: WheelView, measurements: Measurements, tick: int, wheel: Wheel) -> None:
+    """Take the report of this tick, if it counts."""
     if view.tick >= 0 and tick - view.tick > wheel.stale_ticks:
-        view = view._replace(tick=-1)
+        view.tick = -1
+    view.change_nms = 0.0
     status = measurements.wheel
     if status is None:
-        return view._replace(change_nms=0.0)
+        return
     if not status.valid or not _possible(status.speed_radps, view, tick, wheel):
-        return view._replace(change_nms=0.0, refused=min(view.refused + 1, MOST_REFUSED))
-    change_nms = wheel.inertia_kgm2 * (status.speed_radps - view.speed_radps) if view.known else 0.0
-    return view._replace(speed_radps=status.speed_radps, tick=tick, change_nms=change_nms, known=True)
+        view.refused = min(view.refused + 1, MOST_REFUSED)
+        return
+    if view.known:
+        view.change_nms = wheel.inertia_kgm2 * (status.speed_radps - view.speed_radps)
+    view.speed_radps, view.tick, view.known = status.speed_radps, tick, True
 
 
 def _possible(speed_radps: float, view: WheelView, tick: int, wheel: Wheel) -> bool:
@@ -101,36 +102,34 @@ def estimating(
     middle_nms = wheel.inertia_kgm2 * view.speed_radps - 0.5 * view.change_nms
     rate_nm = view.change_nms / (max(ticks, 1) * wheel.tick_s)
     reported = view.tick == tick
-    doubted_nms = CHANGE_SIGMA * abs(view.change_nms) if reported else abs(view.asked_nm) * wheel.tick_s
+    doubted_nms = CHANGE_SIGMA * abs(view.change_nms) if reported else abs(view.requested_nm) * wheel.tick_s
     axis = wheel.axis_body
     parts = (scale(middle_nms, axis), scale(-rate_nm, axis), scale(doubted_nms, axis))
     mekf = with_wheel(estimator.mekf, *parts)
     return replace(estimator, mekf=mekf)
 
 
-def request(
-    view: WheelView | None, demand: Demand | None, tick: int, wheel: Wheel | None
-) -> tuple[WheelView | None, WheelTorque | None]:
+def request(view: WheelView, demand: Demand | None, tick: int, wheel: Wheel) -> WheelTorque | None:
     """The request of this tick, friction added, within the limits; none where nothing is demanded.
 
     Args:
         view: of this tick.
         demand: of the law.
         tick: that is answered.
-        wheel: None: there is none.
+        wheel: as the table has it.
     """
     wanted_nm = None if demand is None else demand.wheel_torque_nm
-    if view is None or wheel is None:
-        return view, None
+    view.requested_nm = 0.0
     if wanted_nm is None or view.tick < 0 or not isfinite(wanted_nm):
-        return view._replace(asked_nm=0.0), None
+        return None
     torque_nm = wanted_nm + friction_nm(view.speed_radps, wheel)
     limit_nm = wheel.max_torque_nm - UNIT_NM
     torque_nm = min(max(torque_nm, -limit_nm), limit_nm)
     full = abs(view.speed_radps) * wheel.inertia_kgm2 >= wheel.max_momentum_nms
     if full and torque_nm * view.speed_radps > 0.0:
         torque_nm = 0.0
-    return view._replace(asked_nm=torque_nm), WheelTorque(torque_nm, tick)
+    view.requested_nm = torque_nm
+    return WheelTorque(torque_nm, tick)
 
 
 def friction_nm(speed_radps: float, wheel: Wheel) -> float:

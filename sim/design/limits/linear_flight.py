@@ -41,8 +41,6 @@ ORBITS, COUNTED = 6.0, 0.5
 LOST_DEG = 20.0
 """Beyond it an angle is not small."""
 NO_FAULTS = (0, 0, 0)
-READY = CoilView(lockout_ms=(0, 0, 0))
-"""The board bars no coil: the scheduler's own timers are the limit."""
 REPORTED = Measurements()
 REPORTED.coil = CoilReport(0, 0, 0, 0, 0, 0)
 
@@ -114,7 +112,7 @@ def fly(scenario: Scenario, theta_rad: Vec3, met: Sequence[Passed], told: bool =
     torque_nm, residual_am2 = scenario.disturbance.torque_nm, scenario.disturbance.residual_dipole_am2
     known = (torque_nm, residual_am2) if told else (ZERO, ZERO)
     body, timing = LinearBody(config, torque_nm), config.coils.pulses
-    scheduler, view = pulses.boot(0, timing), READY
+    scheduler, view = pulses.boot(0, timing), CoilView(lockout_ms=(0, 0, 0))  # the board bars no coil
     x, m_am2, until = np.array([*ZERO, *theta_rad]), ZERO, 0
     memory: Memory = ()
     errors: list[float] = []
@@ -126,9 +124,7 @@ def fly(scenario: Scenario, theta_rad: Vec3, met: Sequence[Passed], told: bool =
             Mode.POINT, seen._replace(wait_ticks=waits), memory, config.control.setpoint, config.control
         )
         memory = demand.memory if demand is not None else ()
-        scheduler, view, request = actuate(
-            scheduler, view, demand, seen.b_body_t, REPORTED, tick, config.coils, NO_FAULTS
-        )
+        request = actuate(scheduler, view, demand, seen.b_body_t, REPORTED, tick, config.coils, NO_FAULTS)
         if isinstance(request, CoilFire):
             fired.append(Fired(tick, request.coil, request.level))
             m_am2 = scale(pulses.dipole_am2(request.level, timing.levels_am2), AXES[request.coil])

@@ -104,15 +104,11 @@ def _fly(
         assert demand is not None
         memory = demand.memory
         if coils.continuous is not None:
-            scheduler, asked = dipoles.request(
-                scheduler, demand, seen.b_body_t, tick, coils.continuous, coils.timing
-            )
+            asked = dipoles.request(scheduler, demand, seen.b_body_t, tick, coils.continuous, coils.timing)
             share = 1.0 if demand.impulse_body_nms is None else coils.share
             m_am2 = scale(share * coils.continuous.full_scale_am2, (asked.m_x, asked.m_y, asked.m_z))
         else:
-            scheduler, view, request = actuate(
-                scheduler, view, demand, seen.b_body_t, REPORTED, tick, driver, NO_FAULTS
-            )
+            request = actuate(scheduler, view, demand, seen.b_body_t, REPORTED, tick, driver, NO_FAULTS)
             if isinstance(request, CoilFire):
                 size = coils.share * pulses.dipole_am2(request.level, coils.timing.levels_am2)
                 m_am2 = scale(size, AXES[request.coil])

@@ -98,7 +98,7 @@ def test_in_safe_it_coasts(acting, without):
     while world.state.modes.mode is not Mode.SAFE:
         world.state = altered(world.state, modes=replace(world.state.modes, mode=Mode.SAFE, held=True))
     assert not any(torques(messages) for messages in world.fly(5))
-    assert world.state.wheel.asked_nm == 0.0
+    assert world.state.wheel.requested_nm == 0.0
 
 
 def test_its_view_counts_in_the_checksum(acting):
@@ -107,13 +107,13 @@ def test_its_view_counts_in_the_checksum(acting):
         ("speed_radps", 1.0),
         ("tick", 5),
         ("refused", 9),
-        ("asked_nm", 1e-9),
+        ("requested_nm", 1e-9),
         ("change_nms", 1e-9),
     ):
-        assert checksum(altered(state, wheel=state.wheel._replace(**{field: value}))) != checksum(state)
+        assert checksum(altered(state, wheel=replace(state.wheel, **{field: value}))) != checksum(state)
 
 
 def test_after_a_restart_of_the_plant_its_momentum_is_not_known(acting):
-    state = altered(acting.state, wheel=acting.state.wheel._replace(refused=3))
+    state = altered(acting.state, wheel=replace(acting.state.wheel, refused=3))
     begin_count(state, 5, acting.config)
     assert (state.wheel.tick, state.wheel.known, state.wheel.refused) == (-1, False, 3)

@@ -1,5 +1,6 @@
 """Monitors and modes joined: what is watched comes from where it should, and its trip is carried out."""
 
+from dataclasses import replace
 from math import degrees
 from typing import NamedTuple
 
@@ -69,7 +70,7 @@ def test_freshness_is_counted_from_the_last_message(world, supervised, name, mon
 
 
 def test_an_impulse_that_is_no_number_trips(world, supervised):
-    pulses = world.state.pulses._replace(owed_impulse_body_nms=(0.0, float("nan"), 0.0))
+    pulses = replace(world.state.pulses, owed_impulse_body_nms=(0.0, float("nan"), 0.0))
     assert supervised(pulses=pulses).violated is Monitor.OWED_FINITE
 
 

@@ -239,21 +239,15 @@ class Search:
     def _decide(self, own: Own, phase: int, status: CoilStatus | None, boot: CoilBoot | None) -> list[tuple]:
         """Each outcome, the scheduler afterwards and what it asks, with the demands that lead to it."""
         tick = EPOCH + phase
-        timers = pulses.PulseState(tuple(tick + left for left in own.ready), tick + own.busy, ZERO)
+        ready_tick, busy_until = tuple(tick + left for left in own.ready), tick + own.busy
         readings = measured(coil=status, coil_boot=boot)
-        view = actuator.update_view(actuator.CoilView(lockout_ms=own.word), readings, tick, self.coils)
         outcomes: dict[tuple[Own, CoilFire | None], list[int | None]] = {}
         for demand, (owed, b_body_t) in DEMANDS.items():
-            state, after, request = actuator.actuate(
-                timers._replace(owed_impulse_body_nms=owed),
-                view,
-                Demand(),
-                b_body_t,
-                readings,
-                tick,
-                self.coils,
-            )
-            outcomes.setdefault((relative(state, after, tick + 1), request), []).append(demand)
+            state = pulses.PulseState(ready_tick, busy_until, owed)
+            view = actuator.CoilView(lockout_ms=own.word)
+            actuator.update_view(view, readings, tick, self.coils)
+            request = actuator.actuate(state, view, Demand(), b_body_t, readings, tick, self.coils)
+            outcomes.setdefault((relative(state, view, tick + 1), request), []).append(demand)
         return list(outcomes.items())
 
     def _ask(self, board: interlock.Interlock, request: CoilFire, phase: int) -> tuple:

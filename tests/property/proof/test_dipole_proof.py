@@ -57,8 +57,8 @@ class Line:
         said = [] if self.board is None else self.board.begin_tick(tick, 0.0)
         heard = [f for f in said if status == "heard" or f.can_id in (CoilBoot.ID,)]
         readings = measure(admit(tuple(heard), self.gate), NO_CALIBRATION)
-        self.view = update_view(self.view, readings, tick, CONFIG)
-        self.state, self.view, asked = actuate(self.state, self.view, demand, FIELD, readings, tick, CONFIG)
+        update_view(self.view, readings, tick, CONFIG)
+        asked = actuate(self.state, self.view, demand, FIELD, readings, tick, CONFIG)
         self.judge_request(tick, asked, demand, told=any(f.can_id == CoilDipoleStatus.ID for f in heard))
         self.judge_drive(asked, request)
 

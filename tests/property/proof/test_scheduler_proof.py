@@ -36,7 +36,9 @@ def booting(first_of: Callable) -> Planting:
     """When the own timers run out after boot: ``first_of(tick, config)``, by coil."""
 
     def wrong(boot, tick, config):
-        return boot(tick, config)._replace(ready_tick=first_of(tick, config))
+        state = boot(tick, config)
+        state.ready_tick = first_of(tick, config)
+        return state
 
     return around(pulses, "boot", wrong)
 
@@ -63,8 +65,8 @@ def firing(
             again_at(tick, config) if backs_off(coil, pulse, config) else before
             for coil, before in enumerate(state.ready_tick)
         )
-        after = fire(state, pulse, paid_body_nms, tick, config)
-        return after._replace(ready_tick=ready_tick, busy_until=busy_until(tick, config))
+        fire(state, pulse, paid_body_nms, tick, config)
+        state.ready_tick, state.busy_until = ready_tick, busy_until(tick, config)
 
     return around(pulses, "fire", wrong)
 
@@ -81,11 +83,10 @@ def hearing(lockout_of: Callable) -> Planting:
     """What is taken for the board's lockouts after a status: ``lockout_of(after, before, status)``."""
 
     def wrong(update_view, view, readings, tick, config):
-        after = update_view(view, readings, tick, config)
-        if readings.coil is None:
-            return after
         before = view.lockout_ms if not readings.coil_booted else actuator.LOCKOUT_UNKNOWN
-        return after._replace(lockout_ms=tuple(lockout_of(after.lockout_ms, before, readings.coil)))
+        update_view(view, readings, tick, config)
+        if readings.coil is not None:
+            view.lockout_ms = tuple(lockout_of(view.lockout_ms, before, readings.coil))
 
     return around(actuator, "update_view", wrong)
 
@@ -98,8 +99,10 @@ def asking_the_word(seen: Callable) -> Planting:
     """What the decision to fire sees of the board's word: ``seen(lockouts)``."""
 
     def wrong(pulse, state, view, *rest):
-        state, after, request = pulse(state, view._replace(lockout_ms=seen(view.lockout_ms)), *rest)
-        return state, after._replace(lockout_ms=view.lockout_ms), request
+        word, view.lockout_ms = view.lockout_ms, seen(view.lockout_ms)
+        request = pulse(state, view, *rest)
+        view.lockout_ms = word
+        return request
 
     return around(actuator, "_pulse", wrong)
 
@@ -108,8 +111,9 @@ def requesting(change: Callable) -> Planting:
     """What is asked: ``change(request, view)``."""
 
     def wrong(pulse, state, view, *rest):
-        state, after, request = pulse(state, view, *rest)
-        return state, after, request and change(request, view)
+        before = copy(view)
+        request = pulse(state, view, *rest)
+        return request and change(request, before)
 
     return around(actuator, "_pulse", wrong)
 
@@ -295,17 +299,17 @@ UNSAFE = {
     ),
     "own timers not asked": (
         own_timers_alone,
-        choosing(lambda state: state._replace(ready_tick=(0, 0, 0))),
+        choosing(lambda state: replace(state, ready_tick=(0, 0, 0))),
         BOTH,
     ),
     "own timers asked a tick early": (
         own_timers_alone,
-        choosing(lambda state: state._replace(ready_tick=tuple(ready - 1 for ready in state.ready_tick))),
+        choosing(lambda state: replace(state, ready_tick=tuple(ready - 1 for ready in state.ready_tick))),
         BOTH,
     ),
     "a pulse into another": (
         own_timers_alone,
-        choosing(lambda state: state._replace(busy_until=0)),
+        choosing(lambda state: replace(state, busy_until=0)),
         (PER_COIL,),
     ),
     "a pulse a tick long": (own_timers_alone, PULSE_A_TICK_LONG, BOTH),

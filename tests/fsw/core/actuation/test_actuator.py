@@ -14,29 +14,31 @@ from actuator_samples import (
     OWED_FOR,
     TICK,
     ZERO,
+    answered,
     make_config,
     ready,
     refusal,
     run,
     run_safe,
     status,
+    then,
 )
 from gate_samples import measured
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
 from fsw.core.actuation import pulses
-from fsw.core.actuation.actuator import OF_ANY_FRAME, CoilView, actuate, update_view
+from fsw.core.actuation.actuator import OF_ANY_FRAME, CoilView, update_view
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.plan.pulse_model import NO_PULSE, Pulse
 from fsw.wire.messages import CoilBoot, CoilFire, CoilRefused, CoilRefusedReason
 
 
 def test_after_a_boot_of_the_board_nothing_goes_out_before_its_word_is_heard():
-    view = update_view(ALL_FREE, measured(coil_boot=CoilBoot(1, 1, 7), coil=status(1)), TICK, COILS)
+    view = then(update_view, ALL_FREE, measured(coil_boot=CoilBoot(1, 1, 7), coil=status(1)), TICK, COILS)
     state, view, request = run(view=view)
     assert request is None, "coil 0 is what is wanted"
-    view = update_view(view, measured(coil=status(0)), TICK + 1, COILS)
+    view = then(update_view, view, measured(coil=status(0)), TICK + 1, COILS)
     assert run(state, view, tick=TICK + 1)[2].coil == 0
 
 
@@ -53,7 +55,7 @@ WANTED = {
 @pytest.mark.parametrize("kind", WANTED)
 def test_the_request_names_pulse_answer_and_length_and_is_remembered(kind):
     state, demand, paid = WANTED[kind]
-    state, view, request = run(state, ALL_FREE._replace(seq=41), demand, tick=0x1234)
+    state, view, request = run(state, replace(ALL_FREE, seq=41), demand, tick=0x1234)
     assert request == CoilFire(level=3, coil=0, seq=42, tick=0x1234, duration_ms=3000)
     assert CoilFire.decode(request.encode().data).tick == 0x34
     assert (view.fired_tick, view.fired) == (0x1234, Pulse(0, 3))
@@ -67,9 +69,9 @@ def test_every_coil_is_fired_unless_it_has_a_fault(coil):
     b_body_t = (2e-5, 2e-5, 2e-5)
     owed = pulses.impulse(Pulse(coil, 3), b_body_t, CONFIG)
     asked = (ready(owed), ALL_FREE, Demand(), b_body_t, BOARD_IS_THERE, TICK, COILS)
-    _, _, request = actuate(*asked)
+    _, _, request = answered(*asked)
     assert request.coil == coil
-    _, _, other = actuate(*asked, tuple(int(number == coil) for number in range(3)))
+    _, _, other = answered(*asked, tuple(int(number == coil) for number in range(3)))
     assert other is None or other.coil != coil
 
 
@@ -110,24 +112,26 @@ def test_a_pulse_goes_out_when_more_than_half_of_the_lowest_is_due(asked_am2, fi
 def test_a_pulse_goes_out_only_if_the_word_on_exactly_its_coil_is_zero(coil, lockout_ms):
     """Whatever the word on the others; and no other coil is taken in its place."""
     owed = OWED_FOR[coil]
-    state, view, request = run(ready(owed), ALL_FREE._replace(lockout_ms=lockout_ms))
+    state, view, request = run(ready(owed), replace(ALL_FREE, lockout_ms=lockout_ms))
     if lockout_ms[coil] == 0:
         assert request.coil == coil
     else:
         assert request is None
-        assert state == pulses.owe(ready(owed), ZERO, B_BODY_T, CONFIG), "it stays owed, and no timer is set"
+        assert state == then(pulses.owe, ready(owed), ZERO, B_BODY_T, CONFIG), (
+            "it stays owed, and no timer is set"
+        )
         assert view.fired_tick == -1
 
 
 def test_a_pulse_waits_for_a_tick_with_a_status():
     state, view, request = run(readings=measured())
     assert request is None
-    assert state == pulses.owe(ready(), ZERO, B_BODY_T, CONFIG)
+    assert state == then(pulses.owe, ready(), ZERO, B_BODY_T, CONFIG)
     assert view == ALL_FREE
 
 
 def test_a_board_that_is_free_does_not_shorten_the_own_timers():
-    locked = ready()._replace(ready_tick=(TICK + 1,) * 3)
+    locked = replace(ready(), ready_tick=(TICK + 1,) * 3)
     assert run(locked)[2] is None
     assert run(locked, tick=TICK + 1)[2] is not None
 
@@ -191,7 +195,7 @@ def test_a_refusal_that_is_heard_twice_gives_back_once():
 
 def test_a_request_that_was_refused_does_not_count_as_driven():
     _, view, _ = refused_at(1)
-    after = update_view(view, measured(), TICK + 2, COILS)
+    after = then(update_view, view, measured(), TICK + 2, COILS)
     assert (after.driven_level, after.driven_am2) == (0, ZERO)
 
 
@@ -216,7 +220,7 @@ def test_a_request_that_is_reported_as_driven_was_not_refused(seq, reason):
     state, view, request = run()
     driven = status(request.coil, level=request.level, seq=request.seq)
     readings = measured(coil=driven, refused=CoilRefused(request.coil, seq, reason, TICK & 0xFF))
-    view = update_view(view, readings, TICK + 1, COILS)
+    view = then(update_view, view, readings, TICK + 1, COILS)
     assert run(state, view, readings=readings, tick=TICK + 1)[1].fired == view.fired
 
 
@@ -250,12 +254,12 @@ def test_a_refused_impulse_is_not_owed():
 @pytest.mark.parametrize("lockout_ms", [(0, 0, 0), (10, -1, 0)])
 def test_without_a_law_nothing_is_fired_and_nothing_owed(fresh, lockout_ms):
     """Nor what was owed before; the timers run on."""
-    timers = ready()._replace(ready_tick=(TICK - 5, TICK, TICK + 9), busy_until=TICK - 20)
-    before = timers._replace(held_am2=(1.0, -2.0, 3.0))
-    view = ALL_FREE._replace(lockout_ms=lockout_ms)
+    timers = replace(ready(), ready_tick=(TICK - 5, TICK, TICK + 9), busy_until=TICK - 20)
+    before = replace(timers, held_am2=(1.0, -2.0, 3.0))
+    view = replace(ALL_FREE, lockout_ms=lockout_ms)
     after, found, request = run_safe(before, view, BOARD_IS_THERE if fresh else measured())
     assert request is None
-    assert after == timers._replace(owed_impulse_body_nms=ZERO)
+    assert after == replace(timers, owed_impulse_body_nms=ZERO)
     assert found == view
 
 
@@ -282,7 +286,7 @@ def test_a_pulse_asked_for_before_safe_still_locks_out_after_it():
 
 def test_seq_never_repeats_the_last_accepted_one():
     for accepted in range(256):
-        view = update_view(ALL_FREE, measured(coil=status(0, seq=accepted)), TICK, COILS)
+        view = then(update_view, ALL_FREE, measured(coil=status(0, seq=accepted)), TICK, COILS)
         _, _, request = run(view=view)
         assert request.seq == (accepted + 1) % 256
         assert CoilFire.decode(request.encode().data).seq != accepted
@@ -290,10 +294,10 @@ def test_seq_never_repeats_the_last_accepted_one():
 
 def test_seq_follows_what_the_board_accepted_not_what_was_asked():
     """A lost request leaves no gap: its number comes again, and the board has never seen it."""
-    state, view, request = run(view=ALL_FREE._replace(seq=7))
+    state, view, request = run(view=replace(ALL_FREE, seq=7))
     assert request.seq == 8
-    view = update_view(view, measured(coil=status(0, seq=7)), TICK + 1, COILS)
-    _, _, again = run(state._replace(owed_impulse_body_nms=OWED_FOR[0]), view, tick=TICK + 103)
+    view = then(update_view, view, measured(coil=status(0, seq=7)), TICK + 1, COILS)
+    _, _, again = run(replace(state, owed_impulse_body_nms=OWED_FOR[0]), view, tick=TICK + 103)
     assert again.seq == 8
 
 
@@ -306,7 +310,7 @@ def starts(shared, tick_hz, coils, ticks):
     state, view, asked = pulses.boot(0, config), ALL_FREE, []
     for tick in range(ticks):
         for coil in coils:
-            state = state._replace(owed_impulse_body_nms=OWED_FOR[coil])
+            state = replace(state, owed_impulse_body_nms=OWED_FOR[coil])
             state, view, request = run(state, view, tick=tick, config=config)
             if request is not None:
                 asked.append((tick, request.coil))
@@ -339,8 +343,8 @@ def test_only_how_long_the_timers_still_run_matters(ready_in, busy_in, lockout_m
     config = make_config(shared)
 
     def answer(tick, ready_in, busy_in, lockout_ms):
-        state = ready(owed)._replace(
-            ready_tick=tuple(tick + left for left in ready_in), busy_until=tick + busy_in
+        state = replace(
+            ready(owed), ready_tick=tuple(tick + left for left in ready_in), busy_until=tick + busy_in
         )
         view = CoilView(lockout_ms=lockout_ms)
         after, _, request = run(state, view, tick=tick, config=config)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+from actuator_samples import then
 from gate_samples import measured
 
 from fsw.core.actuation.actuator import LOCKOUT_UNKNOWN, MOST_IDLE_TICKS, CoilView, unexpected, update_view
@@ -39,7 +40,7 @@ def test_before_the_board_is_heard_and_asked_nothing_is_known():
 @pytest.mark.parametrize("coil", [0, 1, 2])
 def test_a_status_is_the_word_on_its_coil_alone(coil, coils):
     before = CoilView(lockout_ms=(10, -1, 30), refusals=4)
-    after = update_view(before, measured(coil=status(coil, 99_990, level=-2, seq=17)), TICK, coils)
+    after = then(update_view, before, measured(coil=status(coil, 99_990, level=-2, seq=17)), TICK, coils)
     expected = [10, -1, 30]
     expected[coil] = 99_990
     assert after.lockout_ms == tuple(expected)
@@ -56,20 +57,20 @@ def test_without_a_status_the_last_word_stands_and_the_own_request_counts_as_dri
     ticks_after, level, coils
 ):
     """For as long as it was asked for: a status that was lost is no reason to think the coil was off."""
-    after = update_view(FIRED, measured(), TICK + ticks_after, coils)
+    after = then(update_view, FIRED, measured(), TICK + ticks_after, coils)
     dipole_am2 = (0.0, -8.0 if level else 0.0, 0.0)
-    assert after == FIRED._replace(driven_coil=1, driven_level=level, driven_am2=dipole_am2)
+    assert after == replace(FIRED, driven_coil=1, driven_level=level, driven_am2=dipole_am2)
     assert not unexpected(after, TICK + ticks_after, coils.pulses)
 
 
 @pytest.mark.parametrize("tick", [0, 1, 3, TICK])
 def test_without_a_status_and_a_request_nothing_counts_as_driven(tick, coils):
-    assert update_view(CoilView(), measured(), tick, coils) == CoilView()
+    assert then(update_view, CoilView(), measured(), tick, coils) == CoilView()
 
 
 @pytest.mark.parametrize("level", [0, 1])
 def test_what_the_board_says_goes_before_the_own_request(level, coils):
-    after = update_view(FIRED, measured(coil=status(2, level=level)), TICK + 1, coils)
+    after = then(update_view, FIRED, measured(coil=status(2, level=level)), TICK + 1, coils)
     assert (after.driven_coil, after.driven_level, after.driven_am2) == (2, level, (0.0, 0.0, 0.5 * level))
 
 
@@ -79,7 +80,8 @@ def test_a_board_that_has_booted_has_not_told_its_lockouts(coil, coils):
     said = None if coil is None else status(coil, 99_000, seq=9)
     booted = measured(coil_boot=CoilBoot(1, 1, 7), coil=said)
     expected = [99_000 if coil == reports else -1 for reports in range(3)]
-    assert update_view(FIRED._replace(lockout_ms=(0, 10, 0)), booted, TICK + 50, coils) == FIRED._replace(
+    assert then(update_view, replace(FIRED, lockout_ms=(0, 10, 0)), booted, TICK + 50, coils) == replace(
+        FIRED,
         lockout_ms=tuple(expected),
         driven_coil=1 if coil is None else coil,
         idle_ticks=0 if coil is None else 1,
@@ -91,8 +93,8 @@ def test_a_board_that_has_booted_has_not_told_its_lockouts(coil, coils):
 def test_a_refusal_is_counted_with_or_without_a_status(said, coils):
     view = CoilView(refusals=2)
     refused = measured(coil=said, refused=refusal(TICK))
-    assert update_view(view, refused, TICK, coils).refusals == 3
-    assert update_view(view, measured(coil=said), TICK, coils).refusals == 2
+    assert then(update_view, view, refused, TICK, coils).refusals == 3
+    assert then(update_view, view, measured(coil=said), TICK, coils).refusals == 2
 
 
 @pytest.mark.parametrize(
@@ -100,17 +102,19 @@ def test_a_refusal_is_counted_with_or_without_a_status(said, coils):
     [(0, 1, (0.5, 0, 0)), (1, -2, (0, -2.0, 0)), (2, 3, (0, 0, 8.0)), (1, 0, (0, 0, 0))],
 )
 def test_the_driven_dipole_is_that_of_the_status(coil, level, dipole_am2, coils):
-    view = update_view(CoilView(), measured(coil=status(coil, level=level)), TICK, coils)
+    view = then(update_view, CoilView(), measured(coil=status(coil, level=level)), TICK, coils)
     assert view.driven_am2 == dipole_am2
 
 
 def test_of_a_coil_out_of_square_it_is_the_true_one(coils):
     """Whether the board says so, or the request is taken as driven."""
     axes = ((0.98, 0.05, -0.02), (0.01, 1.03, 0.04), (-0.03, 0.02, 0.97))
-    turned = coils._replace(pulses=replace(coils.pulses, coil_axes=axes))
-    said = update_view(CoilView(), measured(coil=status(2, level=-2)), TICK, turned)
+    turned = replace(coils, pulses=replace(coils.pulses, coil_axes=axes))
+    said = then(update_view, CoilView(), measured(coil=status(2, level=-2)), TICK, turned)
     assert said.driven_am2 == pytest.approx((0.06, -0.04, -1.94))
-    assert update_view(FIRED, measured(), TICK + 1, turned).driven_am2 == pytest.approx((-0.08, -8.24, -0.32))
+    assert then(update_view, FIRED, measured(), TICK + 1, turned).driven_am2 == pytest.approx(
+        (-0.08, -8.24, -0.32)
+    )
 
 
 @pytest.mark.parametrize(
@@ -146,12 +150,12 @@ class TestIdleTicks:
     """Reports in a row of a driver at rest: how long ago a pulse may at most have been."""
 
     def after(self, view, said, coils):
-        return update_view(view, measured(coil=said), TICK, coils).idle_ticks
+        return then(update_view, view, measured(coil=said), TICK, coils).idle_ticks
 
     def test_each_report_of_no_level_and_no_current_counts(self, coils):
         view = CoilView()
         for reports in range(1, 6):
-            view = update_view(view, measured(coil=status(reports % 3)), TICK, coils)
+            view = then(update_view, view, measured(coil=status(reports % 3)), TICK, coils)
             assert view.idle_ticks == reports
 
     @pytest.mark.parametrize(

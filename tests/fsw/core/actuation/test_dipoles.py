@@ -5,12 +5,13 @@ from math import inf, nan
 
 import numpy as np
 import pytest
+from actuator_samples import answered, then
 from gate_samples import measured
 from hypothesis import given
 from hypothesis import strategies as st
 
 from fsw.core.actuation import dipoles, pulses
-from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, update_view
+from fsw.core.actuation.actuator import ActuatorConfig, CoilView, update_view
 from fsw.core.actuation.dipoles import MOST, DipoleConfig, RequestedDipole, dipole_am2, request, saturate
 from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.algebra.vector import ZERO, inverse
@@ -93,18 +94,18 @@ class TestDriven:
 
     @pytest.mark.parametrize(("age", "driven_am2"), [(1, (1.0, 2.0, 3.0)), (0, ZERO), (2, ZERO)])
     def test_without_a_report_it_is_what_was_asked_for_this_tick(self, age, driven_am2):
-        view = CoilView(asked=RequestedDipole(44 - age, (1.0, 2.0, 3.0)))
-        view = update_view(view, measured(), 44, ActuatorConfig(TIMING, CONFIG))
+        view = CoilView(requested=RequestedDipole(44 - age, (1.0, 2.0, 3.0)))
+        view = then(update_view, view, measured(), 44, ActuatorConfig(TIMING, CONFIG))
         assert view.driven_am2 == driven_am2
-        assert not view.asked.reported
+        assert not view.requested.reported
 
     def test_it_is_what_the_view_holds_and_no_level_is(self):
         coils = ActuatorConfig(TIMING, CONFIG)
         readings = measured(coil=CoilStatus(0, 1, 0, 0, 0, 0), dipole=CoilDipoleStatus(0.5, -0.25, 0.125))
-        view = update_view(CoilView(), readings, 44, coils)
+        view = then(update_view, CoilView(), readings, 44, coils)
         assert view.driven_am2 == pytest.approx((4.8, -2.4, 1.2))
         assert view.driven_level == 0
-        assert view.asked.reported
+        assert view.requested.reported
 
 
 class TestCoilsOutOfSquare:
@@ -134,7 +135,7 @@ def history(demands, config=CONFIG, timing=TIMING, b=lambda tick: B_BODY_T, boot
     """What is sent in each tick from boot on, A m^2."""
     state, sent = pulses.boot(boot_tick, timing), []
     for tick, demand in enumerate(demands, boot_tick):
-        state, message = request(state, demand, b(tick), tick, config, timing)
+        message = request(state, demand, b(tick), tick, config, timing)
         sent.append(am2(message))
     return np.array(sent)
 
@@ -156,7 +157,7 @@ class TestContinuousLaw:
         np.testing.assert_allclose(history([Demand(m) for m in asked]), asked, rtol=1e-12, atol=1e-15)
 
     def test_nothing_is_owed(self):
-        state, _ = request(pulses.boot(0, TIMING), Demand((1e3, 1e3, 1e3)), B_BODY_T, 5, CONFIG, TIMING)
+        state = then(request, pulses.boot(0, TIMING), Demand((1e3, 1e3, 1e3)), B_BODY_T, 5, CONFIG, TIMING)
         assert state == pulses.boot(0, TIMING)
 
 
@@ -186,7 +187,7 @@ class TestImpulses:
             pulse = pulses.choose(state, IMPULSE_NMS, TIMING.energy_metric, tick, B_BODY_T, TIMING)
             if pulse is not None:
                 fired.append(tick)
-                state = pulses.fire(state, pulse, ZERO, tick, TIMING)
+                pulses.fire(state, pulse, ZERO, tick, TIMING)
         sent = history([missing()] * 310)
         assert fired == [t for t in range(310) if any(sent[t]) and not any(sent[t - 1])]
 
@@ -233,8 +234,8 @@ class TestActuate:
     HEARD = measured(dipole=CoilDipoleStatus(0.0, 0.0, 0.0))
 
     def run(self, demand, readings=HEARD, tick=500):
-        state = pulses.boot(0, TIMING)._replace(ready_tick=(0, 0, 0), owed_impulse_body_nms=(1.0, 1.0, 1.0))
-        return actuate(state, CoilView(), demand, B_BODY_T, readings, tick, self.COILS)
+        state = replace(pulses.boot(0, TIMING), ready_tick=(0, 0, 0), owed_impulse_body_nms=(1.0, 1.0, 1.0))
+        return answered(state, CoilView(), demand, B_BODY_T, readings, tick, self.COILS)
 
     def test_a_request_goes_out_at_once(self):
         assert self.run(Demand((1.0, -2.0, 3.0)))[2] == saturate((1.0, -2.0, 3.0), CONFIG)
@@ -242,8 +243,10 @@ class TestActuate:
 
     def test_it_is_remembered_as_it_is_on_the_wire(self):
         _, view, sent = self.run(Demand((1.0, -2.0, 3.0)))
-        assert view.asked == RequestedDipole(500, driven_by(CoilDipole.decode(sent.encode().data), CONFIG))
-        assert view.asked.m_body_am2 == pytest.approx((1.0, -2.0, 3.0), abs=FULL_SCALE_AM2 * LSB)
+        assert view.requested == RequestedDipole(
+            500, driven_by(CoilDipole.decode(sent.encode().data), CONFIG)
+        )
+        assert view.requested.m_body_am2 == pytest.approx((1.0, -2.0, 3.0), abs=FULL_SCALE_AM2 * LSB)
 
     def test_one_that_was_not_sent_is_not(self):
         for demand, readings in ((None, self.HEARD), (missing(), measured())):

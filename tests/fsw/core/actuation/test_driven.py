@@ -1,9 +1,11 @@
 """What the coils drove since the tick before, and how far it is in doubt."""
 
+from dataclasses import replace
 from math import sqrt
 
 import numpy as np
 import pytest
+from actuator_samples import then
 from gate_samples import measured
 
 from fsw.core.actuation.actuator import CoilView, update_view
@@ -34,7 +36,7 @@ def drives(coils):
 
     def over(ticks_after, status=None, skipped=0, view=FIRED):
         tick = TICK + ticks_after
-        after = update_view(view, measured(coil=status), tick, coils)
+        after = then(update_view, view, measured(coil=status), tick, coils)
         ticks = range(tick - skipped, tick + 1)
         return driven(after, after.driven_am2, status is not None, ticks, coils)
 
@@ -121,11 +123,11 @@ class TestContinuousDriver:
     @pytest.fixture
     def drives(self, coils):
         """As those of pulses, after a request for ``WANTED_AM2``."""
-        continuous = coils._replace(dipoles=DipoleConfig(9.6, IDENTITY, genetic=False))
+        continuous = replace(coils, dipoles=DipoleConfig(9.6, IDENTITY, genetic=False))
 
         def over(ticks_after, status=None, skipped=0, asked_am2=self.WANTED_AM2):
-            tick, view = TICK + ticks_after, CoilView(asked=RequestedDipole(TICK, asked_am2))
-            after = update_view(view, measured(dipole=status), tick, continuous)
+            tick, view = TICK + ticks_after, CoilView(requested=RequestedDipole(TICK, asked_am2))
+            after = then(update_view, view, measured(dipole=status), tick, continuous)
             return driven(after, after.driven_am2, True, range(tick - skipped, tick + 1), continuous)
 
         return over

@@ -35,8 +35,8 @@ def fly(driven, config, late=0):
         status = None if report is None else CoilStatus(report[1], report[0], 0, report[2], 0, 1)
         readings = measured(field=MagField(1, *field.tolist()), coil=status)
         coil, level, _ = report or OFF
-        view = view._replace(driven_coil=coil, driven_level=level)
-        view = subtract_own_field(view, readings, 0, config)
+        view.driven_coil, view.driven_level = coil, level
+        subtract_own_field(view, readings, 0, config)
         sample = usable_field(readings)
         found.append(None if sample is None else tuple(1e9 * part for part in sample))
     return found
@@ -81,8 +81,9 @@ def test_what_is_not_certain_blanks_until_it_can_show_no_more(doubtful):
 
 
 def test_without_the_field_a_pulse_is_blanked_as_long_as_a_sample_may_be_old():
-    idle = CoilView(idle_ticks=3)
     for blank_ticks, used in ((2, True), (3, False)):
         readings = measured(field=MagField(1, *EARTH), coil=CoilStatus(0, 0, 0, 0, 0, 1))
-        assert subtract_own_field(idle, readings, blank_ticks, None).past_am2 == ()
+        view = CoilView(idle_ticks=3)
+        subtract_own_field(view, readings, blank_ticks, None)
+        assert view == CoilView(idle_ticks=3)
         assert (usable_field(readings) is not None) is used

@@ -1,5 +1,6 @@
 """Pulses that a law has planned, and how long it has to wait for each coil."""
 
+from dataclasses import replace
 from itertools import product
 
 import pytest
@@ -44,17 +45,17 @@ class TestPlannedPulses:
     def test_are_not_fired_before_timer_and_board_agree(self, hindrance):
         state, view, readings, faults = ready(), ALL_FREE, BOARD_IS_THERE, (0, 0, 0)
         if hindrance == "own timer":
-            state = state._replace(ready_tick=(0, TICK + 1, 0))
+            state = replace(state, ready_tick=(0, TICK + 1, 0))
         elif hindrance == "busy":
-            state = state._replace(busy_until=TICK + 1)
+            state = replace(state, busy_until=TICK + 1)
         elif hindrance == "lockout":
-            view = view._replace(lockout_ms=(0, 20, 0))
+            view = replace(view, lockout_ms=(0, 20, 0))
         elif hindrance == "no status":
             readings = measured()
         else:
             faults = (0, 1, 0)
         demand = Demand(pulse=Pulse(1, 2))
-        _, _, request = actuate(state, view, demand, B_BODY_T, readings, TICK, COILS, faults)
+        request = actuate(state, view, demand, B_BODY_T, readings, TICK, COILS, faults)
         assert request is None
 
     def test_that_are_refused_are_not_owed(self):
@@ -72,23 +73,23 @@ class TestWaits:
         return wait_ticks(state, view, readings, TICK, CONFIG, faults)
 
     def test_are_those_of_the_own_timers(self):
-        state = ready()._replace(ready_tick=(TICK - 5, TICK + 7, TICK + 40))
+        state = replace(ready(), ready_tick=(TICK - 5, TICK + 7, TICK + 40))
         assert self.waits(state) == (0, 7, 40)
-        assert self.waits(state._replace(busy_until=TICK + 9)) == (9, 9, 40)
+        assert self.waits(replace(state, busy_until=TICK + 9)) == (9, 9, 40)
 
     def test_or_of_the_board_if_longer(self):
-        view = ALL_FREE._replace(lockout_ms=(0, 1, 2500))
+        view = replace(ALL_FREE, lockout_ms=(0, 1, 2500))
         assert self.waits(ready(), view) == (0, 1, 3)
 
     @pytest.mark.parametrize(("tick_hz", "ticks"), [(2, (0, 1, 5)), (10, (0, 1, 25)), (3, (0, 1, 8))])
     def test_of_the_board_are_in_ticks_of_any_length(self, tick_hz, ticks):
         """Rounded up: a coil that is asked too soon refuses."""
-        view = ALL_FREE._replace(lockout_ms=(0, 1, 2500))
+        view = replace(ALL_FREE, lockout_ms=(0, 1, 2500))
         config = make_config(tick_hz=tick_hz)
         assert wait_ticks(ready(), view, BOARD_IS_THERE, TICK, config, (0, 0, 0)) == ticks
 
     def test_are_a_back_off_for_a_coil_of_which_the_board_has_not_spoken(self):
-        view = ALL_FREE._replace(lockout_ms=(0, 0, -1))
+        view = replace(ALL_FREE, lockout_ms=(0, 0, -1))
         assert self.waits(ready(), view) == (0, 0, CONFIG.backoff_ticks)
 
     def test_are_at_least_a_tick_without_a_status(self):

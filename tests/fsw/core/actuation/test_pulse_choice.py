@@ -35,7 +35,8 @@ def make_config(levels_am2=(0.5, 2.0, 8.0), inertia_inverse=IDENTITY, shared=Tru
 
 def timers(config, ready_tick=(0, 0, 0), busy_until=0):
     """A state whose timers, unless told otherwise, ran out long ago; what it owes must not count here."""
-    return pulses.boot(0, config)._replace(
+    return replace(
+        pulses.boot(0, config),
         ready_tick=ready_tick,
         busy_until=busy_until,
         owed_impulse_body_nms=(1.0, -2.0, 3.0),

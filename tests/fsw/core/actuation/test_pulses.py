@@ -1,9 +1,11 @@
 """The scheduler by itself: its timing, its own timers, and what it owes."""
 
+from dataclasses import replace
 from math import exp, inf
 
 import numpy as np
 import pytest
+from actuator_samples import then
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -37,7 +39,8 @@ def make_config(tick_hz=1, shared=True, leak_s=300.0):
 
 def owing(config, impulse_nms, ready_tick=(0, 0, 0), busy_until=0):
     """A state that owes an impulse; unless told otherwise its timers ran out long ago."""
-    return pulses.boot(0, config)._replace(
+    return replace(
+        pulses.boot(0, config),
         ready_tick=ready_tick,
         busy_until=busy_until,
         owed_impulse_body_nms=impulse_nms,
@@ -142,7 +145,7 @@ def test_after_boot_a_whole_back_off_passes_first(tick_hz, shared, boot_tick):
 @pytest.mark.parametrize("coil", [0, 1, 2])
 def test_shared_no_coil_fires_again_before_a_back_off_after_the_end_of_the_pulse(tick_hz, coil):
     config = make_config(tick_hz, shared=True)
-    state = pulses.fire(pulses.boot(0, config), Pulse(coil, -2), PAID_NMS, TICK, config)
+    state = then(pulses.fire, pulses.boot(0, config), Pulse(coil, -2), PAID_NMS, TICK, config)
     free = TICK + 103 * tick_hz
     assert all(may_fire(state, tick, config) == set() for tick in range(TICK, free))
     assert may_fire(state, free, config) == {0, 1, 2}
@@ -152,7 +155,7 @@ def test_shared_no_coil_fires_again_before_a_back_off_after_the_end_of_the_pulse
 @pytest.mark.parametrize("coil", [0, 1, 2])
 def test_per_coil_the_others_wait_for_the_end_of_the_pulse_alone(tick_hz, coil):
     config = make_config(tick_hz, shared=False)
-    state = pulses.fire(pulses.boot(0, config), Pulse(coil, 1), PAID_NMS, TICK, config)
+    state = then(pulses.fire, pulses.boot(0, config), Pulse(coil, 1), PAID_NMS, TICK, config)
     end, free = TICK + 3 * tick_hz, TICK + 103 * tick_hz
     assert all(may_fire(state, tick, config) == set() for tick in range(TICK, end))
     assert all(may_fire(state, tick, config) == {0, 1, 2} - {coil} for tick in range(end, free))
@@ -162,7 +165,7 @@ def test_per_coil_the_others_wait_for_the_end_of_the_pulse_alone(tick_hz, coil):
 def test_per_coil_a_pulse_leaves_the_timers_of_the_other_coils_as_they_were():
     config = make_config(shared=False)
     state = owing(config, (0.0, 0.0, 0.0), ready_tick=(TICK, TICK - 7, TICK + 55))
-    after = pulses.fire(state, Pulse(0, 1), PAID_NMS, TICK, config)
+    after = then(pulses.fire, state, Pulse(0, 1), PAID_NMS, TICK, config)
     assert after.ready_tick == (TICK + 103, TICK - 7, TICK + 55)
     assert after.busy_until == TICK + 3
 
@@ -178,7 +181,7 @@ def test_a_torque_asked_for_is_owed_as_impulse_and_leaks():
     """r <- (1 - h / tau) r + T h, component by component."""
     config = make_config(tick_hz=2, leak_s=100.0)
     state = owing(config, (1.0, -2.0, 4.0))
-    after = pulses.owe(state, (10.0, 20.0, -30.0), STRONG_T, config)
+    after = then(pulses.owe, state, (10.0, 20.0, -30.0), STRONG_T, config)
     keep = 1.0 - 0.5 / 100.0
     assert after.owed_impulse_body_nms == (keep * 1.0 + 5.0, keep * -2.0 + 10.0, keep * 4.0 - 15.0)
     assert (after.ready_tick, after.busy_until) == (state.ready_tick, state.busy_until)
@@ -189,7 +192,7 @@ def test_what_is_owed_is_forgotten_with_the_time_constant_of_the_leak_at_every_r
     config = make_config(tick_hz, leak_s=300.0)
     state = owing(config, (1.0, -1.0, 0.0))
     for _ in range(300 * tick_hz):
-        state = pulses.owe(state, (0.0, 0.0, 0.0), STRONG_T, config)
+        pulses.owe(state, (0.0, 0.0, 0.0), STRONG_T, config)
     assert state.owed_impulse_body_nms == pytest.approx((exp(-1.0), -exp(-1.0), 0.0), rel=2e-3)
 
 
@@ -198,7 +201,7 @@ def test_a_lasting_torque_is_owed_up_to_torque_times_leak(tick_hz):
     config = make_config(tick_hz, leak_s=20.0)
     state = owing(config, (0.0, 0.0, 0.0))
     for _ in range(400 * tick_hz):
-        state = pulses.owe(state, (2e-6, 0.0, -1e-6), STRONG_T, config)
+        pulses.owe(state, (2e-6, 0.0, -1e-6), STRONG_T, config)
     assert state.owed_impulse_body_nms == pytest.approx((4e-5, 0.0, -2e-5), rel=1e-6)
 
 
@@ -210,7 +213,7 @@ def test_no_more_is_owed_than_the_strongest_pulse_can_pay_and_its_direction_stay
     most = 3.0 * 8.0 * 5e-5
     state = owing(config, (0.0, 0.0, 0.0))
     for _ in range(10 * tick_hz):
-        state = pulses.owe(state, (0.3, -0.6, 0.6), b_body_t, config)
+        pulses.owe(state, (0.3, -0.6, 0.6), b_body_t, config)
         size = np.linalg.norm(state.owed_impulse_body_nms)
         assert size <= most * (1.0 + 1e-12)
     assert state.owed_impulse_body_nms == pytest.approx((most / 3, -2 * most / 3, 2 * most / 3))
@@ -220,13 +223,13 @@ def test_up_to_the_bound_nothing_is_taken_away():
     config = make_config(leak_s=inf)
     b_body_t = (0.0, 3e-5, -4e-5)
     below = (0.999 * 3.0 * 8.0 * 5e-5, 0.0, 0.0)
-    assert pulses.owe(owing(config, (0.0,) * 3), below, b_body_t, config).owed_impulse_body_nms == below
+    assert then(pulses.owe, owing(config, (0.0,) * 3), below, b_body_t, config).owed_impulse_body_nms == below
 
 
 def test_without_a_field_nothing_is_owed():
     config = make_config()
     for owed in ((1.0, 1.0, 1.0), (0.0, 0.0, 0.0)):
-        state = pulses.owe(owing(config, owed), owed, (0.0, 0.0, 0.0), config)
+        state = then(pulses.owe, owing(config, owed), owed, (0.0, 0.0, 0.0), config)
         assert state.owed_impulse_body_nms == (0.0, 0.0, 0.0)
 
 
@@ -260,12 +263,13 @@ def test_a_lasting_demand_is_paid_though_what_is_owed_leaks(shared, m_am2):
     torque = tuple(np.cross(m_am2, b_body_t).tolist())
     state, paid, ticks = pulses.boot(0, config), np.zeros(3), 30_000
     for tick in range(ticks):
-        state = pulses.owe(state, torque, b_body_t, config)
+        pulses.owe(state, torque, b_body_t, config)
         due = pulses.due(state, torque, b_body_t, config)
         pulse = pulses.choose(state, due, config.rate_metric, tick, b_body_t, config)
         if pulse is not None:
             given = pulses.impulse(pulse, b_body_t, config)
-            state, paid = pulses.fire(state, pulse, given, tick, config), paid + given
+            pulses.fire(state, pulse, given, tick, config)
+            paid += given
     assert paid / ticks @ torque / np.dot(torque, torque) == pytest.approx(1.0, abs=0.05)
 
 
@@ -287,7 +291,9 @@ def test_a_pulse_pays_its_impulse(coil, level):
     b_body_t = (2e-5, -3e-5, 1e-5)
     owed = (1e-5, 2e-5, 3e-5)
     pulse = Pulse(coil, level)
-    after = pulses.fire(owing(config, owed), pulse, pulses.impulse(pulse, b_body_t, config), TICK, config)
+    after = then(
+        pulses.fire, owing(config, owed), pulse, pulses.impulse(pulse, b_body_t, config), TICK, config
+    )
     expected = np.array(owed) - impulse(config, coil, level, b_body_t)
     assert after.owed_impulse_body_nms == pytest.approx(tuple(expected), abs=1e-18)
 
@@ -301,7 +307,7 @@ def test_the_dipole_of_a_level(level, dipole_am2):
 
 def test_a_skip_of_the_count_delays_the_timers_that_run_and_no_other():
     state = pulses.PulseState(ready_tick=(150, 90, 101), busy_until=102)
-    later = pulses.delay(state, tick=121, skipped=20)
+    later = then(pulses.delay, state, 121, 20)
     assert (later.ready_tick, later.busy_until) == ((170, 90, 121), 122)
-    done = pulses.delay(state, tick=171, skipped=20)
+    done = then(pulses.delay, state, 171, 20)
     assert (done.ready_tick, done.busy_until) == ((150, 90, 101), 102)

@@ -1,5 +1,7 @@
 """The offset of the read-back: a current of coils that are off, which is none."""
 
+from dataclasses import replace
+
 import pytest
 from flight_states import altered
 from gate_samples import measured
@@ -35,7 +37,7 @@ def test_the_current_of_a_driven_coil_stays():
 
 def test_a_current_that_dies_away_stays():
     assert [left(2, tick=TICK + after) for after in range(6)] == [2, 2, 2, 2, 2, 0]
-    assert left(2, view=FIRED._replace(driven_level=1)) == 2, "in the tick after one in which it was driven"
+    assert left(2, view=replace(FIRED, driven_level=1)) == 2, "in the tick after one in which it was driven"
 
 
 def test_without_a_report_there_is_nothing_to_leave_out():

@@ -1,8 +1,10 @@
 """The wheel as the controller sees it: which reports count, what the filter gets, what is asked for."""
 
+from dataclasses import replace
 from math import inf, nan, sqrt
 
 import pytest
+from actuator_samples import then
 from estimator_samples import CONFIG
 from gate_samples import measured
 
@@ -13,7 +15,7 @@ from fsw.core.actuation.wheel import (
     friction_nm,
     momentum_nms,
     request,
-    seen,
+    update_view,
 )
 from fsw.core.laws.interface import Demand, Wheel
 from fsw.wire.messages import WheelStatus, WheelTorque
@@ -30,15 +32,13 @@ def after(*speeds, first_tick=0):
     """The view after reports in tick after tick; None: none came."""
     view = WheelView()
     for tick, speed in enumerate(speeds, start=first_tick):
-        view = seen(view, measured() if speed is None else reported(speed), tick, WHEEL)
+        update_view(view, measured() if speed is None else reported(speed), tick, WHEEL)
     return view
 
 
-def test_without_a_wheel_there_is_no_view_whatever_is_reported():
-    assert seen(None, reported(100.0), 3, None) is None
+def test_without_a_wheel_there_is_no_momentum():
     assert momentum_nms(None, None) is None
     assert estimating(CONFIG, None, 3, 1, None) is CONFIG
-    assert request(None, Demand(wheel_torque_nm=1e-3), 3, None) == (None, None)
 
 
 def test_a_report_gives_momentum_and_its_change():
@@ -59,14 +59,14 @@ def test_the_first_report_is_no_change():
 def test_a_change_counts_once_and_not_again_where_no_report_follows(readings):
     moved = after(100.0, 103.0)
     assert moved.change_nms > 0.0
-    view = seen(moved, readings, 2, WHEEL)
+    view = then(update_view, moved, readings, 2, WHEEL)
     assert (view.change_nms, view.speed_radps, view.tick) == (0.0, 103.0, 1)
 
 
 def test_what_is_missed_is_taken_with_the_next_report():
     view = after(100.0, None, None)
     assert (view.change_nms, view.speed_radps, view.tick) == (0.0, 100.0, 0)
-    assert seen(view, reported(110.0), 3, WHEEL).change_nms == pytest.approx(10.0 * 2e-4)
+    assert then(update_view, view, reported(110.0), 3, WHEEL).change_nms == pytest.approx(10.0 * 2e-4)
 
 
 @pytest.mark.parametrize("speed_radps", [nan, inf, 751.0, -751.0])
@@ -77,7 +77,7 @@ def test_a_report_beyond_the_range_is_refused(speed_radps):
 
 
 def test_one_that_says_it_is_not_valid_is_refused():
-    view = seen(after(100.0), reported(101.0, valid=0), 1, WHEEL)
+    view = then(update_view, after(100.0), reported(101.0, valid=0), 1, WHEEL)
     assert (view.tick, view.refused, view.change_nms) == (0, 1, 0.0)
 
 
@@ -99,10 +99,10 @@ def test_after_too_long_without_one_the_next_within_the_range_counts_again():
     """And its change is the whole of it, which the body has felt."""
     kept = after(100.0, *[None] * 20)
     assert momentum_nms(kept, WHEEL) is not None
-    gone = seen(kept, measured(), 21, WHEEL)
+    gone = then(update_view, kept, measured(), 21, WHEEL)
     assert gone.tick == -1
     assert momentum_nms(gone, WHEEL) is None
-    back = seen(gone, reported(-400.0), 22, WHEEL)
+    back = then(update_view, gone, reported(-400.0), 22, WHEEL)
     assert (back.tick, back.refused) == (22, 0)
     assert back.change_nms == pytest.approx(-500.0 * 2e-4)
 
@@ -115,13 +115,13 @@ class TestFilter:
         assert config.mekf.reaction_body_nm == pytest.approx([-rate * part for part in AXIS])
 
     def test_over_ticks_that_were_skipped_the_torque_is_the_mean(self):
-        view = seen(after(100.0), reported(106.0), 3, WHEEL)
+        view = then(update_view, after(100.0), reported(106.0), 3, WHEEL)
         config = estimating(CONFIG, view, 3, 3, WHEEL)
         rate = 6.0 * 2e-4 / 1.5
         assert config.mekf.reaction_body_nm == pytest.approx([-rate * part for part in AXIS])
 
     def test_without_a_report_the_momentum_is_the_last_one_and_what_was_asked_for_in_doubt(self):
-        view = seen(after(100.0)._replace(asked_nm=-1e-3), measured(), 1, WHEEL)
+        view = then(update_view, replace(after(100.0), requested_nm=-1e-3), measured(), 1, WHEEL)
         config = estimating(CONFIG, view, 1, 1, WHEEL)
         sure = estimating(CONFIG, after(100.0, 100.0), 1, 1, WHEEL)
         assert config.mekf.rotor == sure.mekf.rotor
@@ -140,8 +140,9 @@ class TestFilter:
 
 
 def asked(torque_nm, speed_radps=0.0):
+    """The view after a request for this torque, and the request."""
     view = after(speed_radps)
-    return request(view, Demand(wheel_torque_nm=torque_nm), 0, WHEEL)
+    return view, request(view, Demand(wheel_torque_nm=torque_nm), 0, WHEEL)
 
 
 class TestRequest:
@@ -149,13 +150,14 @@ class TestRequest:
         "demand", [None, Demand((1.0, 2.0, 3.0)), Demand(wheel_torque_nm=nan), Demand(wheel_torque_nm=inf)]
     )
     def test_nothing_is_asked_for_without_a_demand(self, demand):
-        view, message = request(after(100.0)._replace(asked_nm=1e-3), demand, 0, WHEEL)
-        assert message is None
-        assert view.asked_nm == 0.0
+        view = replace(after(100.0), requested_nm=1e-3)
+        assert request(view, demand, 0, WHEEL) is None
+        assert view.requested_nm == 0.0
 
     def test_nothing_while_its_momentum_is_not_known(self):
-        view, message = request(WheelView(), Demand(wheel_torque_nm=1e-3), 0, WHEEL)
-        assert (view.asked_nm, message) == (0.0, None)
+        view = WheelView()
+        assert request(view, Demand(wheel_torque_nm=1e-3), 0, WHEEL) is None
+        assert view.requested_nm == 0.0
 
     @pytest.mark.parametrize("speed_radps", [250.0, -250.0, 0.5])
     def test_friction_is_added(self, speed_radps):
@@ -163,7 +165,7 @@ class TestRequest:
         friction = 2e-7 * speed_radps + 2e-5 * speed_radps / sqrt(speed_radps**2 + 1.0)
         assert friction_nm(speed_radps, WHEEL) == pytest.approx(friction)
         assert message == WheelTorque(pytest.approx(3e-4 + friction), 0)
-        assert view.asked_nm == message.torque
+        assert view.requested_nm == message.torque
 
     @pytest.mark.parametrize("sign", [1.0, -1.0])
     def test_never_more_than_the_board_takes_on_the_wire_too(self, sign):

@@ -1,6 +1,6 @@
 """The table of laws: complete, unmistakable, and no law asks for what it cannot know."""
 
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from importlib import import_module
 from math import isfinite
 from pathlib import Path
@@ -155,8 +155,8 @@ def test_what_is_held_and_paid_and_driven_shows_in_the_checksum():
     state = boot(CONFIG)
     one = (0.0, 5e-324, 0.0)
     changed = [
-        altered(state, pulses=state.pulses._replace(held_am2=one)),
-        altered(state, coil=state.coil._replace(paid_body_nms=one)),
-        altered(state, coil=state.coil._replace(driven_am2=one)),
+        altered(state, pulses=replace(state.pulses, held_am2=one)),
+        altered(state, coil=replace(state.coil, paid_body_nms=one)),
+        altered(state, coil=replace(state.coil, driven_am2=one)),
     ]
     assert len({checksum(each) for each in (state, *changed)}) == 4
