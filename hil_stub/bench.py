@@ -127,8 +127,8 @@ class SensorBoard(Untimed):
 
     def begin_tick(self, tick: int, clock_ms: int | None) -> list[Frame]:
         """Enter ``tick``."""
-        values, valid = self._stimulus(tick)
-        return self._begin_tick(tick, values, valid)
+        reading = self._stimulus(tick)
+        return self._begin_tick(tick, reading.numbers, reading.valid)
 
     def receive(self, frame: Frame, clock_ms: int | None) -> None:
         """A sensor ignores all frames."""

@@ -1,7 +1,7 @@
 """The coil driver board: frames in, frames and a drive out, guarded by its own interlock."""
 
 from enum import IntEnum
-from typing import NamedTuple
+from typing import final
 
 from fsw.wire.frame import Frame, raw
 from fsw.wire.messages import (
@@ -12,9 +12,10 @@ from fsw.wire.messages import (
     CoilStatus,
     intact,
 )
+from fsw.wire.value import Value
 from hil_stub.coils.events import CoilEventCode, Events
 from hil_stub.coils.guard import Guard
-from hil_stub.coils.interlock import UNITS_PER_TICK, CoilLimits, Request
+from hil_stub.coils.interlock import UNITS_PER_TICK, CoilLimits
 from hil_stub.coils.read_back import ReadBack
 from hil_stub.coils.refusals import MAX_REFUSALS, Refusals
 from hil_stub.node import Node
@@ -34,27 +35,37 @@ class BoardState(IntEnum):
     FAULT = 3
 
 
-class Drive(NamedTuple):
+@final
+class Drive(Value):
     """What is driven over a tick: ``level`` on ``coil``, from the tick's start for ``fraction`` of it."""
 
-    coil: int
-    level: int
-    fraction: float
+    FIELDS = ("coil", "level", "fraction")
+    __slots__ = FIELDS
+
+    def __init__(self, coil: int, level: int, fraction: float) -> None:
+        self.coil = coil
+        self.level = level
+        self.fraction = fraction
 
 
 OFF = Drive(0, 0, 0.0)
 
 
-class Pin(NamedTuple):
+@final
+class Pin(Value):
     """The output that is on at this instant: ``level`` on ``coil``.
 
     ``until_ms``: when the board's own clock ends it, whatever is received by then; None: the board
     has no clock. A board arms a timer with it when the pulse begins, and needs nothing more to end it.
     """
 
-    coil: int
-    level: int
-    until_ms: int | None
+    FIELDS = ("coil", "level", "until_ms")
+    __slots__ = FIELDS
+
+    def __init__(self, coil: int, level: int, until_ms: int | None) -> None:
+        self.coil = coil
+        self.level = level
+        self.until_ms = until_ms
 
 
 class CoilDriver:
@@ -84,8 +95,8 @@ class CoilDriver:
         self._events = Events()
         self._statuses = 0
         self._silenced = False
-        # coil and level that have been driven without a change, and for how many ticks
-        self._held: tuple[int, int] | None = None
+        # coil and level that have been driven without a change (level 0: off), and for how many ticks
+        self._held = (0, 0)
         self._held_ticks = 0
         self._tested = False
         self._finding: CoilEventCode | None = None
@@ -159,8 +170,8 @@ class CoilDriver:
         if self._answered is None:
             self._refuse(fire, CoilRefusedReason.WRONG_TICK)
             return
-        request = Request(fire.coil, fire.level, fire.duration_ms, fire.seq, fire.tick)
-        if reason := self._guard.ask(request, self._answered):
+        reason = self._guard.ask(fire, self._answered)
+        if reason is not None:
             self._refuse(fire, reason)
         else:  # a pulse may end before the next tick, in which all coils are off again
             self._held, self._held_ticks = (fire.coil, fire.level), 0
@@ -189,7 +200,7 @@ class CoilDriver:
             self._silenced = False
             frames.append(self._events.frame(CoilEventCode.DEAD_MAN, tick))
         guard, read_back = self._guard, self._read_back
-        driven = (guard.coil, guard.level) if guard.on else None
+        driven = (guard.coil, guard.level) if guard.on else (0, 0)
         if driven == self._held:
             self._held_ticks += elapsed
         else:  # a pulse ends, and may end within a tick
@@ -198,7 +209,7 @@ class CoilDriver:
             return frames
         level = guard.level if guard.on else 0
         before, self._finding = self._finding, read_back.judge(level, current_a)
-        if self._finding not in (None, before):
+        if self._finding is not None and self._finding is not before:
             code = self._finding if self._tested else CoilEventCode.SELF_TEST_FAILED
             frames.append(self._events.frame(code, tick, _milliamperes(current_a)))
         self._tested = True

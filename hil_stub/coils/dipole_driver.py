@@ -1,7 +1,7 @@
 """The continuous driver board: drives all three coils at once, for one tick at a time."""
 
 from enum import IntEnum
-from typing import NamedTuple
+from typing import final
 
 from fsw.wire.frame import Frame, raw
 from fsw.wire.messages import (
@@ -14,6 +14,7 @@ from fsw.wire.messages import (
     CoilStatus,
     intact,
 )
+from fsw.wire.value import Value
 from hil_stub.coils.refusals import Refusals
 from hil_stub.node import Node
 
@@ -30,12 +31,19 @@ class DipoleBoardState(IntEnum):
     ON = 1
 
 
-class DipoleDrive(NamedTuple):
-    """What is driven over a tick, from its start for ``fraction`` of it."""
+@final
+class DipoleDrive(Value):
+    """What is driven over a tick, from its start for ``fraction`` of it.
 
-    dipole: Vec3
-    """Of each coil, as a fraction of the full scale, -1 to 1."""
-    fraction: float
+    ``dipole`` is that of each coil, as a fraction of the full scale, -1 to 1.
+    """
+
+    FIELDS = ("dipole", "fraction")
+    __slots__ = FIELDS
+
+    def __init__(self, dipole: Vec3, fraction: float) -> None:
+        self.dipole = dipole
+        self.fraction = fraction
 
 
 _NONE: Vec3 = (0.0, 0.0, 0.0)
@@ -66,7 +74,8 @@ class DipoleDriver:
         self._node = Node(CoilBoot, CoilHeartbeat, tick_hz, table_crc)
         self._on_fraction = on_fraction
         self._open = False  # whether a request may be taken
-        self._requested: Vec3 | None = None
+        self._taken = False  # whether one has been taken in this tick
+        self._dipole = _NONE
         self._refusals = Refusals()
         self._statuses = 0
         self.rejects = 0
@@ -86,14 +95,13 @@ class DipoleDriver:
         elapsed = self._node.advance(tick)
         if elapsed is None:
             return []
-        driven = self._requested if elapsed == 1 and self._requested is not None else _NONE
-        self._requested = None
-        self._open = True
+        driven = self._dipole if elapsed == 1 else _NONE
+        self._dipole, self._taken, self._open = _NONE, False, True
         frames = self._node.boot()
         frames += self._status(tick, current_a, driven)
         frames += self._refusals.take()
         frames += self._node.heartbeat(
-            DipoleBoardState.ON if any(driven) else DipoleBoardState.READY, self.rejects
+            DipoleBoardState.READY if driven == _NONE else DipoleBoardState.ON, self.rejects
         )
         return frames
 
@@ -116,16 +124,16 @@ class DipoleDriver:
     def drive(self) -> DipoleDrive:
         """What is driven over the tick that has begun; ends the time for requests that answer it."""
         self._open = False
-        return DipoleDrive(self._requested or _NONE, self._on_fraction)
+        return DipoleDrive(self._dipole, self._on_fraction)
 
     def _take_request(self, frame: Frame) -> None:
         if not self._open:
             self._refuse(frame, CoilRefusedReason.WRONG_TICK)
-        elif self._requested is not None:
+        elif self._taken:
             self._refuse(frame, CoilRefusedReason.SECOND_DIPOLE)
         else:
             request = CoilDipole.decode(frame.data)
-            self._requested = (request.m_x, request.m_y, request.m_z)
+            self._dipole, self._taken = (request.m_x, request.m_y, request.m_z), True
 
     def _status(self, tick: int, current_a: float, driven: Vec3) -> list[Frame]:
         off = CoilStatus(
@@ -137,9 +145,10 @@ class DipoleDriver:
             seq=0,
             counter=self._statuses,
         )
-        frames = [off.encode(), CoilDipoleStatus(*driven, counter=self._statuses).encode()]
+        x, y, z = driven
+        on = CoilDipoleStatus(x, y, z, counter=self._statuses)
         self._statuses += 1
-        return frames
+        return [off.encode(), on.encode()]
 
     def _refuse(self, frame: Frame, reason: CoilRefusedReason) -> None:
         coil, seq = 0, 0

@@ -15,16 +15,15 @@ the clock ends it.
 
 from dataclasses import replace
 
-from fsw.wire.messages import CoilRefusedReason
+from fsw.wire.messages import CoilFire, CoilRefusedReason
 from hil_stub.coils.interlock import (
-    COILS,
     UNITS_PER_TICK,
     CoilLimits,
     Interlock,
-    Request,
-    ask,
+    accept,
     boot,
     elapse,
+    judge,
     silence,
 )
 
@@ -44,7 +43,7 @@ class Guard:
         self._clock_limits = replace(limits, tick_hz=CLOCK_HZ)
         self._by_ticks: Interlock = boot(limits)
         self._by_clock: Interlock | None = None
-        self._clock_ms: int  # its last reading; there is one as soon as there is an interlock by it
+        self._clock_ms = 0  # its last reading, as soon as there is an interlock by it
         self._driven = False  # whether a coil was on at some instant since the last tick
         self._tick_under_way = False  # the last tick was entered, and its SYNC is still to come
         self._silent = False  # no SYNC has come since the dead-man woke
@@ -58,13 +57,13 @@ class Guard:
         if self._by_clock is None:
             self._by_clock, self._clock_ms = boot(self._clock_limits), clock_ms
         if clock_ms > self._clock_ms:
-            self._by_clock = elapse(self._by_clock, clock_ms - self._clock_ms)
+            elapse(self._by_clock, clock_ms - self._clock_ms)
             self._clock_ms = clock_ms
 
     def elapse(self, ticks: int) -> None:
         """Advance by ticks; the SYNC of the last is still to come."""
         self._tick_under_way = self.on
-        self._by_ticks = elapse(self._by_ticks, ticks)
+        elapse(self._by_ticks, ticks)
         self.level = self._by_ticks.level if self._driven else 0
         self._driven = self.on
 
@@ -74,21 +73,23 @@ class Guard:
 
     def silence(self) -> None:
         """No SYNC for too long: off and locked out in full, and until the next SYNC in any case."""
-        self._by_ticks = silence(self._by_ticks, self._limits)
+        silence(self._by_ticks, self._limits)
         if self._by_clock is not None:
-            self._by_clock = silence(self._by_clock, self._clock_limits)
+            silence(self._by_clock, self._clock_limits)
         self.level, self._driven, self._tick_under_way, self._silent = 0, False, False, True
 
-    def ask(self, request: Request, tick: int) -> CoilRefusedReason | None:
+    def ask(self, request: CoilFire, tick: int) -> CoilRefusedReason | None:
         """Judge a request at ``tick``: why it is refused (None: accepted). A refused one changes nothing."""
-        by_ticks, reason = ask(self._by_ticks, request, tick, self._limits)
-        by_clock = self._by_clock
+        by_ticks, by_clock = self._by_ticks, self._by_clock
+        reason = judge(by_ticks, request, tick, self._limits)
         if reason is None and by_clock is not None:
-            by_clock, reason = ask(by_clock, request, tick, self._clock_limits)
+            reason = judge(by_clock, request, tick, self._clock_limits)
         if reason is None and self._silent:
             reason = CoilRefusedReason.LOCKOUT
         if reason is None:
-            self._by_ticks, self._by_clock = by_ticks, by_clock
+            accept(by_ticks, request, self._limits)
+            if by_clock is not None:
+                accept(by_clock, request, self._clock_limits)
             self.level, self._driven = by_ticks.level, True
         return reason
 
@@ -149,4 +150,6 @@ class Guard:
     @property
     def locked_out(self) -> bool:
         """Whether the back-off of any coil runs, or the dead-man holds all."""
-        return self._silent or any(self.lockout_ms(coil) for coil in range(COILS))
+        by_clock = self._by_clock
+        runs = max(self._by_ticks.lockout) > 0 or (by_clock is not None and max(by_clock.lockout) > 0)
+        return self._silent or runs

@@ -1,4 +1,4 @@
-"""The coil interlock: what may be driven, as a pure function of integers.
+"""The coil interlock: what may be driven, by integers alone.
 
 Invariant, whatever is requested and however often the board restarts: no pulse lasts longer than
 ``pulse_ms``, no pulse starts earlier than ``backoff_ms`` after the end of the one before it (of any coil,
@@ -6,14 +6,14 @@ or of the same coil), no more than one coil is on, and every level is one of -3.
 
 Time is counted in units of 1 / (1000 tick_hz) s: a tick is 1000 units and a millisecond is ``tick_hz`` units,
 so that every duration is exact at every tick rate. All timers run down to zero; none is ever set by anything
-but ``boot``, ``silence`` and an accepted request.
+but ``boot``, ``silence`` and ``accept``.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import final
 
-from fsw.wire.messages import CoilRefusedReason
+from fsw.wire.messages import CoilFire, CoilRefusedReason
 
 UNITS_PER_TICK = 1000
 COILS = 3
@@ -61,22 +61,13 @@ class CoilLimits:
         return -(-units // (self.tick_hz * resolution_ms)) * resolution_ms
 
 
-class Request(NamedTuple):
-    """The request of a ``COIL_FIRE``; ``tick`` is the low byte of the tick that it answers."""
-
-    coil: int
-    level: int
-    duration_ms: int
-    seq: int
-    tick: int
-
-
 Lockouts = tuple[int, int, int]
 
 
-@dataclass(frozen=True, slots=True)
+@final
+@dataclass(slots=True)
 class Interlock:
-    """State at a tick. Times are in units.
+    """State at a tick, changed in place. Times are in units.
 
     Args:
         coil: coil that is on, or was on last.
@@ -99,31 +90,29 @@ def boot(limits: CoilLimits) -> Interlock:
     return Interlock(coil=0, level=0, remaining=0, lockout=(full, full, full), seq=None)
 
 
-def silence(state: Interlock, limits: CoilLimits) -> Interlock:
+def silence(state: Interlock, limits: CoilLimits) -> None:
     """The dead-man: no SYNC for too long, so all is off and locked out in full, as after boot.
 
     The sequence number stays: a request that was carried out before is still a repeated one.
     """
-    return replace(boot(limits), seq=state.seq)
+    full = limits.units(limits.backoff_ms)
+    state.coil = state.level = state.remaining = 0
+    state.lockout = (full, full, full)
 
 
-def elapse(state: Interlock, ticks: int) -> Interlock:
-    """The state ``ticks`` later. A level stays visible for the last tick in which it was driven."""
+def elapse(state: Interlock, ticks: int) -> None:
+    """Advance by ticks. A level stays visible for the last tick in which it was driven."""
     if ticks < 0:
         raise ValueError("time does not run backwards")
     units = ticks * UNITS_PER_TICK
-    driven = state.remaining > units - UNITS_PER_TICK
+    if state.remaining <= units - UNITS_PER_TICK:
+        state.level = 0
+    state.remaining = max(0, state.remaining - units)
     a, b, c = state.lockout
-    return Interlock(
-        coil=state.coil,
-        level=state.level if driven else 0,
-        remaining=max(0, state.remaining - units),
-        lockout=(max(0, a - units), max(0, b - units), max(0, c - units)),
-        seq=state.seq,
-    )
+    state.lockout = (max(0, a - units), max(0, b - units), max(0, c - units))
 
 
-_Rule = Callable[[Interlock, Request, int, CoilLimits], bool]
+_Rule = Callable[[Interlock, CoilFire, int, CoilLimits], bool]
 
 _REFUSED_IF: tuple[tuple[CoilRefusedReason, _Rule], ...] = (
     (CoilRefusedReason.WRONG_TICK, lambda state, request, tick, limits: request.tick != tick & 0xFF),
@@ -146,23 +135,22 @@ REFUSAL_ORDER = tuple(reason for reason, _ in _REFUSED_IF)
 """The reasons in that order, for the specification of the board."""
 
 
-def ask(
-    state: Interlock, request: Request, tick: int, limits: CoilLimits
-) -> tuple[Interlock, CoilRefusedReason | None]:
-    """Judge a request at ``tick``: the state after it, and why it was refused (None: accepted).
-
-    A refused request changes nothing. An accepted one drives its coil from this tick on for its duration, and
-    locks out for that and the back-off after it.
-    """
+def judge(state: Interlock, request: CoilFire, tick: int, limits: CoilLimits) -> CoilRefusedReason | None:
+    """Why a request at ``tick`` is refused; None: it may be accepted."""
     for reason, applies in _REFUSED_IF:
         if applies(state, request, tick, limits):
-            return state, reason
-    duration = limits.units(request.duration_ms)
-    until_next = duration + limits.units(limits.backoff_ms)
-    a, b, c = (
-        until_next if limits.shared or coil == request.coil else left
-        for coil, left in enumerate(state.lockout)
+            return reason
+    return None
+
+
+def accept(state: Interlock, request: CoilFire, limits: CoilLimits) -> None:
+    """Drive the coil from this tick on for the requested duration, and lock out for that and the back-off."""
+    state.coil, state.level, state.seq = request.coil, request.level, request.seq
+    state.remaining = limits.units(request.duration_ms)
+    until_next = state.remaining + limits.units(limits.backoff_ms)
+    a, b, c = state.lockout
+    state.lockout = (
+        until_next if limits.shared or request.coil == 0 else a,
+        until_next if limits.shared or request.coil == 1 else b,
+        until_next if limits.shared or request.coil == 2 else c,
     )
-    return replace(
-        state, coil=request.coil, level=request.level, remaining=duration, lockout=(a, b, c), seq=request.seq
-    ), None

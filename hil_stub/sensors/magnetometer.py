@@ -34,8 +34,12 @@ class Magnetometer:
         if self._node.advance(tick) is None:
             return []
         x, y, z = b_body_t
-        b_nt = (x * _NT_PER_T, y * _NT_PER_T, z * _NT_PER_T)
-        in_range = all(_LOW_NT <= axis <= _HIGH_NT for axis in b_nt)
-        sample = MagField(int(valid and in_range), *b_nt, counter=self._fields)
+        x, y, z = x * _NT_PER_T, y * _NT_PER_T, z * _NT_PER_T
+        valid = valid and _in_range(x) and _in_range(y) and _in_range(z)
+        sample = MagField(int(valid), x, y, z, counter=self._fields)
         self._fields += 1
         return [*self._node.boot(), sample.encode(), *self._node.heartbeat()]
+
+
+def _in_range(axis_nt: float) -> bool:
+    return _LOW_NT <= axis_nt <= _HIGH_NT

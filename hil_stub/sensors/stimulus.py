@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Iterable
 from math import ceil, hypot, inf, isfinite
-from typing import NamedTuple
+from typing import final
 
 from fsw.wire.candump_line import LineReader
 from fsw.wire.messages import MagField, SunCells, SunVector, Sync, intact
+from fsw.wire.value import Value
 
 Values = tuple[float, ...]
 """Three components of a vector, or the currents of six cells."""
@@ -15,11 +16,16 @@ STEP_KEYS = ("t_s", "field_nt", "sun", "cells")
 """Keys of a step of a script, which may hold readings of several sensors."""
 
 
-class Reading(NamedTuple):
+@final
+class Reading(Value):
     """What the instrument reads: a field [T] or the unit vector to the Sun, body axes; currents of cells."""
 
-    values: Values
-    valid: bool
+    FIELDS = ("numbers", "valid")
+    __slots__ = FIELDS
+
+    def __init__(self, numbers: Values, valid: bool) -> None:
+        self.numbers = numbers
+        self.valid = valid
 
 
 NOTHING = Reading((0.0, 0.0, 0.0), False)

@@ -41,9 +41,11 @@ class SunCellBoard:
             raise ValueError(f"the board has inputs for {CELLS} cells, not {len(currents)}")
         if self._node.advance(tick) is None:
             return []
-        sound = valid and not any(map(isnan, currents))
-        held = [min(max(current, 0.0), _MOST) if sound else 0.0 for current in currents]
-        first, second, third, fourth, fifth, sixth = held + [0.0] * (CELLS - len(held))
-        sample = SunCells(int(sound), first, second, third, fourth, fifth, sixth, counter=self._samples)
+        shown = [0.0] * CELLS
+        for cell, current in enumerate(currents):
+            valid = valid and not isnan(current)
+            shown[cell] = min(max(current, 0.0), _MOST)
+        first, second, third, fourth, fifth, sixth = shown if valid else [0.0] * CELLS
+        sample = SunCells(int(valid), first, second, third, fourth, fifth, sixth, counter=self._samples)
         self._samples += 1
         return [*self._node.boot(), sample.encode(), *self._node.heartbeat()]

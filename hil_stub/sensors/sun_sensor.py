@@ -34,7 +34,14 @@ class SunSensor:
         """
         if self._node.advance(tick) is None:
             return []
-        visible = valid and all(_LOW <= component <= _HIGH for component in sun_body)
-        sample = SunVector(int(visible), *(sun_body if visible else _DARK), counter=self._vectors)
+        x, y, z = sun_body
+        visible = valid and _in_range(x) and _in_range(y) and _in_range(z)
+        if not visible:
+            x, y, z = _DARK
+        sample = SunVector(int(visible), x, y, z, counter=self._vectors)
         self._vectors += 1
         return [*self._node.boot(), sample.encode(), *self._node.heartbeat()]
+
+
+def _in_range(component: float) -> bool:
+    return _LOW <= component <= _HIGH

@@ -140,7 +140,7 @@ class WheelDriver:
         found = [WheelEventCode.DEAD_MAN] if self._silenced else []
         self._silenced = False
         before, self._finding = self._finding, self._fault()
-        if self._finding not in (None, before):
+        if self._finding is not None and self._finding is not before:
             found.append(self._finding)
         frames = []
         for code in found:

@@ -7,9 +7,10 @@ that turns at ``max_speed_radps`` or faster, and lasts one tick. Without a torqu
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite
-from typing import NamedTuple
+from typing import final
 
 from fsw.wire.messages import WheelStatusResult
+from fsw.wire.value import Value
 
 LARGEST_NM, LARGEST_RADPS = 0.5, 2048.0
 """Ranges of the signals ``torque`` and ``speed``."""
@@ -46,7 +47,8 @@ class WheelLimits:
         return -(-1000 // self.tick_hz)
 
 
-class Asked(NamedTuple):
+@final
+class Asked(Value):
     """A request, and what the board knows when it comes.
 
     ``tick`` and ``answered``: low 8 bits of the tick that the request names, and the tick that can be
@@ -54,11 +56,17 @@ class Asked(NamedTuple):
     it cannot be measured.
     """
 
-    torque_nm: float
-    tick: int
-    answered: int | None
-    taken: bool
-    speed_radps: float | None
+    FIELDS = ("torque_nm", "tick", "answered", "taken", "speed_radps")
+    __slots__ = FIELDS
+
+    def __init__(
+        self, torque_nm: float, tick: int, answered: int | None, taken: bool, speed_radps: float | None
+    ) -> None:
+        self.torque_nm = torque_nm
+        self.tick = tick
+        self.answered = answered
+        self.taken = taken
+        self.speed_radps = speed_radps
 
 
 def _stale(asked: Asked, limits: WheelLimits) -> bool:

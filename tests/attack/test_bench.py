@@ -141,7 +141,7 @@ class ClockUnasked(guard.Guard):
     """Its clock ends pulses, and refuses nothing."""
 
     def ask(self, request, tick):
-        self._by_clock = guard.replace(self._by_clock, remaining=0, lockout=(0, 0, 0))
+        self._by_clock.remaining, self._by_clock.lockout = 0, (0, 0, 0)
         return super().ask(request, tick)
 
 
@@ -149,10 +149,9 @@ class LateSilence(guard.Guard):
     """The dead-man only switches off."""
 
     def silence(self):
-        lockout = self._by_ticks.lockout, self._by_clock.lockout
+        lockout = self._by_ticks.lockout
         super().silence()
-        self._by_ticks = guard.replace(self._by_ticks, lockout=lockout[0])
-        self._by_clock = guard.replace(self._by_clock, lockout=(0, 0, 0))
+        self._by_ticks.lockout, self._by_clock.lockout = lockout, (0, 0, 0)
 
 
 class EarlyBoot(guard.Guard):

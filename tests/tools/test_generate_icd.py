@@ -8,8 +8,9 @@ from pathlib import Path
 
 import cantools
 import pytest
+from interlocks import after_ticks
 
-from fsw.wire.messages import CoilRefusedReason, WheelStatusResult
+from fsw.wire.messages import CoilFire, CoilRefusedReason, WheelStatusResult
 from hil_stub.coils import interlock
 from hil_stub.coils.coil_driver import CoilLimits
 from hil_stub.wheel import wheel_guard
@@ -112,16 +113,15 @@ def test_the_worked_example_is_what_another_codec_makes():
 def test_the_order_of_refusals_is_how_the_board_judges():
     """A request that breaks rule n and all that follow is refused for n."""
     limits = CoilLimits(1)
-    fired = interlock.Request(coil=0, level=1, duration_ms=3000, seq=5, tick=300 & 0xFF)
-    state, refused = interlock.ask(interlock.elapse(interlock.boot(limits), 100), fired, 300, limits)
-    assert refused is None
-    asked = interlock.Request(coil=3, level=7, duration_ms=0, seq=5, tick=0)
+    state = after_ticks(interlock.boot(limits), 100)
+    interlock.accept(state, CoilFire(coil=0, level=1, duration_ms=3000, seq=5, tick=300 & 0xFF), limits)
+    asked = CoilFire(coil=3, level=7, duration_ms=0, seq=5, tick=0)
     mended = [{"tick": 300 & 0xFF}, {"seq": 6}, {"coil": 0}, {"level": 1}, {"duration_ms": 1}]
     found = []
     for mend in [{}, *mended]:
-        asked = asked._replace(**mend)
-        found.append(interlock.ask(state, asked, 300, limits)[1])
-    found.append(interlock.ask(interlock.elapse(state, 3), asked, 300, limits)[1])
+        asked = asked.replace(**mend)
+        found.append(interlock.judge(state, asked, 300, limits))
+    found.append(interlock.judge(after_ticks(state, 3), asked, 300, limits))
     assert tuple(found) == interlock.REFUSAL_ORDER
     assert refusals()[: len(interlock.REFUSAL_ORDER)] == named(interlock.REFUSAL_ORDER)
     assert set(CoilRefusedReason) > set(interlock.REFUSAL_ORDER)

@@ -85,9 +85,9 @@ class ContinuousActuator(Actuator):
 
     def drive(self) -> CoilDrive:
         """The currents of the tick that has begun."""
-        (x, y, z), fraction = self._driver.drive()
-        full_a = self._full_a
-        return CoilDrive((x * full_a, y * full_a, z * full_a), fraction)
+        driven, full_a = self._driver.drive(), self._full_a
+        x, y, z = driven.dipole
+        return CoilDrive((x * full_a, y * full_a, z * full_a), driven.fraction)
 
 
 def make_actuator(config: PlantConfig) -> Actuator:

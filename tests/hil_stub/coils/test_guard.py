@@ -2,15 +2,16 @@
 
 import pytest
 
+from fsw.wire.messages import CoilFire
 from fsw.wire.messages import CoilRefusedReason as Reason
 from hil_stub.coils.guard import Guard
-from hil_stub.coils.interlock import CoilLimits, Request
+from hil_stub.coils.interlock import CoilLimits
 
 PULSE_MS, BACKOFF_MS = 3000, 100_000
 
 
 def asking(tick, seq=1, coil=1, level=-2, duration_ms=PULSE_MS):
-    return Request(coil, level, duration_ms, seq, tick & 0xFF)
+    return CoilFire(level, coil, seq, tick & 0xFF, duration_ms)
 
 
 class Timers:

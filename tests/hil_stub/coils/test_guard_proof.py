@@ -16,17 +16,21 @@ from itertools import product
 from typing import NamedTuple
 
 import pytest
+from interlocks import numbers_of
 
+from fsw.wire.messages import CoilFire
 from hil_stub.coils import interlock
 from hil_stub.coils.guard import CLOCK_HZ, Guard
-from hil_stub.coils.interlock import CoilLimits, Request
+from hil_stub.coils.interlock import CoilLimits
 
 TICK = 300
 JUMPS_MS = (500, 2500)
 TICKS = (1, 3)
 REQUESTS = {  # by kind of back-off
-    True: [Request(coil, 2, ms, seq, TICK & 0xFF) for coil, ms, seq in product((0, 1), (1000, 1500), (0, 1))],
-    False: [Request(coil, 2, 1000, seq, TICK & 0xFF) for coil, seq in product((0, 1), (0, 1))],
+    True: [
+        CoilFire(2, coil, seq, TICK & 0xFF, ms) for coil, ms, seq in product((0, 1), (1000, 1500), (0, 1))
+    ],
+    False: [CoilFire(2, coil, seq, TICK & 0xFF, 1000) for coil, seq in product((0, 1), (0, 1))],
 }
 LIMITS = {
     "shared": CoilLimits(1, 1500, 2000, shared=True),
@@ -104,9 +108,17 @@ def fresh(kind, limits):
     return board
 
 
+def copy_of(board):
+    """A guard in the same state, with interlocks of its own."""
+    other = copy.copy(board)
+    other._by_ticks = copy.copy(board._by_ticks)
+    other._by_clock = copy.copy(board._by_clock)
+    return other
+
+
 def passed(board, span_ms):
     """Time passes, and no tick comes. A pulse that is over then was over when its timer said so."""
-    later = copy.copy(board)
+    later = copy_of(board)
     later.pass_time(span_ms)
     driven_ms, drives = 0, later.drives
     if board.drives:
@@ -118,7 +130,7 @@ def passed(board, span_ms):
 
 def changed(board, change):
     """Something happens in no time."""
-    other = copy.copy(board)
+    other = copy_of(board)
     change(other)
     drives = other.drives
     return other, lambda judge: judge.cut(drives)
@@ -132,7 +144,7 @@ def heard(board, change, silent):
 
 def both_accept(board, asked):
     return all(
-        interlock.ask(one, asked, TICK, limits)[1] is None
+        interlock.judge(one, asked, TICK, limits) is None
         for one, limits in ((board._by_ticks, board._limits), (board._by_clock, board._clock_limits))
     )
 
@@ -140,7 +152,7 @@ def both_accept(board, asked):
 def asked_of(board, limits, proof):
     """The guards that have accepted a request, each request having been made."""
     for asked in REQUESTS[limits.shared]:
-        answered = copy.copy(board)
+        answered = copy_of(board)
         reason = answered.ask(asked, TICK)
         assert reason is None or board._silent or not both_accept(board, asked), f"{asked}: {reason}"
         assert reason is not None or both_accept(board, asked), f"{asked} is accepted"
@@ -175,7 +187,8 @@ def prove(kind: type[Guard], limits: CoilLimits) -> Proof:
     reached, seen = {}, set()
     while queue:
         board, judge = queue.popleft()
-        guard = (board._by_ticks, board._by_clock, board._tick_under_way, board._clock_ms, board._silent)
+        by_ticks, by_clock = numbers_of(board._by_ticks), numbers_of(board._by_clock)
+        guard = (by_ticks, by_clock, board._tick_under_way, board._clock_ms, board._silent)
         if (guard, judge) in seen:
             continue
         seen.add((guard, judge))
@@ -217,7 +230,7 @@ class FastClock(Guard):
     def pass_time(self, clock_ms):
         passed_ms = 0 if self._by_clock is None else clock_ms - self._clock_ms
         super().pass_time(clock_ms)
-        self._by_clock = interlock.elapse(self._by_clock, passed_ms)
+        interlock.elapse(self._by_clock, passed_ms)
 
 
 class ClockNotAsked(Guard):
@@ -230,7 +243,7 @@ class ClockNotAsked(Guard):
 
 class ClockNotTold(Guard):
     def ask(self, request, tick):
-        by_clock = self._by_clock
+        by_clock = copy.copy(self._by_clock)
         reason = super().ask(request, tick)
         self._by_clock = by_clock
         return reason
@@ -241,12 +254,12 @@ class ClockThatBootsFree(Guard):
         boots = self._by_clock is None
         super().pass_time(clock_ms)
         if boots:
-            self._by_clock = replace(self._by_clock, lockout=(0, 0, 0))
+            self._by_clock.lockout = (0, 0, 0)
 
 
 class ClockDeafToSilence(Guard):
     def silence(self):
-        by_clock = self._by_clock
+        by_clock = copy.copy(self._by_clock)
         super().silence()
         self._by_clock = replace(by_clock, lockout=(0, 0, 0))
 

@@ -20,7 +20,9 @@ from itertools import product
 from typing import NamedTuple
 
 import pytest
+from interlocks import Numbers, after_request, after_silence, after_ticks, become, numbers_of
 
+from fsw.wire.messages import CoilFire
 from fsw.wire.messages import CoilRefusedReason as Reason
 from hil_stub.coils import interlock
 
@@ -31,22 +33,25 @@ DURATIONS_MS = (1000, 1001, PULSE_MS)
 """At 1 Hz a back-off is seven ticks; pulses end at a tick, just after one, and in the middle of one."""
 
 IN_TIME = [
-    interlock.Request(coil, level, duration_ms, seq, LOW)
+    CoilFire(level, coil, seq, LOW, duration_ms)
     for coil, level, duration_ms, seq in product(
         (0, 1, 2, 3), (-4, -3, 0, 1), (0, *DURATIONS_MS, PULSE_MS + 1), (0, 1)
     )
 ]
-LATE = [interlock.Request(coil, 1, PULSE_MS, seq, LOW - 1) for coil in (0, 1, 2) for seq in (0, 1)]
+LATE = [CoilFire(1, coil, seq, LOW - 1, PULSE_MS) for coil in (0, 1, 2) for seq in (0, 1)]
 REQUESTS = IN_TIME + LATE
 JUMPS = (1, 2, 5)
 
 
 @cache
-def proper(ready: tuple[bool, ...], last_seq: int | None) -> frozenset[interlock.Request]:
-    """The requests that nothing is wrong with, of coils that are ready, with another number than the last."""
+def proper(ready: tuple[bool, ...], last_seq: int | None) -> frozenset[int]:
+    """The requests that nothing is wrong with, of coils that are ready, with another number than the last.
+
+    Each by its place among ``REQUESTS``.
+    """
     return frozenset(
-        asked
-        for asked in REQUESTS
+        place
+        for place, asked in enumerate(REQUESTS)
         if asked.coil != 3 and ready[asked.coil]
         if asked.level not in {-4, 0} and asked.duration_ms in DURATIONS_MS
         if asked.tick == LOW and asked.seq != last_seq
@@ -64,7 +69,7 @@ class Judge(NamedTuple):
     due: tuple[int, int, int] | None = None  # coil, level and rest of the accepted request that is not over
     backoff: int = BACKOFF_MS
 
-    def allowed(self, shared: bool) -> frozenset[interlock.Request]:
+    def allowed(self, shared: bool) -> frozenset[int]:
         """The requests that are proper and would keep the limits if they were carried out now."""
         if self.due or self.since_boot < self.backoff:
             return frozenset()
@@ -72,7 +77,7 @@ class Judge(NamedTuple):
         ready = (min(waited),) * 3 if shared else waited
         return proper(tuple(time >= self.backoff for time in ready), self.last_seq)
 
-    def accept(self, asked: interlock.Request) -> "Judge":
+    def accept(self, asked: CoilFire) -> "Judge":
         """Without a back-off a pulse may follow the one before at once, and is another one."""
         begun = self if self.backoff else self._replace(on=None, length=0)
         return begun._replace(last_seq=asked.seq, due=(asked.coil, asked.level, asked.duration_ms))
@@ -127,17 +132,17 @@ class Proof:
     silences_in_pulse: int = 0
 
 
-def accepted_by(state: interlock.Interlock, limits: interlock.CoilLimits, proof: Proof, exact: bool) -> dict:
-    """The requests that are accepted in a state, and the states after them."""
+def accepted_by(numbers: Numbers, limits: interlock.CoilLimits, proof: Proof, exact: bool) -> dict:
+    """The requests that are accepted in a state, by their places, and the states after them."""
     accepted = {}
-    for asked in REQUESTS:
-        after, reason = interlock.ask(state, asked, TICK, limits)
+    for place, asked in enumerate(REQUESTS):
+        after, reason = after_request(interlock.Interlock(*numbers), asked, TICK, limits)
         if reason is None:
             proof.accepted[asked.coil] += 1
-            accepted[asked] = after
+            accepted[place] = numbers_of(after)
         else:
             proof.refused[reason] += 1
-            assert after is state or not exact, "a refusal changed the state"
+            assert numbers_of(after) == numbers or not exact, "a refusal changed the state"
     return accepted
 
 
@@ -147,20 +152,21 @@ def prove(shared: bool, exact: bool = True, backoff_ms: int = BACKOFF_MS) -> Pro
     With ``exact`` exactness is demanded too, not safety alone.
     """
     limits = interlock.CoilLimits(tick_hz=1, pulse_ms=PULSE_MS, backoff_ms=backoff_ms, shared=shared)
-    first = (interlock.boot(limits), Judge(since_end=(backoff_ms,) * 3, backoff=backoff_ms))
-    seen = {first}
+    booted = numbers_of(interlock.boot(limits))
+    seen = {(booted, Judge(since_end=(backoff_ms,) * 3, backoff=backoff_ms))}
     queue = deque(seen)
     proof, answers = Proof(), {}
     while queue:
-        state, judge = queue.popleft()
-        reached = [(interlock.boot(limits), judge.reboot())]
-        reached.append((interlock.silence(state, limits), judge.silence()))
+        numbers, judge = queue.popleft()
+        state = interlock.Interlock(*numbers)
+        reached = [(booted, judge.reboot())]
+        reached.append((numbers_of(after_silence(state, limits)), judge.silence()))
         proof.restarts_in_pulse += state.remaining > 0
         proof.silences_in_pulse += state.remaining > 0
-        if state not in answers:
-            answers[state] = accepted_by(state, limits, proof, exact)
-        assert not exact or answers[state].keys() == judge.allowed(shared), f"in {state}"
-        reached += [(after, judge.accept(asked)) for asked, after in answers[state].items()]
+        if numbers not in answers:
+            answers[numbers] = accepted_by(numbers, limits, proof, exact)
+        assert not exact or answers[numbers].keys() == judge.allowed(shared), f"in {state}"
+        reached += [(after, judge.accept(REQUESTS[place])) for place, after in answers[numbers].items()]
         for ticks in JUMPS:
             span = ticks * interlock.UNITS_PER_TICK
             driven = min(state.remaining, span)
@@ -168,13 +174,13 @@ def prove(shared: bool, exact: bool = True, backoff_ms: int = BACKOFF_MS) -> Pro
                 judge.expect(state.coil, state.level, driven, span)
             watched = judge.watch(state.coil, state.level, driven, span, shared)
             proof.pulses.add(watched.length)
-            reached.append((interlock.elapse(state, ticks), watched))
+            reached.append((numbers_of(after_ticks(state, ticks)), watched))
         for pair in reached:
             if pair not in seen:
                 seen.add(pair)
                 queue.append(pair)
         assert len(seen) < 100_000, "the states do not end"
-    proof.states = len({state for state, _ in seen})
+    proof.states = len({numbers for numbers, _ in seen})
     return proof
 
 
@@ -230,11 +236,12 @@ def booting(**values: object) -> Planting:
 def accepting(change: Callable) -> Planting:
     """A bug in what an accepted request does: ``change(after, before, asked, limits)``."""
 
-    def wrong(ask, state, asked, tick, limits):
-        after, reason = ask(state, asked, tick, limits)
-        return (change(after, state, asked, limits) if reason is None else after), reason
+    def wrong(accept, state, asked, limits):
+        before = replace(state)
+        accept(state, asked, limits)
+        become(state, change(state, before, asked, limits))
 
-    return around("ask", wrong)
+    return around("accept", wrong)
 
 
 def locking_out(
@@ -255,14 +262,22 @@ def elapsing(change: Callable) -> Planting:
     """A bug in how time passes: ``change(after, before, units)``."""
 
     def wrong(elapse, state, ticks):
-        return change(elapse(state, ticks), state, ticks * interlock.UNITS_PER_TICK)
+        before = replace(state)
+        elapse(state, ticks)
+        become(state, change(state, before, ticks * interlock.UNITS_PER_TICK))
 
     return around("elapse", wrong)
 
 
 def silencing(change: Callable) -> Planting:
     """A bug in what the dead-man does: ``change(after, before)``."""
-    return around("silence", lambda silence, state, limits: change(silence(state, limits), state))
+
+    def wrong(silence, state, limits):
+        before = replace(state)
+        silence(state, limits)
+        become(state, change(state, before))
+
+    return around("silence", wrong)
 
 
 FULL = BACKOFF_MS  # units of a whole back-off, at 1 Hz

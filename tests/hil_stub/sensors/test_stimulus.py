@@ -41,7 +41,7 @@ class TestLog:
             line(Sync(2, 2)),
         ]
         field = recorded(log, MagField, 1e-9)
-        assert field(0).values == pytest.approx((1e-7, -2e-7, 3e-7))
+        assert field(0).numbers == pytest.approx((1e-7, -2e-7, 3e-7))
         assert field(0).valid
         assert field(1) is NOTHING, "it was silent"
         assert field(2) == Reading((0.0, 0.0, 2e-9), False)
@@ -81,13 +81,13 @@ class TestScript:
 
     def test_a_step_holds_until_the_next_that_names_the_sensor(self):
         field = scripted(list(self.STEPS), "field_nt", 2, from_nt)
-        shown = [field(tick).values for tick in (0, 3, 5, 6, 1000)]
+        shown = [field(tick).numbers for tick in (0, 3, 5, 6, 1000)]
         assert shown == [pytest.approx(from_nt((20000.0, 0.0, -30000.0)))] * 3 + [(0.0, 5e-9, 0.0)] * 2
 
     def test_false_is_nothing_and_a_direction_has_length_one(self):
         sun = scripted(list(self.STEPS), "sun", 2, direction)
         assert [sun(tick).valid for tick in (0, 2, 3, 5, 6)] == [True, True, False, False, True]
-        assert sun(6).values == (0.0, 0.6, 0.8)
+        assert sun(6).numbers == (0.0, 0.6, 0.8)
 
     def test_before_its_first_step_there_is_nothing(self):
         assert scripted([{"t_s": 0.0}, {"t_s": 5.0, "sun": [1, 0, 0]}], "sun", 1, direction)(4) is NOTHING

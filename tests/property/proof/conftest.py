@@ -14,7 +14,7 @@ on them.
 
 from collections import Counter, deque
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache, lru_cache
 from itertools import product
 from math import inf
@@ -22,12 +22,14 @@ from typing import NamedTuple
 
 import pytest
 from gate_samples import measured
+from interlocks import Numbers, after_request, after_silence, after_ticks, numbers_of
 
 from fsw.core.actuation import actuator, pulses
 from fsw.core.algebra.vector import ZERO
 from fsw.core.laws.interface import Demand
 from fsw.wire.messages import CoilBoot, CoilFire, CoilStatus
 from hil_stub.coils import interlock
+from hil_stub.coils.interlock import Interlock
 
 EPOCH = 768
 """A tick that is a multiple of three coils and of the 256 that a request can tell apart."""
@@ -102,7 +104,7 @@ class World(NamedTuple):
     """
 
     own: Own
-    board: interlock.Interlock
+    board: Numbers
     judge: Judge
     phase: int
     new: bool = False
@@ -176,7 +178,7 @@ class Search:
 
     def run(self) -> Proof:
         """Everything that can be reached from boot; AssertionError at the first world that breaks a limit."""
-        first = World(self._boot(0), interlock.boot(self.limits), Judge(), 0, new=True)
+        first = World(self._boot(0), self._booted(), Judge(), 0, new=True)
         seen = {first}
         queue = deque(seen)
         while queue:
@@ -193,9 +195,9 @@ class Search:
         own, board, judge, phase, new = world
         faults, proof = self.setup.faults, self.proof
         if self.setup.board_restarts:
-            yield world._replace(board=interlock.boot(self.limits), new=True)
+            yield world._replace(board=self._booted(), new=True)
         if faults:
-            yield world._replace(board=interlock.silence(board, self.limits))
+            yield world._replace(board=numbers_of(after_silence(Interlock(*board), self.limits)))
             if self.setup.restart_in_pulse or judge.on is None:
                 proof.restarts_in_pulse += judge.on is not None
                 yield world._replace(own=self._boot(phase))
@@ -217,7 +219,7 @@ class Search:
                 if status is not None and (boot is not None) == new:
                     proof.clean.update({(world, demand): Step(fired, after) for demand in demands})
 
-    def _next(self, world: World, own: Own, board: interlock.Interlock) -> World:
+    def _next(self, world: World, own: Own, board: Numbers) -> World:
         board_then, judge = self.drive(board, world.judge)
         return World(own, board_then, judge, (world.phase + 1) % 3)
 
@@ -225,7 +227,10 @@ class Search:
         tick = EPOCH + phase
         return relative(pulses.boot(tick, self.config), actuator.CoilView(), tick)
 
-    def _words(self, board: interlock.Interlock, phase: int, new: bool) -> list[Heard]:
+    def _booted(self) -> Numbers:
+        return numbers_of(interlock.boot(self.limits))
+
+    def _words(self, board: Numbers, phase: int, new: bool) -> list[Heard]:
         """What the scheduler may receive in this tick; None where it is lost."""
         coil = board.coil if board.level else phase
         remaining_ms = self.limits.milliseconds(board.remaining)
@@ -250,21 +255,20 @@ class Search:
             outcomes.setdefault((relative(state, view, tick + 1), request), []).append(demand)
         return list(outcomes.items())
 
-    def _ask(self, board: interlock.Interlock, request: CoilFire, phase: int) -> tuple:
+    def _ask(self, board: Numbers, request: CoilFire, phase: int) -> tuple:
         """The board after the request, as it comes off the bus, and why it was refused."""
         fire = CoilFire.decode(request.encode().data)
-        asked = interlock.Request(fire.coil, fire.level, fire.duration_ms, fire.seq, fire.tick)
-        after, reason = interlock.ask(board, asked, EPOCH + phase, self.limits)
+        after, reason = after_request(Interlock(*board), fire, EPOCH + phase, self.limits)
         assert reason is not None or board.remaining == 0, "two coils on: a pulse into another"
-        return after, reason
+        return numbers_of(after), reason
 
-    def _drive(self, board: interlock.Interlock, judge: Judge) -> tuple[interlock.Interlock, Judge]:
+    def _drive(self, board: Numbers, judge: Judge) -> tuple[Numbers, Judge]:
         """One tick on, watched by the judge; nothing is kept that no rule can see."""
         driven = min(board.remaining, interlock.UNITS_PER_TICK)
         judge = judge.watch(board.coil, board.level, driven, self.setup)
-        board = interlock.elapse(board, 1)
-        coil, seq = board.coil if board.level else 0, None if board.seq is None else 0
-        return replace(board, coil=coil, seq=seq), judge
+        after = numbers_of(after_ticks(Interlock(*board), 1))
+        coil, seq = after.coil if after.level else 0, None if after.seq is None else 0
+        return after._replace(coil=coil, seq=seq), judge
 
 
 @pytest.fixture(scope="session")

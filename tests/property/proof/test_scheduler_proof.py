@@ -137,20 +137,17 @@ def without(*reasons: Reason) -> Planting:
     return lambda patch: patch.setattr(interlock, "_REFUSED_IF", rules)
 
 
-def unlocked(ask, state, asked, tick, limits):
+def unlocked(accept, state, asked, limits):
     """An accepted request locks out no coil that it would."""
-    after, reason = ask(state, asked, tick, limits)
-    if reason is None:
-        lockout = (0, 0, 0) if limits.shared else with_coil(after.lockout, asked.coil, 0)
-        after = replace(after, lockout=lockout)
-    return after, reason
+    accept(state, asked, limits)
+    state.lockout = (0, 0, 0) if limits.shared else with_coil(state.lockout, asked.coil, 0)
 
 
 TOOTHLESS = (without(Reason.LOCKOUT, Reason.COIL_ON, Reason.BAD_DURATION),)
 """A board that does what it is asked, and still tells for how long it should not."""
 
 NO_LOCKOUT = (
-    around(interlock, "ask", unlocked),
+    around(interlock, "accept", unlocked),
     around(interlock, "boot", lambda boot, limits: replace(boot(limits), lockout=(0, 0, 0))),
 )
 

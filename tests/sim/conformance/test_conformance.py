@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+from interlocks import become
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
@@ -127,7 +128,8 @@ def without(reason):
 def booting(factor):
     def boot(limits):
         state = interlock.boot(limits)
-        return replace(state, lockout=tuple(round(factor * left) for left in state.lockout))
+        state.lockout = tuple(round(factor * left) for left in state.lockout)
+        return state
 
     return lambda patch: patch.setattr(guard, "boot", boot)
 
@@ -135,11 +137,11 @@ def booting(factor):
 def accepting(change):
     """An interlock that sets other timers when it accepts."""
 
-    def ask(state, asked, tick, limits):
-        after, reason = interlock.ask(state, asked, tick, limits)
-        return (after, reason) if reason else (change(after, limits), None)
+    def accept(state, asked, limits):
+        interlock.accept(state, asked, limits)
+        become(state, change(state, limits))
 
-    return lambda patch: patch.setattr(guard, "ask", ask)
+    return lambda patch: patch.setattr(guard, "accept", accept)
 
 
 def lockouts(change):
@@ -147,7 +149,9 @@ def lockouts(change):
 
 
 def silencing(change):
-    return lambda patch: patch.setattr(guard, "silence", change)
+    return lambda patch: patch.setattr(
+        guard, "silence", lambda state, limits: become(state, change(state, limits))
+    )
 
 
 def take_broken(patch):
@@ -168,9 +172,9 @@ def take_any_coil(patch):
     modulo = {"BAD_COIL": lambda state, asked, tick, limits: False}
     rules = tuple((reason, modulo.get(reason.name, rule)) for reason, rule in interlock._REFUSED_IF)
     patch.setattr(interlock, "_REFUSED_IF", rules)
-    ask = interlock.ask
+    ask = guard.Guard.ask
     patch.setattr(
-        guard, "ask", lambda state, a, tick, limits: ask(state, a._replace(coil=a.coil % 3), tick, limits)
+        guard.Guard, "ask", lambda self, asked, tick: ask(self, asked.replace(coil=asked.coil % 3), tick)
     )
 
 

@@ -1,6 +1,5 @@
 """Plant, boards and flight software in one process under faults."""
 
-from dataclasses import replace
 from random import Random
 
 import pytest
@@ -106,7 +105,8 @@ def test_an_exception_in_a_step_is_noted_and_ends_fsw(flown):
 
 
 def test_a_board_without_guards_is_found_out(rig, bounds, monkeypatch):
-    monkeypatch.setattr("hil_stub.coils.guard.ask", lenient)
+    monkeypatch.setattr("hil_stub.coils.guard.judge", lambda state, asked, tick, limits: None)
+    monkeypatch.setattr("hil_stub.coils.guard.accept", take_unlocked)
     bench = rig()
     bench.inject(make("second_sender", {"frames": 1.0}, Random(3)), 5, None)
     for _ in range(60):
@@ -119,12 +119,10 @@ def test_a_board_without_guards_is_found_out(rig, bounds, monkeypatch):
     assert currents.violations(record.coil_drives, bounds.currents)
 
 
-def lenient(state, asked, tick, limits):
-    if asked.duration_ms > 60000:
-        return state, None
-    return replace(
-        state, coil=asked.coil, level=asked.level, remaining=limits.units(asked.duration_ms), seq=asked.seq
-    ), None
+def take_unlocked(state, asked, limits):
+    if asked.duration_ms <= 60000:
+        state.coil, state.level, state.seq = asked.coil, asked.level, asked.seq
+        state.remaining = limits.units(asked.duration_ms)
 
 
 @pytest.mark.long
