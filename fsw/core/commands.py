@@ -11,11 +11,11 @@ from typing import Any, final
 from fsw.core import modes
 from fsw.core.algebra.vector import positive_definite
 from fsw.core.config import FlightConfig
-from fsw.core.estimation.estimator import untraced
+from fsw.core.estimation.estimator import discard_trace
 from fsw.core.estimation.loaded import freeze, load, thaw
 from fsw.core.estimation.parameters import component_places, estimated_inertia
-from fsw.core.estimation.start.batch import EMPTY
-from fsw.core.fdir.coils.retest import with_unknown_gain
+from fsw.core.estimation.start.batch import discard_samples
+from fsw.core.fdir.coils.retest import forget_gain
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.fdir import Health
 from fsw.core.gate.measurements import Measurements
@@ -113,10 +113,10 @@ def _mode(state: FlightState, message: TcMode, situation: Situation) -> TcAckRes
 
 def _clear(state: FlightState, message: TcClear, situation: Situation) -> TcAckResult:
     """Forget the trips, trust every sensor again and use every coil, also its gain if it was isolated."""
-    state.estimator = untraced(state.estimator)
+    discard_trace(state.estimator)
     for coil, fault in enumerate(state.health.coils.faults):
         if fault:
-            state.estimator = with_unknown_gain(state.estimator, coil, situation.config.estimator.mekf)
+            forget_gain(state.estimator, coil, situation.config.estimator.mekf)
     state.modes.trips = 0
     state.health = Health()
     return TcAckResult.ACCEPTED
@@ -184,7 +184,7 @@ def _load(state: FlightState, message: TcOrbitLoad, situation: Situation) -> TcA
     if window is None:
         return TcAckResult.OUT_OF_RANGE
     state.orbit, state.upload, state.ephemeris = elements, Upload(), window
-    state.estimator = state.estimator._replace(batch=EMPTY)
+    discard_samples(state.estimator.batch)
     return TcAckResult.ACCEPTED
 
 
@@ -202,7 +202,8 @@ def _parameter(state: FlightState, message: TcParameter, situation: Situation) -
     mean = config.mekf.initial_parameters.floats()[message.component]
     if abs(value - mean) > SIGMAS * sqrt(config.mekf.initial_covariance[place, place]):
         return TcAckResult.OUT_OF_RANGE
-    loaded = load(state.estimator, message.component, value, config.mekf)
+    loaded = state.estimator.copy()
+    load(loaded, message.component, value, config.mekf)
     held = [loaded.first, loaded.estimate and loaded.estimate.parameters]
     inertias = [estimated_inertia(config.mekf.rotor, parameters) for parameters in held if parameters]
     if not all(map(positive_definite, inertias)):
@@ -212,7 +213,10 @@ def _parameter(state: FlightState, message: TcParameter, situation: Situation) -
 
 
 def _freeze(state: FlightState, message: TcFreeze, situation: Situation) -> TcAckResult:
-    state.estimator = freeze(state.estimator) if message.frozen else thaw(state.estimator)
+    if message.frozen:
+        freeze(state.estimator)
+    else:
+        thaw(state.estimator)
     return TcAckResult.ACCEPTED
 
 

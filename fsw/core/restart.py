@@ -11,7 +11,7 @@ from fsw.core.actuation.pulses import boot
 from fsw.core.actuation.wheel import WheelView
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
-from fsw.core.estimation.estimator import anew
+from fsw.core.estimation.estimator import discard_estimate
 from fsw.core.fdir import fdir
 from fsw.core.laws.interface import FieldSample
 from fsw.core.modes import ModeState
@@ -28,7 +28,7 @@ def begin_count(state: FlightState, tick: int, config: FlightConfig) -> None:
     if state.second_sender.signs:
         state.second_sender.tick = tick
     state.ephemeris = None
-    state.estimator = anew(state.estimator)
+    discard_estimate(state.estimator)
     fdir.discard_proof(state.health)
     state.attitude = UNKNOWN
     state.modes = ModeState(since_tick=tick, trips=state.modes.trips, held=state.modes.held)

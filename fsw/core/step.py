@@ -11,7 +11,7 @@ from fsw.core.algebra.quaternion import rotate
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
-from fsw.core.estimation.estimator import anew, predict, update
+from fsw.core.estimation.estimator import discard_estimate, predict, update
 from fsw.core.estimation.orbital_attitude import orbital_attitude, perfect_attitude
 from fsw.core.estimation.parameters import NOTHING
 from fsw.core.estimation.samples import sun_direction, usable_field
@@ -142,14 +142,14 @@ def _predict(
     reference = None if state.ephemeris is None else reference_at(state.ephemeris, tick, config.ephemeris)
     if reference is None or not plausible(reference):  # nothing carries the estimate on, so it ends
         state.ephemeris = None
-        state.estimator = anew(state.estimator)
+        discard_estimate(state.estimator)
         fdir.discard_proof(state.health)
         return None
     if state.estimator.estimate is not None or state.estimator.batch.samples:
         driven_am2 = fdir.driven_am2(state.health, state.coil, config.fdir)
         ticks, reported = range(before + 1, tick + 1), state.status_tick == tick
         drives = driven(state.coil, driven_am2, reported, ticks, config.coils)
-        state.estimator = predict(state.estimator, reference, drives, config.estimator)
+        predict(state.estimator, reference, drives, config.estimator)
     return reference
 
 
@@ -165,21 +165,19 @@ def _update(
     known = state.estimator.estimate if state.attitude.valid else None
     findings = fdir.examine(measurements, state.health, reference, config.fdir, known)
     fdir.judge_samples(measurements, state.health, findings)
-    updated, used = update(state.estimator, measurements, reference, config.estimator)
-    attitude = orbital_attitude(updated.estimate, reference, config.estimator.valid_sigma_rad)
-    return Observation(measurements, reference, updated, attitude, used, findings)
+    used = update(state.estimator, measurements, reference, config.estimator)
+    attitude = orbital_attitude(state.estimator.estimate, reference, config.estimator.valid_sigma_rad)
+    return Observation(measurements, reference, state.estimator, attitude, used, findings)
 
 
 def _judge(state: FlightState, observation: Observation, config: FlightConfig) -> None:
     """Judge sensors and coils by all samples, those of isolated sensors included."""
-    state.estimator, state.attitude = observation.estimator, observation.attitude
+    state.attitude = observation.attitude
     reference, findings, tick = observation.reference, observation.findings, state.tick
     if reference is not None and findings is not None:
         settled = state.syncs.settled(tick)
         evidence = Evidence(tick, findings, state.coil, reference, observation.used, settled)
-        state.estimator, state.attitude = fdir.judge(
-            state.health, state.estimator, state.attitude, evidence, config.fdir
-        )
+        state.attitude = fdir.judge(state.health, state.estimator, state.attitude, evidence, config.fdir)
 
 
 def _law_input(

@@ -10,7 +10,7 @@ lies between zero and its bound.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians, sqrt
 from typing import NamedTuple
 
@@ -190,7 +190,7 @@ def priors(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, Prior]:
     }
     if "torque_body_nm" in found:
         walk = (known.torque_variation_nm / sqrt(DAY_S),) * 3
-        found["torque_body_nm"] = found["torque_body_nm"]._replace(walk=walk)
+        found["torque_body_nm"] = replace(found["torque_body_nm"], walk=walk)
     return found
 
 

@@ -3,7 +3,7 @@
 from math import degrees
 from typing import Any
 
-from fsw.core.estimation.parameters import COMPONENTS, NAMES
+from fsw.core.estimation.parameters import COMPONENTS
 from fsw.wire.messages import Component
 from sim.drawing.page_parts import Table
 
@@ -30,10 +30,10 @@ def parameter_table(summary: Json) -> Table:
     """Estimates, bounds and truth in readable units, a row per component, named as on the bus."""
     figures = summary.get("parameters", {})
     rows = []
-    for component, (index, offset) in zip(Component, COMPONENTS, strict=True):
-        if NAMES[index] in figures:
-            unit, factor = UNITS[NAMES[index]]
-            columns = [figures[NAMES[index]].get(key) for key in ("bound", "value", "sigma", "truth")]
+    for component, (name, offset) in zip(Component, COMPONENTS, strict=True):
+        if name in figures:
+            unit, factor = UNITS[name]
+            columns = [figures[name].get(key) for key in ("bound", "value", "sigma", "truth")]
             cells = ["–" if column is None else f"{factor * column[offset]:.4g}" for column in columns]
             rows.append((component.name.lower(), unit, *cells))
     return Table(("", "unit", "bound", "estimate at the end", "sigma", "truth"), rows)

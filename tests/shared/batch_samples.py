@@ -1,5 +1,7 @@
 """What the tests of the start from Sun cells use: flights of which a batch is taken, and their filter."""
 
+from dataclasses import fields, is_dataclass, replace
+
 import numpy as np
 from cell_samples import CELLS, REFERENCE, cell_filter
 
@@ -12,7 +14,7 @@ from fsw.core.estimation.start.batch import SPACING_S, SampleBatch
 from fsw.core.estimation.start.batch_model import model_of
 from fsw.core.estimation.start.batch_sample import UNKNOWN, BatchSample
 from fsw.core.estimation.start.motions import Disturbed, Leg, flown, in_body
-from fsw.core.estimation.start.search import begun, worked
+from fsw.core.estimation.start.search import start_search, work
 from fsw.core.orbit.earth import MU_M3PS2
 
 MOVING_PRIORS = {
@@ -85,14 +87,15 @@ def search_under_way():
     """A batch of samples with three lit cells, whose search has improved its motions once; of one of them."""
     samples, _, _ = flight(*STARTS[0], 6, coarse=True)
     model = model_of(CONFIG, CELLS)
-    search = begun(samples, model)
+    search = start_search(samples, model)
     while search.steps < 1:
-        search = worked(search, samples, None, model)
+        work(search, samples, None, model)
     return SampleBatch(samples, 3.0, (0.1, -0.2, 0.3), 20.0, first_rows(search))
 
 
 def first_rows(value):
     """The first row of every array."""
-    if isinstance(value, tuple):
-        return type(value)._make(map(first_rows, value))
+    if is_dataclass(value):
+        parts = {field.name: first_rows(getattr(value, field.name)) for field in fields(value)}
+        return replace(value, **parts)
     return value[:1] if isinstance(value, np.ndarray) else value

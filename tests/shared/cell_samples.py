@@ -1,5 +1,6 @@
 """What the tests of Sun cells use: cells in no simple directions, and their filter."""
 
+from dataclasses import replace
 from math import radians
 
 import numpy as np
@@ -86,8 +87,12 @@ LIGHT = 0.07
 def begun(q=Q_BODY_FROM_ECI):
     """An estimate with parameters of their own."""
     estimate = mekf.start(q, OMEGA, cell_filter())
-    known = estimate.parameters._replace(
-        sun_turn_rad=(0.004, -0.006, 0.005), cell_excess=EXCESS, cell_gain=GAIN, earth_light=(LIGHT,)
+    known = replace(
+        estimate.parameters,
+        sun_turn_rad=(0.004, -0.006, 0.005),
+        cell_excess=EXCESS,
+        cell_gain=GAIN,
+        earth_light=(LIGHT,),
     )
     return estimate._replace(parameters=known)
 

@@ -88,7 +88,10 @@ def seen_from(q_body_from_eci=Q_BODY_FROM_ECI, reference=REFERENCE, **changes):
 
 
 def step(state, readings, reference=REFERENCE, driven=(NOT_DRIVEN,), config=CONFIG):
-    return update(predict(state, reference, driven, config), readings, reference, config)
+    """The state after a tick, and what was taken in it; the one before stays as it is."""
+    after = state.copy()
+    predict(after, reference, driven, config)
+    return after, update(after, readings, reference, config)
 
 
 def angle_rad(p, q):

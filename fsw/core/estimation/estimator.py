@@ -1,9 +1,9 @@
 """From readings to an estimate: start by TRIAD, then the filter, gated, blanked and restarted when lost."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import NamedTuple
+from typing import ClassVar, final
 
 from fsw.core.algebra.vector import Vec3, dot, norm
 from fsw.core.estimation import mekf
@@ -16,11 +16,17 @@ from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig, with_frozen_parameters, with_open_direction
 from fsw.core.estimation.parameters import Parameters
 from fsw.core.estimation.samples import saturated_field, sensed_sun, usable_cells, usable_field, usable_sun
-from fsw.core.estimation.start.batch import EMPTY, SampleBatch, waited
-from fsw.core.estimation.start.first import StartLimits, first_estimate, from_batch, with_given
+from fsw.core.estimation.start.batch import SampleBatch, discard_samples, pass_tick
+from fsw.core.estimation.start.first import (
+    StartLimits,
+    estimate_from_batch,
+    first_estimate,
+    with_given,
+)
 from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.earth import MU_M3PS2
 from fsw.core.orbit.ephemeris import Reference, earlier
+from fsw.wire.value import Value
 
 MAX_ELAPSED_S = 60.0
 """After a longer silence the filter restarts instead of predicting."""
@@ -41,6 +47,7 @@ class Turning(IntEnum):
     KNOWN = 2
 
 
+@final
 @dataclass(frozen=True, slots=True)
 class EstimatorConfig:
     """Filter tuning and the tests around it; ``perfect`` takes the reference messages instead.
@@ -56,7 +63,9 @@ class EstimatorConfig:
     blank_ticks: int = 0
 
 
-class EstimatorState(NamedTuple):
+@final
+@dataclass(slots=True)
+class EstimatorState:
     """The estimate, or None before start-up, and the measurements the gate refused in a row.
 
     ``first``: what the parameters start from, None: the prior's mean; of it, those components that were
@@ -71,17 +80,36 @@ class EstimatorState(NamedTuple):
     turning: Turning = Turning.NO
     first: Parameters | None = None
     frozen: bool = False
-    batch: SampleBatch = EMPTY
+    batch: SampleBatch = field(default_factory=SampleBatch)
     loaded: tuple[int, ...] = ()
 
+    def copy(self) -> "EstimatorState":
+        """A state that goes on by itself from here."""
+        return EstimatorState(
+            self.estimate,
+            self.rejected_in_a_row,
+            self.rejected_total,
+            self.restarts,
+            self.turning,
+            None if self.first is None else self.first.copy(),
+            self.frozen,
+            self.batch.copy(),
+            self.loaded,
+        )
 
-class Used(NamedTuple):
+
+@final
+class Used(Value):
     """Which measurements were taken in this tick; with Sun cells ``sun`` is whether any was."""
 
-    field: bool
-    sun: bool
-    blanked: bool
-    cells: CellsUsed = NO_CELLS
+    FIELDS: ClassVar[tuple[str, ...]] = ("field", "sun", "blanked", "cells")
+    __slots__ = FIELDS
+
+    def __init__(self, field: bool, sun: bool, blanked: bool, cells: CellsUsed = NO_CELLS) -> None:
+        self.field = field
+        self.sun = sun
+        self.blanked = blanked
+        self.cells = cells
 
 
 NONE_USED = Used(False, False, False)
@@ -92,7 +120,7 @@ def predict(
     reference: Reference,
     driven: Sequence[Driven],
     config: EstimatorConfig,
-) -> EstimatorState:
+) -> None:
     """Carry the estimate, if there is one, to this tick; drop it if it is too old or no longer sound.
 
     Args:
@@ -102,31 +130,32 @@ def predict(
         config: tuning.
     """
     if state.estimate is None:
-        batch = state.batch
-        for m_body_am2, _ in driven:
-            batch = waited(batch, m_body_am2, config.mekf.tick_s)
-        return state._replace(batch=batch)
+        for one in driven:
+            pass_tick(state.batch, one.m_body_am2, config.mekf.tick_s)
+        return
     if len(driven) * config.mekf.tick_s > MAX_ELAPSED_S + 1e-6:
-        return restart(state)
-    estimate = _predicted(state.estimate, reference, driven, config.mekf)
-    return state._replace(estimate=estimate) if mekf.healthy(estimate) else restart(state)
+        restart(state)
+        return
+    state.estimate = _predicted(state.estimate, reference, driven, config.mekf)
+    if not mekf.healthy(state.estimate):
+        restart(state)
 
 
 def _predicted(
     estimate: Estimate, reference: Reference, driven: Sequence[Driven], config: MekfConfig
 ) -> Estimate:
     gravity = 3.0 * MU_M3PS2 / reference.radius_m**3
-    for left, (m_body_am2, doubted_am2) in enumerate(driven, 1 - len(driven)):
+    for left, one in enumerate(driven, 1 - len(driven)):
         e1_eci, b_eci_t = earlier(reference, -left * config.tick_s)
-        estimate = mekf.predict(estimate, e1_eci, b_eci_t, gravity, m_body_am2, config, doubted_am2)
+        estimate = mekf.predict(estimate, e1_eci, b_eci_t, gravity, one.m_body_am2, config, one.doubted_am2)
         estimate = faded(estimate, config)
     return estimate
 
 
 def update(
     state: EstimatorState, measurements: Measurements, reference: Reference, config: EstimatorConfig
-) -> tuple[EstimatorState, Used]:
-    """Take the samples of this tick, or start from them; also which of them were taken.
+) -> Used:
+    """Take the samples of this tick, or start from them; which of them were taken.
 
     Args:
         state: predicted to this tick.
@@ -138,17 +167,17 @@ def update(
     currents = usable_cells(measurements, cells)
     blanked = field is None and measurements.field is not None and measurements.field_trusted
     if state.estimate is None:
-        batch = state.batch
         if cells is None:
             started = first_estimate(field, sun, reference, config.start, config.mekf)
         else:
-            batch, started = from_batch(batch, field, currents, reference, config.start, config.mekf)
+            started = estimate_from_batch(state.batch, field, currents, reference, config.start, config.mekf)
         if started is None:
-            return state._replace(batch=batch), Used(False, False, blanked)
+            return Used(False, False, blanked)
         slow = norm(started.omega_body_radps) > 0.0 and norm(started.omega_body_radps) < SLOW_RADPS
-        turning = Turning.NO if slow else Turning.FAST  # one tick shows no rate
-        started = with_given(started, state.first, state.loaded, config.mekf)
-        return state._replace(estimate=started, turning=turning, batch=EMPTY), Used(True, True, blanked)
+        state.turning = Turning.NO if slow else Turning.FAST  # one tick shows no rate
+        state.estimate = with_given(started, state.first, state.loaded, config.mekf)
+        discard_samples(state.batch)
+        return Used(True, True, blanked)
 
     tuning = with_frozen_parameters(config.mekf) if state.frozen else config.mekf
     limited = saturated_field(measurements)
@@ -167,37 +196,39 @@ def update(
         took_sun = bool(by_cell.taken)
         rejected += len(by_cell.refused) > 1 and not took_sun  # one alone may be faulty
     in_a_row = 0 if not rejected and (took_field or took_sun) else state.rejected_in_a_row + rejected
-    updated = state._replace(
-        estimate=estimate, rejected_in_a_row=in_a_row, rejected_total=state.rejected_total + rejected
-    )
+    state.estimate, state.rejected_in_a_row = estimate, in_a_row
+    state.rejected_total += rejected
     if not state.frozen:
         both = took_field and took_sun and (cells is None or sensed_sun(measurements, cells) is not None)
-        updated = _settled(updated, estimate, both, config.mekf)
-    lost = in_a_row >= config.restart_after_rejections or not mekf.healthy(estimate)
-    return (restart(updated) if lost else updated), Used(took_field, took_sun, blanked, by_cell)
+        _settle(state, estimate, both, config.mekf)
+    if in_a_row >= config.restart_after_rejections or not mekf.healthy(estimate):
+        restart(state)
+    return Used(took_field, took_sun, blanked, by_cell)
 
 
-def _settled(state: EstimatorState, estimate: Estimate, seen: bool, config: MekfConfig) -> EstimatorState:
-    """The state with the parameters back at their priors where ``Turning`` requires it; the rest goes on.
+def _settle(state: EstimatorState, estimate: Estimate, seen: bool, config: MekfConfig) -> None:
+    """Set the parameters back to their priors where ``Turning`` requires it; the rest goes on.
 
     A rate that is hardly known, as after a start, is neither fast nor slow. Like a start, this takes both
     field and Sun, ``seen`` in this tick: with one alone the covariance of a start would not shrink.
     """
     square = dot(estimate.omega_body_radps, estimate.omega_body_radps)
     known = max(estimate.covariance.diagonal()[3:6].tolist()) < KNOWN_RADPS**2
-    after = turning = state.turning or Turning(known and square > FAST_RADPS**2)
+    if state.turning is Turning.NO and known and square > FAST_RADPS**2:
+        state.turning = Turning.FAST
+    after = state.turning
     if known and square <= SLOW_RADPS**2:
         after = Turning.NO
-    elif known and turning and config.layout.delay is not None:
+    elif known and state.turning is not Turning.NO and config.layout.delay is not None:
         after = Turning.KNOWN
-    if after is turning or not seen:
-        return state if turning is state.turning else state._replace(turning=turning)
-    anew = mekf.start(estimate.q_body_from_eci, estimate.omega_body_radps, config)
+    if after is state.turning or not seen:
+        return
+    again = mekf.start(estimate.q_body_from_eci, estimate.omega_body_radps, config)
     if config.cells is not None:  # with the attitude as uncertain as at a start, the filter would diverge
-        covariance = anew.covariance.copy()
+        covariance = again.covariance.copy()
         covariance[0:6, 0:6] = CELLS_ANEW**2 * estimate.covariance[0:6, 0:6]
-        anew = anew._replace(covariance=covariance)
-    return state._replace(estimate=with_given(anew, state.first, state.loaded, config), turning=after)
+        again = again._replace(covariance=covariance)
+    state.estimate, state.turning = with_given(again, state.first, state.loaded, config), after
 
 
 def _updated(
@@ -214,19 +245,22 @@ def _updated(
     return after_sun or current, after_field is not None, after_sun is not None
 
 
-def untraced(state: EstimatorState) -> EstimatorState:
-    """The state without the trace of deviations."""
-    estimate = state.estimate
-    return state if estimate is None else state._replace(estimate=estimate._replace(trace=None))
+def discard_trace(state: EstimatorState) -> None:
+    """Forget the trace of deviations."""
+    if state.estimate is not None:
+        state.estimate = state.estimate._replace(trace=None)
 
 
-def anew(state: EstimatorState) -> EstimatorState:
-    """The state with nothing of the past; it counts as a restart if there was an estimate."""
-    return state._replace(rejected_in_a_row=0, batch=EMPTY) if state.estimate is None else restart(state)
+def discard_estimate(state: EstimatorState) -> None:
+    """Forget all of the past; that counts as a restart if there was an estimate."""
+    if state.estimate is not None:
+        restart(state)
+    state.rejected_in_a_row = 0
+    discard_samples(state.batch)
 
 
-def restart(state: EstimatorState) -> EstimatorState:
-    """The state without an estimate: the next pair of good samples starts the filter."""
-    return state._replace(
-        estimate=None, rejected_in_a_row=0, turning=Turning.NO, restarts=state.restarts + 1, batch=EMPTY
-    )
+def restart(state: EstimatorState) -> None:
+    """End the estimate: the next pair of good samples starts the filter."""
+    state.estimate, state.rejected_in_a_row, state.turning = None, 0, Turning.NO
+    state.restarts += 1
+    discard_samples(state.batch)

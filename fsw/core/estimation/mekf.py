@@ -70,7 +70,8 @@ class Estimate(NamedTuple):
 
 def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfig) -> Estimate:
     """The estimate at start-up: a known attitude, everything else at its prior."""
-    return Estimate(q_body_from_eci, omega_body_radps, config.initial_parameters, config.initial_covariance)
+    parameters = config.initial_parameters.copy()
+    return Estimate(q_body_from_eci, omega_body_radps, parameters, config.initial_covariance)
 
 
 def corrected(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: MekfConfig) -> Estimate:
@@ -93,8 +94,8 @@ def healthy(estimate: Estimate) -> bool:
     """
     variances: list[float] = estimate.covariance.diagonal().tolist()
     positive = min(variances[:6]) > 0.0 and min(variances) >= 0.0
-    parts = (estimate.q_body_from_eci, estimate.omega_body_radps, estimate.lag, *estimate.parameters)
-    numbers = sum(map(sum, parts)) + estimate.nis
+    motion = sum(estimate.q_body_from_eci) + sum(estimate.omega_body_radps)
+    numbers = motion + sum(estimate.parameters.floats()) + sum(estimate.lag) + estimate.nis
     return isfinite(numbers) and positive and sum(variances) < MAX_VARIANCE
 
 

@@ -12,8 +12,6 @@ from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.dynamics.torque_maps import cross_matrix, system_maps, torque_map
 from fsw.core.estimation.kalman import Algebra, Matrix, available
 from fsw.core.estimation.parameters import (
-    NAMES,
-    NOTHING,
     OF_CELLS,
     Layout,
     Parameters,
@@ -148,7 +146,7 @@ def with_wheel(
     noise[3:6, 3:6] += np.outer(kick, kick)
     return replace(
         config,
-        rotor=rotor._replace(wheel_body_nms=momentum_nms),
+        rotor=Rotor(rotor.inertia_kgm2, rotor.inertia_inverse, momentum_nms),
         constant=constant,
         process_noise=noise,
         reaction_body_nm=reaction_body_nm,
@@ -198,8 +196,8 @@ def mekf_config(
     noise[0:3, 3:6] = noise[3:6, 0:3] = rate_noise * tick_s**2 / 2.0
     noise[3:6, 3:6] = rate_noise * tick_s
     variances = [attitude_sigma_rad**2] * 3 + [rate_sigma_radps**2] * 3
-    for index, place in parts.carried:
-        prior = priors[NAMES[index]]
+    for name, place in parts.carried:
+        prior = priors[name]
         noise[place, place] = np.diag([walk**2 * tick_s for walk in prior.walk])
         variances += [sigma**2 for sigma in prior.sigma]
     system = np.zeros((6, parts.size))
@@ -239,9 +237,10 @@ def mekf_config(
 
 
 def _means(priors: Mapping[str, Prior], with_cells: bool) -> Parameters:
-    given = [priors[name].mean if name in priors else () for name in NAMES]
-    means = Parameters._make(mean or none for mean, none in zip(given, NOTHING, strict=True))
-    of_cells: dict[str, Any] = {
+    means: dict[str, Any] = {
         name: (0.0,) * size for name, size in OF_CELLS.items() if with_cells or name in priors
     }
-    return means._replace(**of_cells)
+    for name, prior in priors.items():
+        if prior.mean and name not in OF_CELLS:
+            means[name] = prior.mean
+    return Parameters(**means)

@@ -1,10 +1,11 @@
 """What the filter estimates besides attitude and rate: constants that the table knows only within bounds."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from math import nan
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, final
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, symmetric_inverse
+from fsw.wire.value import Value
 
 Matrix3x3 = tuple[float, float, float, float, float, float, float, float, float]
 Symmetric = tuple[float, float, float, float, float, float]
@@ -12,10 +13,14 @@ Symmetric = tuple[float, float, float, float, float, float]
 UNCHANGED_COILS: Matrix3x3 = (0.0,) * 9
 UNCHANGED_INERTIA: Symmetric = (0.0,) * 6
 MOST_CELLS = 6
+ATTITUDE_AND_RATE = 6
+"""How many numbers of the error state come before the parameters."""
 NO_NUMBERS: Mat3 = ((nan, nan, nan),) * 3
 
 
-class Parameters(NamedTuple):
+@final
+@dataclass(slots=True)
+class Parameters:
     """How the satellite differs from its table; zero: not at all.
 
     Attributes:
@@ -47,6 +52,23 @@ class Parameters(NamedTuple):
     cell_gain: tuple[float, ...] = ()
     earth_light: tuple[float, ...] = ()
 
+    def copy(self) -> "Parameters":
+        """Parameters with the same values."""
+        return Parameters(
+            self.mag_bias_t,
+            self.torque_body_nm,
+            self.dipole_body_am2,
+            self.coil_error,
+            self.inertia_error_kgm2,
+            self.mag_turn_rad,
+            self.mag_scale,
+            self.sun_turn_rad,
+            self.delay_s,
+            self.cell_excess,
+            self.cell_gain,
+            self.earth_light,
+        )
+
     def floats(self) -> tuple[float, ...]:
         """Every component, in the order of its number on the bus; for the checksum of the state too."""
         return (
@@ -68,16 +90,18 @@ class Parameters(NamedTuple):
 NOTHING = Parameters()
 """A satellite that is as its table says, as far as is known."""
 
-NAMES = Parameters._fields
+NAMES = tuple([field.name for field in fields(Parameters)])
 OF_CELLS = {"cell_excess": MOST_CELLS, "cell_gain": MOST_CELLS, "earth_light": 1}
 """Parameters of a satellite with Sun cells, and how many numbers each has."""
-SIZES = {**dict(zip(NAMES, map(len, NOTHING), strict=True)), **OF_CELLS}
+SIZES = {**{name: len(getattr(NOTHING, name)) for name in NAMES}, **OF_CELLS}
 """How many numbers each has if it is carried."""
-COMPONENTS = tuple((index, offset) for index, name in enumerate(NAMES) for offset in range(SIZES[name]))
-"""Of each component, by its number on the bus: the index of its parameter, and its place within that."""
+COMPONENTS = tuple([(name, offset) for name in NAMES for offset in range(SIZES[name])])
+"""Of each component, by its number on the bus: the name of its parameter, and its place within that."""
 
 
-class Prior(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class Prior:
     """What is known of a parameter a priori, by component: standard deviation, random walk, and mean.
 
     The walk is per square root of a second; an empty mean is zero.
@@ -88,15 +112,18 @@ class Prior(NamedTuple):
     mean: tuple[float, ...] = ()
 
 
+@final
 @dataclass(frozen=True, slots=True)
 class Layout:
     """Where each carried parameter stands in the error state; None where it is not carried.
 
-    ``carried``: of each one carried, its place among the ``Parameters`` and in the error state.
+    ``carried``: of each one carried, its name and its place in the error state; ``components``: the number of
+    each component carried; both in the order of the error state.
     """
 
     size: int
-    carried: tuple[tuple[int, slice], ...]
+    carried: tuple[tuple[str, slice], ...]
+    components: tuple[int, ...]
     mag_bias: slice | None
     torque: slice | None
     dipole: slice | None
@@ -118,54 +145,129 @@ def layout(carried: set[str]) -> Layout:
         carried: names of fields of ``Parameters``.
     """
     places: list[slice | None] = []
-    size = 6
+    size = ATTITUDE_AND_RATE
     for name, length in SIZES.items():
         places.append(slice(size, size + length) if name in carried else None)
         size += length if name in carried else 0
-    known = tuple((index, place) for index, place in enumerate(places) if place is not None)
-    return Layout(size, known, *places)
+    known = tuple([(name, place) for name, place in zip(NAMES, places, strict=True) if place is not None])
+    components = tuple([number for number, (name, _) in enumerate(COMPONENTS) if name in carried])
+    return Layout(size, known, components, *places)
+
+
+def correct_parameters(parameters: Parameters, error: list[float], places: Layout) -> None:
+    """Add to the parameters their part of an error state."""
+    at = ATTITUDE_AND_RATE
+    if places.mag_bias is not None:
+        parameters.mag_bias_t = _moved(parameters.mag_bias_t, error, at)
+        at += 3
+    if places.torque is not None:
+        parameters.torque_body_nm = _moved(parameters.torque_body_nm, error, at)
+        at += 3
+    if places.dipole is not None:
+        parameters.dipole_body_am2 = _moved(parameters.dipole_body_am2, error, at)
+        at += 3
+    if places.coils is not None:
+        g11, g12, g13, g21, g22, g23, g31, g32, g33 = parameters.coil_error
+        parameters.coil_error = (
+            g11 + error[at],
+            g12 + error[at + 1],
+            g13 + error[at + 2],
+            g21 + error[at + 3],
+            g22 + error[at + 4],
+            g23 + error[at + 5],
+            g31 + error[at + 6],
+            g32 + error[at + 7],
+            g33 + error[at + 8],
+        )
+        at += 9
+    if places.inertia is not None:
+        xx, yy, zz, xy, xz, yz = parameters.inertia_error_kgm2
+        parameters.inertia_error_kgm2 = (
+            xx + error[at],
+            yy + error[at + 1],
+            zz + error[at + 2],
+            xy + error[at + 3],
+            xz + error[at + 4],
+            yz + error[at + 5],
+        )
+        at += 6
+    if places.mag_turn is not None:
+        parameters.mag_turn_rad = _moved(parameters.mag_turn_rad, error, at)
+        at += 3
+    if places.mag_scale is not None:
+        parameters.mag_scale = _moved(parameters.mag_scale, error, at)
+        at += 3
+    if places.sun_turn is not None:
+        parameters.sun_turn_rad = _moved(parameters.sun_turn_rad, error, at)
+        at += 3
+    if places.delay is not None:
+        of_field, of_sun = parameters.delay_s
+        parameters.delay_s = (of_field + error[at], of_sun + error[at + 1])
+        at += 2
+    if places.cells is not None:
+        parameters.cell_excess = _all_moved(parameters.cell_excess, error, at)
+        at += MOST_CELLS
+    if places.cell_gain is not None:
+        parameters.cell_gain = _all_moved(parameters.cell_gain, error, at)
+        at += MOST_CELLS
+    if places.earth_light is not None:
+        parameters.earth_light = _all_moved(parameters.earth_light, error, at)
 
 
 def corrected_parameters(parameters: Parameters, error: list[float], places: Layout) -> Parameters:
     """The parameters plus their part of an error state."""
-    parts = list(parameters)
-    for index, place in places.carried:
-        parts[index] = tuple(map(float.__add__, parts[index], error[place]))
-    return Parameters._make(parts)
+    after = parameters.copy()
+    correct_parameters(after, error, places)
+    return after
 
 
-def added(before: Parameters, after: Parameters, places: Layout) -> list[float]:
+def _moved(v: Vec3, error: list[float], at: int) -> Vec3:
+    x, y, z = v
+    return (x + error[at], y + error[at + 1], z + error[at + 2])
+
+
+def _all_moved(values: tuple[float, ...], error: list[float], at: int) -> tuple[float, ...]:
+    return tuple([value + error[at + place] for place, value in enumerate(values)])
+
+
+def difference(before: Parameters, after: Parameters, places: Layout) -> list[float]:
     """What was added to the parameters that are carried, in the order of the error state."""
-    return [
-        now - was for index, _ in places.carried for was, now in zip(before[index], after[index], strict=True)
-    ]
+    were, are = before.floats(), after.floats()
+    return [are[number] - were[number] for number in places.components]
 
 
 def component_places(places: Layout) -> dict[int, int]:
     """By the number of each component that is carried, its place in the error state; in the order of both."""
-    parts = dict(places.carried)
-    return {
-        number: parts[index].start + offset
-        for number, (index, offset) in enumerate(COMPONENTS)
-        if index in parts
-    }
+    return {number: place for place, number in enumerate(places.components, ATTITUDE_AND_RATE)}
+
+
+def component(parameters: Parameters, number: int) -> float:
+    """One component; zero where the satellite has no such parameter."""
+    name, offset = COMPONENTS[number]
+    part: tuple[float, ...] = getattr(parameters, name)
+    return part[offset] if part else 0.0
 
 
 def with_component(parameters: Parameters, number: int, value: float) -> Parameters:
     """The parameters with another value of one component."""
-    index, offset = COMPONENTS[number]
-    part = list(parameters[index] or (0.0,) * SIZES[NAMES[index]])
+    name, offset = COMPONENTS[number]
+    part = list(getattr(parameters, name) or (0.0,) * SIZES[name])
     part[offset] = value
-    changed: dict[str, Any] = {NAMES[index]: tuple(part)}
-    return parameters._replace(**changed)
+    changed: dict[str, Any] = {name: tuple(part)}
+    return replace(parameters, **changed)
 
 
-class Rotor(NamedTuple):
+@final
+class Rotor(Value):
     """What turns: inertia tensor and its inverse, momentum of a wheel; body axes."""
 
-    inertia_kgm2: Mat3
-    inertia_inverse: Mat3
-    wheel_body_nms: Vec3
+    FIELDS: ClassVar[tuple[str, ...]] = ("inertia_kgm2", "inertia_inverse", "wheel_body_nms")
+    __slots__ = FIELDS
+
+    def __init__(self, inertia_kgm2: Mat3, inertia_inverse: Mat3, wheel_body_nms: Vec3) -> None:
+        self.inertia_kgm2 = inertia_kgm2
+        self.inertia_inverse = inertia_inverse
+        self.wheel_body_nms = wheel_body_nms
 
 
 def estimated_inertia(nominal: Rotor, parameters: Parameters) -> Mat3:

@@ -7,7 +7,7 @@ from typing import final
 from fsw.core.actuation.actuator import CoilView, unexpected
 from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.estimation.estimator import EstimatorState, Used, anew, untraced
+from fsw.core.estimation.estimator import EstimatorState, Used, discard_estimate, discard_trace
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.fdir.coils import currents, retest, torques
 from fsw.core.fdir.coils import health as coil_health
@@ -121,7 +121,7 @@ def judge_samples(measurements: Measurements, health: Health, findings: Findings
 
 def judge(
     health: Health, estimator: EstimatorState, attitude: Attitude, evidence: Evidence, config: FdirConfig
-) -> tuple[EstimatorState, Attitude]:
+) -> Attitude:
     """Compare what the sensors report with what the filter expects.
 
     Args:
@@ -132,14 +132,15 @@ def judge(
         config: limits.
 
     Returns:
-        The estimator corrected or restarted where a fault was found, and the attitude, which is not valid
-        while a fault may have falsified it.
+        The attitude, which is not valid while a fault may have falsified it. The estimator is corrected or
+        restarted where a fault was found.
     """
     sensors, used, weights = health.sensors, evidence.used, config.sensors.weights
     if not evidence.settled:
         pair.skip_judgement(sensors.pair, used, estimator.estimate, weights)
         valid = attitude.valid and not _is_inconclusive(health, used, config)
-        return untraced(estimator), attitude._replace(valid=valid)
+        discard_trace(estimator)
+        return attitude._replace(valid=valid)
     before, cells_before = sensor_health.sensor_faults(sensors), cell_faults(sensors.cells)
     reference = evidence.reference
     sensor_health.judge_sensors(
@@ -148,16 +149,14 @@ def judge(
     both, isolated = sensors.pair, bool(sensors.field.fault or sensors.sun.fault)
     changed = sensor_health.sensor_faults(sensors) != before
     if changed:
-        estimator = forget_isolated(estimator, cells_before, sensors.cells, config.sensors.mekf)
+        forget_isolated(estimator, cells_before, sensors.cells, config.sensors.mekf)
     if changed or both.standing is not Standing.TRUSTED:
-        estimator = untraced(estimator)  # what a faulty sensor has shown proves nothing about a coil
+        discard_trace(estimator)  # what a faulty sensor has shown proves nothing about a coil
     elif not sensor_health.is_suspected(sensors):
         proven = pair.is_proven(both, weights)
-        health.coils, estimator = retest.retest(
-            health.coils, estimator, proven and not isolated, config.coils
-        )
+        health.coils = retest.retest(health.coils, estimator, proven and not isolated, config.coils)
         believed = _believed(estimator.estimate, both, proven or isolated, config)
-        health.coils, estimator = torques.judge_effect(
+        health.coils = torques.judge_effect(
             health.coils,
             evidence.view,
             reference,
@@ -172,10 +171,11 @@ def judge(
             older=coil_health.NONE_OLDER
         )  # a faulty sensor may have shown it
     if both.ended:
-        estimator, attitude = anew(estimator), UNKNOWN
+        discard_estimate(estimator)
+        attitude = UNKNOWN
     if _is_inconclusive(health, used, config):
         attitude = attitude._replace(valid=False)
-    return estimator, attitude
+    return attitude
 
 
 def _is_inconclusive(health: Health, used: Used, config: FdirConfig) -> bool:

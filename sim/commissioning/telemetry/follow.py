@@ -1,7 +1,7 @@
 """The flight filter over a pass: magnetometer alone, from a start; and its prediction without any sample."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import nan, radians
 from typing import NamedTuple
 
@@ -129,7 +129,7 @@ def follow(around: Along, known: PassCalibration, start: Spin, config: MekfConfi
     attitude = from_dcm(_mat3(start.dcm_body_from_eci))
     estimate = mekf.start(attitude, _vec3(start.omega_body_radps), config)
     bias_t = _vec3(T_PER_NT * start.bias_nt)
-    estimate = estimate._replace(parameters=estimate.parameters._replace(mag_bias_t=bias_t))
+    estimate = estimate._replace(parameters=replace(estimate.parameters, mag_bias_t=bias_t))
     ticks, before = [], int(around.tick[rows[0]])
     with progress(f"{around.recorded.name}, {start.rate_degps:.2f} deg/s", len(rows)) as watch:
         for done, row in enumerate(rows.tolist()):

@@ -3,7 +3,7 @@
 from typing import Any
 
 from fsw.core.estimation.mekf import Estimate, healthy
-from fsw.core.estimation.parameters import MOST_CELLS, NAMES, layout
+from fsw.core.estimation.parameters import MOST_CELLS, layout
 from fsw.table.cells import CellTable
 from fsw.table.estimator import table_bounds
 from fsw.table.table import FlightTable
@@ -34,10 +34,9 @@ def parameter_figures(scenario: Scenario, truth: Histories, estimate: Estimate |
     bounds, true = limits(known, inertia), true_parameters(scenario, table, truth)
     sigma = estimate.covariance.diagonal() ** 0.5
     figures: Json = {}
-    for index, place in layout(set(priors(known, inertia))).carried:
-        name = NAMES[index]
+    for name, place in layout(set(priors(known, inertia))).carried:
         figures[name] = {
-            "value": list(estimate.parameters[index]),
+            "value": list(getattr(estimate.parameters, name)),
             "sigma": sigma[place].tolist(),
             "bound": list(bounds[name]),
         }

@@ -228,10 +228,11 @@ class TestOrbit:
         assert after == altered(state, orbit=wanted, ephemeris=after.ephemeris)
 
     def test_samples_of_the_orbit_before_are_no_part_of_a_start(self, obey, state, elements):
-        searching = altered(state, estimator=state.estimator._replace(batch=search_under_way()))
+        searching = altered(state, estimator=replace(state.estimator, batch=search_under_way()))
         loaded, _ = obey(searching, *elements(), TcOrbitLoad())
         assert loaded.estimator == state.estimator
         refused, _ = obey(searching, *elements(raan_deg=None), TcOrbitLoad())
+        assert refused.estimator.batch.samples == searching.estimator.batch.samples
         assert pack(refused.estimator) == pack(searching.estimator)
 
     @pytest.mark.parametrize("missing", Element)

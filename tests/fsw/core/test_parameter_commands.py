@@ -1,5 +1,7 @@
 """Parameters of the filter by telecommand: loaded, frozen, thawed; and what a clear leaves of the state."""
 
+from dataclasses import replace
+
 import pytest
 from flight_states import altered
 
@@ -92,18 +94,18 @@ class TestParameter:
         config, state = estimating
         sent = (TcParameter(Component.TORQUE_Y, -10, 7), TcParameter(Component.SUN_DELAY, -1, 3, counter=1))
         after, _ = obey(state, *sent, config=config)
-        assert after.estimator.first == AS_THE_TABLE._replace(
-            torque_body_nm=(0.0, 7e-10, 0.0), delay_s=(0.4, 0.3)
+        assert after.estimator.first == replace(
+            AS_THE_TABLE, torque_body_nm=(0.0, 7e-10, 0.0), delay_s=(0.4, 0.3)
         )
 
     def test_before_the_filter_has_started_it_waits_for_the_start(self, obey, estimating):
         config, state = estimating
-        waiting = altered(state, estimator=state.estimator._replace(estimate=None))
+        waiting = altered(state, estimator=replace(state.estimator, estimate=None))
         after, results = obey(waiting, TcParameter(Component.MAG_BIAS_Z, -9, 250), config=config)
         assert results == [TcAckResult.ACCEPTED]
         assert after.estimator.estimate is None
-        assert after.estimator.first == AS_THE_TABLE._replace(
-            mag_bias_t=(0.0, 0.0, 2.5e-7), delay_s=(0.4, 0.4)
+        assert after.estimator.first == replace(
+            AS_THE_TABLE, mag_bias_t=(0.0, 0.0, 2.5e-7), delay_s=(0.4, 0.4)
         )
 
     @pytest.mark.parametrize("parameter", [Component.MAG_BIAS_X, Component.COIL_YZ, Component.MAG_DELAY])
@@ -126,7 +128,7 @@ class TestParameter:
     def test_of_an_inertia_that_no_body_has_is_refused(self, obey, refused, estimating, sent, started):
         """Each number by itself could be a body's."""
         config, state = estimating
-        start = state if started else altered(state, estimator=state.estimator._replace(estimate=None))
+        start = state if started else altered(state, estimator=replace(state.estimator, estimate=None))
         for one in sent:
             assert obey(start, one, config=config)[1] == [TcAckResult.ACCEPTED]
         assert obey(start, *sent[:-1], config=config)[1] == [TcAckResult.ACCEPTED] * 2
@@ -140,9 +142,9 @@ class TestParameter:
         config, state = estimating
         *moments, product = NO_BODY[0]
         small = obey(state, *moments, config=config)[0].estimator
-        mixed = state.estimator._replace(first=small.first)
+        mixed = replace(state.estimator, first=small.first)
         if of_the_estimate:
-            mixed = small._replace(first=state.estimator.first)
+            mixed = replace(small, first=state.estimator.first)
         refused(TcAckResult.OUT_OF_RANGE, product, start=altered(state, estimator=mixed), config=config)
 
     def test_that_the_filter_does_not_carry(self, refused, config):
@@ -170,7 +172,7 @@ class TestClear:
     def test_the_filter_goes_on_without_the_trace_by_which_units_are_judged(self, obey, estimating):
         config, state = estimating
         estimator = state.estimator
-        traced = estimator._replace(estimate=estimator.estimate._replace(trace=object()))
+        traced = replace(estimator, estimate=estimator.estimate._replace(trace=object()))
         after, results = obey(altered(state, estimator=traced), TcClear(), config=config)
         assert results == [TcAckResult.ACCEPTED]
         assert after.estimator.estimate.trace is None
@@ -197,12 +199,12 @@ class TestFreeze:
         frozen, _ = obey(state, TcFreeze(1), config=config)
         after, results = obey(frozen, TcFreeze(0, 1), config=config)
         assert results == [TcAckResult.ACCEPTED]
-        assert after.estimator == frozen.estimator._replace(frozen=False)
+        assert after.estimator == replace(frozen.estimator, frozen=False)
 
     def test_before_the_filter_has_started_what_was_loaded_is_kept(self, obey, state):
         sent = (TcParameter(Component.TORQUE_Z, -9, -40), TcFreeze(1))
         after, results = obey(state, *sent)
         assert results == [TcAckResult.ACCEPTED] * 2
-        first = AS_THE_TABLE._replace(torque_body_nm=(0.0, 0.0, -4e-8))
+        first = replace(AS_THE_TABLE, torque_body_nm=(0.0, 0.0, -4e-8))
         loaded = (Component.TORQUE_Z,)
-        assert after.estimator == state.estimator._replace(first=first, frozen=True, loaded=loaded)
+        assert after.estimator == replace(state.estimator, first=first, frozen=True, loaded=loaded)

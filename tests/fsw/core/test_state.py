@@ -35,7 +35,7 @@ def run(make_world):
     state = altered(world.state, orbit=ELEMENTS, upload=Upload().with_element(Element.BSTAR, 1e-5))
     assert state.estimator.estimate.trace is not None
     first, batch = state.estimator.estimate.parameters, search_under_way()
-    state = altered(state, estimator=state.estimator._replace(first=first, batch=batch))
+    state = altered(state, estimator=replace(state.estimator, first=first, batch=batch))
     state = altered(state, wheel=WheelView(123.5, 229, 2e-4, -3e-4, 2, known=True))
     motion = Motion(Displacement((3e-7, -2e-7, 1e-7), 4e-9), Displacement((0.002, 0.003, -0.001), 5e-5))
     state = altered(state, health=with_motion(state.health, motion))
@@ -61,8 +61,8 @@ def test_every_number_of_a_boot_state_counts_too(make_world, blind_places):
 
 
 def test_what_is_not_there_differs_from_what_is(run):
-    without_estimate = altered(run, estimator=run.estimator._replace(estimate=None))
-    without_first = altered(run, estimator=run.estimator._replace(first=None))
+    without_estimate = altered(run, estimator=replace(run.estimator, estimate=None))
+    without_first = altered(run, estimator=replace(run.estimator, first=None))
     without_ephemeris = altered(run, ephemeris=None)
     without_motion, at_rest = (altered(run, health=with_motion(run.health, m)) for m in (None, Motion()))
     without_orbit = altered(run, orbit=None)
@@ -84,7 +84,7 @@ def test_equal_states_have_equal_checksums(run):
 def test_the_layout_of_an_array_in_memory_does_not_count(run):
     known = run.estimator.estimate
     turned = known._replace(covariance=np.asfortranarray(known.covariance))
-    assert checksum(altered(run, estimator=run.estimator._replace(estimate=turned))) == checksum(run)
+    assert checksum(altered(run, estimator=replace(run.estimator, estimate=turned))) == checksum(run)
 
 
 def test_it_has_32_bits(run):

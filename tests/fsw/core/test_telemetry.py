@@ -155,7 +155,7 @@ class TestParameter:
     def test_a_full_round_reports_every_number_on_the_bus_once(self, state):
         estimate = estimate_with(4, 10, 2e-8, 1e-8, size=6 + len(Component))
         excess = (0.01, -0.02, 0.03, -0.04, 0.05, -0.06)
-        known = estimate.parameters._replace(cell_excess=excess, cell_gain=excess[::-1], earth_light=(0.07,))
+        known = replace(estimate.parameters, cell_excess=excess, cell_gain=excess[::-1], earth_light=(0.07,))
         estimate = estimate._replace(parameters=known)
         sent = [self.reports(state, estimate, set(NAMES), 10 * n)[0] for n in range(len(Component))]
         assert [message.component for message in sent] == list(Component)

@@ -17,7 +17,7 @@ Markov in the angle by which the satellite rotates relative to Sun and Earth.
 
 from dataclasses import dataclass
 from math import hypot
-from typing import NamedTuple
+from typing import final
 
 from fsw.core.algebra.vector import Vec3, dot, norm, scale
 from fsw.core.orbit.earth import RADIUS_M
@@ -30,13 +30,16 @@ SIGMAS = 4.0
 """Beyond this many standard deviations what a cell is wrong by is outside what the table allows."""
 
 
-class Shade(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class Shade:
     """Where the satellite shades a cell from the Sun: a cone, its axis and the cosine of its half-angle."""
 
     axis_body: Vec3
     cosine: float
 
 
+@final
 @dataclass(frozen=True, slots=True)
 class CellSet:
     """The cells as the table has them.
@@ -88,12 +91,16 @@ class CellSet:
         return bool(self.shades[cell]) and current < self.most_shaded
 
 
-class Light(NamedTuple):
+@final
+class Light:
     """What lights the cells: directions to Sun and Earth, eci; the Earth's light relative to the Sun's."""
 
-    s_eci: Vec3
-    e_eci: Vec3
-    earth: float
+    __slots__ = ("e_eci", "earth", "s_eci")
+
+    def __init__(self, s_eci: Vec3, e_eci: Vec3, earth: float) -> None:
+        self.s_eci = s_eci
+        self.e_eci = e_eci
+        self.earth = earth
 
 
 PENUMBRA_M = 40e3

@@ -19,7 +19,7 @@ information because H changes, Huang, Mourikis, Roumeliotis 2010.
 """
 
 from math import nan
-from typing import NamedTuple
+from typing import final
 
 import numpy as np
 
@@ -31,23 +31,36 @@ from fsw.core.estimation.kalman import Matrix, product
 from fsw.core.estimation.measurement import field_prediction
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.parameters import added, corrected_parameters
+from fsw.core.estimation.parameters import corrected_parameters, difference
 
 
-class Linear(NamedTuple):
+@final
+class Linear:
     """Field and lit cells about an estimate: what they show without bias and excess, and H.
 
     ``by_sun``, ``by_earth``: numbers of the cells that each of them lights. ``values`` (3 + k) and ``rows``
     (3 + k, n): of the field, T, and of these k cells in this order; the rows include bias and excess.
     """
 
-    about: Estimate
-    b_eci_t: Vec3
-    seen: Light | None
-    by_sun: tuple[int, ...]
-    by_earth: tuple[int, ...]
-    values: Matrix
-    rows: Matrix
+    __slots__ = ("about", "b_eci_t", "by_earth", "by_sun", "rows", "seen", "values")
+
+    def __init__(
+        self,
+        about: Estimate,
+        b_eci_t: Vec3,
+        seen: Light | None,
+        by_sun: tuple[int, ...],
+        by_earth: tuple[int, ...],
+        values: Matrix,
+        rows: Matrix,
+    ) -> None:
+        self.about = about
+        self.b_eci_t = b_eci_t
+        self.seen = seen
+        self.by_sun = by_sun
+        self.by_earth = by_earth
+        self.values = values
+        self.rows = rows
 
 
 def linear_about(
@@ -138,7 +151,7 @@ def correction(before: Estimate, after: Estimate, config: MekfConfig) -> Matrix:
     scalar, x, y, z = multiply(conjugate(before.q_body_from_eci), after.q_body_from_eci)
     twice = 2.0 / (scalar or nan)  # 0 of damaged numbers alone
     rate = sub(after.omega_body_radps, before.omega_body_radps)
-    known = added(before.parameters, after.parameters, config.layout)
+    known = difference(before.parameters, after.parameters, config.layout)
     return np.array((twice * x, twice * y, twice * z, *rate, *known))
 
 

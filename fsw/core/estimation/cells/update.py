@@ -1,7 +1,8 @@
 """Sun-cell samples in the filter, one at a time; of a cell's errors only the smallest is white noise."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import replace
+from typing import ClassVar, final
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from fsw.core.estimation.cells.relinearise import Linear, cell_shown
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.wire.value import Value
 
 GATE_NIS = 10.83
 """Chi-square with 1 degree of freedom: 1 in 1000 sound samples is refused."""
@@ -22,11 +24,16 @@ ORBIT_RADPS = 1.1e-3
 """The Earth moves at this rate in the view of a satellite that does not turn."""
 
 
-class CellsUsed(NamedTuple):
+@final
+class CellsUsed(Value):
     """Numbers of the cells that the filter took in a tick, and of those that it refused."""
 
-    taken: tuple[int, ...] = ()
-    refused: tuple[int, ...] = ()
+    FIELDS: ClassVar[tuple[str, ...]] = ("taken", "refused")
+    __slots__ = FIELDS
+
+    def __init__(self, taken: tuple[int, ...] = (), refused: tuple[int, ...] = ()) -> None:
+        self.taken = taken
+        self.refused = refused
 
 
 NO_CELLS = CellsUsed()
@@ -91,11 +98,11 @@ def faded(estimate: Estimate, config: MekfConfig) -> Estimate:
     turned = passed + config.tick_s * norm(estimate.omega_body_radps) / CORRELATION_RAD
     of_excess, of_light = 1.0 / (1.0 + turned), 1.0 / (1.0 + passed)
     known = estimate.parameters
-    known = known._replace(cell_excess=tuple([of_excess * value for value in known.cell_excess]))
+    known = replace(known, cell_excess=tuple([of_excess * value for value in known.cell_excess]))
     after = _lost(estimate._replace(parameters=known), parts.cells, of_excess, config)
     if parts.earth_light is None:
         return after
-    known = known._replace(earth_light=(of_light * known.earth_light[0],))
+    known = replace(known, earth_light=(of_light * known.earth_light[0],))
     return _lost(after._replace(parameters=known), parts.earth_light, of_light, config)
 
 

@@ -1,7 +1,7 @@
 """The error dynamics of the filter: transition over a tick, process noise, errors of a sample's age."""
 
 from math import radians, sqrt
-from typing import NamedTuple
+from typing import final
 
 import numpy as np
 
@@ -15,14 +15,23 @@ from fsw.core.estimation.parameters import Parameters, Rotor, estimated_rotor
 _IDENTITY = np.eye(6)
 
 
-class Driven(NamedTuple):
+@final
+class Driven:
     """The dipole that the coils drove over a tick, and the standard deviation of its error.
 
     Both in body axes, A m^2; the error of a coil is along its axis.
     """
 
-    m_body_am2: Vec3
-    doubted_am2: Vec3 = ZERO
+    __slots__ = ("doubted_am2", "m_body_am2")
+
+    def __init__(self, m_body_am2: Vec3, doubted_am2: Vec3 = ZERO) -> None:
+        self.m_body_am2 = m_body_am2
+        self.doubted_am2 = doubted_am2
+
+    @property
+    def nothing(self) -> bool:
+        """Whether it is certain that no coil was driven."""
+        return self.m_body_am2 == ZERO and self.doubted_am2 == ZERO
 
 
 def process_noise(driven: Driven, b_body_t: Vec3, config: MekfConfig) -> Matrix:
@@ -30,7 +39,7 @@ def process_noise(driven: Driven, b_body_t: Vec3, config: MekfConfig) -> Matrix:
 
     Its error is constant over a tick and independent of those of the other ticks.
     """
-    if driven == NOT_DRIVEN:
+    if driven.nothing:
         return config.process_noise
     noise = config.process_noise.copy()
     for sigma_am2 in (scale(config.dipole_sigma, driven.m_body_am2), driven.doubted_am2):

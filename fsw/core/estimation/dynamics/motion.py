@@ -1,6 +1,6 @@
 """How a rigid satellite moves over a tick: acceleration, rotation, rate."""
 
-from typing import NamedTuple
+from typing import final
 
 from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, rotate
 from fsw.core.algebra.vector import Vec3, add, cross, dot, scale, sub, transform
@@ -10,12 +10,16 @@ MIDPOINT_RAD = 0.03
 """Up to this rotation in a tick the motion at its middle suffices: to 2e-6 rad, 3e-8 rad a tick."""
 
 
-class BodyFields(NamedTuple):
+@final
+class BodyFields:
     """What acts at one attitude, body axes: the radius direction e1, the field b, T, and 3 mu/r^3, 1/s^2."""
 
-    e1: Vec3
-    b_t: Vec3
-    gravity_per_s2: float
+    __slots__ = ("b_t", "e1", "gravity_per_s2")
+
+    def __init__(self, e1: Vec3, b_t: Vec3, gravity_per_s2: float) -> None:
+        self.e1 = e1
+        self.b_t = b_t
+        self.gravity_per_s2 = gravity_per_s2
 
     def pull(self) -> tuple[float, ...]:
         """The dyad 3 mu/r^3 e1 e1^T by rows, 1/s^2."""
@@ -24,24 +28,36 @@ class BodyFields(NamedTuple):
 
 def acceleration(omega: Vec3, around: BodyFields, m: Vec3, torque: Vec3, rotor: Rotor) -> Vec3:
     """J domega/dt = m x b + 3 mu/r^3 e1 x J e1 - omega x (J omega + h) + torque, all in body axes."""
-    j, j_inverse, wheel = rotor
+    j = rotor.inertia_kgm2
     gravity = scale(around.gravity_per_s2, cross(around.e1, transform(j, around.e1)))
-    gyroscopic = cross(omega, add(transform(j, omega), wheel))
-    return transform(j_inverse, sub(add(add(cross(m, around.b_t), gravity), torque), gyroscopic))
+    gyroscopic = cross(omega, add(transform(j, omega), rotor.wheel_body_nms))
+    return transform(rotor.inertia_inverse, sub(add(add(cross(m, around.b_t), gravity), torque), gyroscopic))
 
 
-class Acting(NamedTuple):
+@final
+class Acting:
     """What acts on the satellite over a tick, and its inertia.
 
     Radius direction and field, T, inertial axes; 3 mu/r^3, 1/s^2; dipole, A m^2, and torque, N m, body axes.
     """
 
-    e1_eci: Vec3
-    b_eci_t: Vec3
-    gravity_per_s2: float
-    m_am2: Vec3
-    torque_nm: Vec3
-    rotor: Rotor
+    __slots__ = ("b_eci_t", "e1_eci", "gravity_per_s2", "m_am2", "rotor", "torque_nm")
+
+    def __init__(
+        self,
+        e1_eci: Vec3,
+        b_eci_t: Vec3,
+        gravity_per_s2: float,
+        m_am2: Vec3,
+        torque_nm: Vec3,
+        rotor: Rotor,
+    ) -> None:
+        self.e1_eci = e1_eci
+        self.b_eci_t = b_eci_t
+        self.gravity_per_s2 = gravity_per_s2
+        self.m_am2 = m_am2
+        self.torque_nm = torque_nm
+        self.rotor = rotor
 
     def around(self, q_body_from_eci: Quaternion) -> BodyFields:
         """Radius direction and field at an attitude."""
@@ -53,12 +69,16 @@ class Acting(NamedTuple):
         return acceleration(omega, around, self.m_am2, self.torque_nm, self.rotor)
 
 
-class BodyMotion(NamedTuple):
+@final
+class BodyMotion:
     """How the satellite turns: rate, rad/s, its derivative, rad/s^2, and the dipole that acts, A m^2."""
 
-    omega: Vec3
-    alpha: Vec3
-    m_am2: Vec3
+    __slots__ = ("alpha", "m_am2", "omega")
+
+    def __init__(self, omega: Vec3, alpha: Vec3, m_am2: Vec3) -> None:
+        self.omega = omega
+        self.alpha = alpha
+        self.m_am2 = m_am2
 
 
 def middle(q: Quaternion, omega: Vec3, acting: Acting, h: float) -> tuple[BodyFields, BodyMotion]:

@@ -6,7 +6,8 @@ field open; the motion over ``LEAST_S`` determines it. A sample is kept every ``
 driven since the one before; ``search`` looks for the motion behind them, in pieces over the ticks.
 """
 
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from typing import final
 
 from fsw.core.algebra.vector import ZERO, Vec3, add, scale
 from fsw.core.estimation.start.batch_sample import BatchSample
@@ -26,7 +27,9 @@ ROUNDING_S = 1e-6
 """More than a sum of ticks is off by that are no binary fractions, 0.1 s for one."""
 
 
-class SampleBatch(NamedTuple):
+@final
+@dataclass(slots=True)
+class SampleBatch:
     """The samples, oldest first; time and impulse driven, A m^2 s, since the last.
 
     ``search`` is the one that is under way, and ``searched_s`` the time since the last one began.
@@ -38,42 +41,50 @@ class SampleBatch(NamedTuple):
     searched_s: float = 0.0
     search: MotionSearch | None = None
 
+    def copy(self) -> "SampleBatch":
+        """A batch with the same samples, whose search goes on by itself."""
+        search = None if self.search is None else self.search.copy()
+        return SampleBatch(self.samples, self.since_s, self.driven_am2s, self.searched_s, search)
+
     @property
     def span_s(self) -> float:
         """From the first sample to the last."""
-        return sum(sample.since_s for sample in self.samples[1:])
+        return sum([sample.since_s for sample in self.samples[1:]])
 
     @property
     def lit(self) -> int:
         """How many samples are in sunlight; a cell that is dark there shows where the Sun is not."""
-        return sum(1 for sample in self.samples if sample.lit)
+        return sum([1 for sample in self.samples if sample.lit])
 
 
-EMPTY = SampleBatch()
+def discard_samples(batch: SampleBatch) -> None:
+    """Begin anew, without a sample."""
+    batch.samples, batch.search = (), None
+    batch.since_s, batch.driven_am2s, batch.searched_s = 0.0, ZERO, 0.0
 
 
-def waited(batch: SampleBatch, m_body_am2: Vec3, tick_s: float) -> SampleBatch:
-    """The batch a tick later, over which this dipole was driven; empty after too long a gap."""
+def pass_tick(batch: SampleBatch, m_body_am2: Vec3, tick_s: float) -> None:
+    """Let a tick pass, over which this dipole was driven; after too long a gap discard the samples."""
     if not batch.samples:
-        return batch
-    since_s = batch.since_s + tick_s
-    if since_s > GAP_S + ROUNDING_S:
-        return EMPTY
-    driven = add(batch.driven_am2s, scale(tick_s, m_body_am2))
-    return batch._replace(since_s=since_s, driven_am2s=driven, searched_s=batch.searched_s + tick_s)
+        return
+    batch.since_s += tick_s
+    batch.searched_s += tick_s
+    batch.driven_am2s = add(batch.driven_am2s, scale(tick_s, m_body_am2))
+    if batch.since_s > GAP_S + ROUNDING_S:
+        discard_samples(batch)
 
 
-def kept(batch: SampleBatch, sample: BatchSample) -> SampleBatch:
-    """The batch with a sample, if one is due."""
+def keep_sample(batch: SampleBatch, sample: BatchSample) -> None:
+    """Keep a sample, if one is due."""
     if batch.samples and batch.since_s < SPACING_S - ROUNDING_S:
-        return batch
+        return
     if batch.samples:
         mean = scale(1.0 / batch.since_s, batch.driven_am2s)
-        sample = sample._replace(since_s=batch.since_s, m_body_am2=mean)
+        sample = replace(sample, since_s=batch.since_s, m_body_am2=mean)
     samples = (*batch.samples, sample)
     if batch.search is None:  # a search counts the samples from the first
         samples = samples[-MOST:]
-    return SampleBatch(samples, searched_s=batch.searched_s, search=batch.search)
+    batch.samples, batch.since_s, batch.driven_am2s = samples, 0.0, ZERO
 
 
 def rest(batch: SampleBatch, b_eci_t: Vec3, s_eci: Vec3, r_eci_m: Vec3) -> BatchSample | None:
@@ -84,7 +95,7 @@ def rest(batch: SampleBatch, b_eci_t: Vec3, s_eci: Vec3, r_eci_m: Vec3) -> Batch
     return BatchSample(batch.since_s, mean, ZERO, (), b_eci_t, s_eci, r_eci_m, 0.0, 0.0)
 
 
-def due(batch: SampleBatch) -> bool:
+def search_due(batch: SampleBatch) -> bool:
     """Whether a search for the motion is to begin, with the sample just kept."""
     if (
         batch.search is not None
@@ -93,6 +104,6 @@ def due(batch: SampleBatch) -> bool:
         or batch.searched_s < min(AGAIN_S, batch.span_s) - ROUNDING_S
     ):
         return False
-    coarse = all(sample.coarse for sample in batch.samples)
+    coarse = all([sample.coarse for sample in batch.samples])
     enough = batch.span_s >= (SHORT_S if coarse else LEAST_S) - ROUNDING_S
     return enough and 2 * batch.lit >= len(batch.samples)

@@ -14,7 +14,8 @@ with what the samples tell of it, and with the covariance of it and the attitude
 independent, the next tick would count the same errors once more, as if they were new ones.
 """
 
-from typing import Any, NamedTuple
+from dataclasses import dataclass, replace
+from typing import Any, final
 
 import numpy as np
 
@@ -41,7 +42,9 @@ INFLATION = 2.0
 """Factor on the standard deviations found: the equations are not linear, nor is the noise white."""
 
 
-class Equations(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class Equations:
     """By motion: N, (n, k, k), g, (n, k), half of chi square, and how many numbers were measured, (n)."""
 
     normal: Matrix
@@ -88,7 +91,7 @@ def add_sample(
     costs = equations.costs + 0.5 * (left * left).sum(axis=1)
     numbers = equations.measured + np.count_nonzero(weights)
     if len(seen.values) == count:
-        return equations._replace(costs=costs, measured=numbers)
+        return Equations(equations.normal, equations.gradient, costs, numbers)
     there = seen.values[count:].reshape(MOVING, count, -1)
     moving = ((there - here) / model.differences[:, None, None]).transpose(1, 2, 0) * weights[:, None]
     constant = constant_slopes(seen, count) * weights[:, None]
@@ -163,7 +166,7 @@ def _with_parameters(begun: Estimate, numbers: Matrix, left: Matrix, model: Batc
             after = list(getattr(parameters, name))
             after[: len(own)] = numbers[[number - 3 for number in own]].tolist()
             value: dict[str, Any] = {name: tuple(after)}
-            parameters = parameters._replace(**value)
+            parameters = replace(parameters, **value)
             kept, places = [*kept, *own], [*places, *range(place.start, place.start + len(own))]
     covariance[np.ix_(places, places)] = left[np.ix_(kept, kept)]
     if (turn := config.layout.sun_turn) is not None:

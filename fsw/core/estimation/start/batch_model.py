@@ -5,8 +5,9 @@ inertia move the satellite; bias of the field, excess and gain of each of c cell
 in the samples. What a cell is wrong by has the same parts as in the filter, which goes on with them.
 """
 
+from dataclasses import dataclass
 from math import cos, hypot, pi, radians, sin, sqrt
-from typing import NamedTuple
+from typing import final
 
 import numpy as np
 
@@ -34,7 +35,9 @@ LEAST_SIGMAS = {"dipole": 1e-8, "torque": 1e-13, "inertia": 1e-9, "cells": 1e-6}
 """For what the table takes as certain, A m^2, N m, kg m^2, and parts of full sunlight."""
 
 
-class Motions(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class Motions:
     """Attitudes (n, 4), and rate, dipole, torque, inertia, bias, excess, gains and light, (n, k - 3)."""
 
     q: Matrix
@@ -49,7 +52,9 @@ class Motions(NamedTuple):
         return Motions(self.q[rows], self.numbers[rows])
 
 
-class BatchModel(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class BatchModel:
     """What the table says of a batch: standard deviations of a field component, T, and of a current.
 
     ``excess_varying``: standard deviation of what the excess of a cell has in one tick beyond its mean.
@@ -67,7 +72,9 @@ class BatchModel(NamedTuple):
     config: MekfConfig
 
 
-class Shown(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class Shown:
     """What motions should show in a sample.
 
     ``values`` (n, 3 + c): field and currents, with bias and errors of the cells; ``direct`` (n, c): light of
@@ -177,20 +184,19 @@ def disturbances(motions: Motions) -> Disturbed:
     return Disturbed(numbers[:, 3:6], numbers[:, 6:9], numbers[:, 9:15])
 
 
-def expected(q: Matrix, numbers: Matrix, sample: BatchSample, model: BatchModel) -> Shown:
+def expected(motions: Motions, sample: BatchSample, model: BatchModel) -> Shown:
     """Field and currents at one sample.
 
     Args:
-        q: attitudes, (n, 4).
-        numbers: the others of each motion, (n, k - 3).
+        motions: where they are.
         sample: what was modelled.
         model: what the table says.
     """
     down = scale(-1.0 / norm(sample.r_eci_m), sample.r_eci_m)
-    b, s, e = all_in_body(q, np.array((sample.b_eci_t, sample.s_eci, down)))
+    b, s, e = all_in_body(motions.q, np.array((sample.b_eci_t, sample.s_eci, down)))
     direct, view = np.maximum(0.0, model.normals.dot(s)).T, (0.5 + 0.5 * model.normals.dot(e)).T
     of_earth = (sample.earth / model.albedo if sample.earth else 0.0) * view * view
-    bias, excess, gain, light = parts_shown(numbers, len(model.normals))
+    bias, excess, gain, light = parts_shown(motions.numbers, len(model.normals))
     currents = (1.0 + gain) * direct + (model.albedo + light) * of_earth + excess
     return Shown(np.hstack((b.T + bias, currents)), direct, of_earth)
 

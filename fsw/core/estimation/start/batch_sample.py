@@ -1,6 +1,7 @@
 """One sample of a batch: field and cells of a tick, and what was driven since the sample before."""
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import final
 
 from fsw.core.algebra.vector import Vec3
 
@@ -8,7 +9,9 @@ UNKNOWN = -1.0
 """The current of a cell that is not to be used."""
 
 
-class BatchSample(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class BatchSample:
     """What was measured and modelled in one tick, and what was driven since the sample before.
 
     ``field_t`` in body axes; ``currents`` as fractions of full sunlight; ``lit``: 0 in the shadow, where the

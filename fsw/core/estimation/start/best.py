@@ -1,6 +1,7 @@
 """Motions under improvement: what each has reached so far, and how boldly to step on."""
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,9 @@ FIRST_DAMPING, BOLDER, MORE_CAREFUL = 1e-2, 0.2, 10.0
 """Of the Levenberg-Marquardt method: at first, and its factors after a step that was better, or was not."""
 
 
-class Best(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class Best:
     """The motions as improved so far, their equations, attitudes at the end, (n, 4), and damping."""
 
     motions: Motions
@@ -22,7 +25,7 @@ class Best(NamedTuple):
     damping: Matrix
 
 
-def improved(motions: Motions, equations: Equations, ends: Matrix, before: Best | None) -> Best:
+def better_of(motions: Motions, equations: Equations, ends: Matrix, before: Best | None) -> Best:
     """The best so far, with those that have just gone through the samples.
 
     Args:
@@ -33,18 +36,25 @@ def improved(motions: Motions, equations: Equations, ends: Matrix, before: Best 
     """
     if before is None:
         return Best(motions, equations, ends, np.full(len(ends), FIRST_DAMPING))
-    better = equations.costs < before.equations.costs
+    earlier = before.equations
+    better = equations.costs < earlier.costs
     return Best(
-        Motions(*_where(better, motions, before.motions)),
-        Equations(*_where(better, equations, before.equations)),
-        _where(better, (ends,), (before.ends,))[0],
+        Motions(
+            _where(better, motions.q, before.motions.q),
+            _where(better, motions.numbers, before.motions.numbers),
+        ),
+        Equations(
+            _where(better, equations.normal, earlier.normal),
+            _where(better, equations.gradient, earlier.gradient),
+            _where(better, equations.costs, earlier.costs),
+            _where(better, equations.measured, earlier.measured),
+        ),
+        _where(better, ends, before.ends),
         np.where(better, BOLDER * before.damping, MORE_CAREFUL * before.damping),
     )
 
 
-def _where(better: NDArray[np.bool_], one: tuple[Matrix, ...], other: tuple[Matrix, ...]) -> list[Matrix]:
+def _where(better: NDArray[np.bool_], mine: Matrix, theirs: Matrix) -> Matrix:
     """The rows of one or the other, by motion."""
-    return [
-        np.where(better.reshape(-1, *(1,) * (mine.ndim - 1)), mine, theirs)
-        for mine, theirs in zip(one, other, strict=True)
-    ]
+    rows: Matrix = np.where(better.reshape(-1, *(1,) * (mine.ndim - 1)), mine, theirs)
+    return rows

@@ -1,8 +1,9 @@
 """The first estimate: from field and Sun in one tick, or from a batch of field and cells."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import sqrt
-from typing import NamedTuple
+from typing import final
 
 import numpy as np
 
@@ -13,15 +14,17 @@ from fsw.core.estimation.cells.coarse_sun import coarse_sun
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import Parameters, component_places, with_component
-from fsw.core.estimation.start.batch import MOST, SampleBatch, due, kept, rest
+from fsw.core.estimation.start.batch import MOST, SampleBatch, keep_sample, rest, search_due
 from fsw.core.estimation.start.batch_model import BatchModel, model_of
 from fsw.core.estimation.start.batch_sample import UNKNOWN, BatchSample
-from fsw.core.estimation.start.search import PIECES, at_end, begun, worked
+from fsw.core.estimation.start.search import PIECES, Stage, at_end, start_search, work
 from fsw.core.estimation.start.triad import consistent, triad
 from fsw.core.orbit.ephemeris import Reference
 
 
-class StartLimits(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class StartLimits:
     """Largest errors of field strength and field-Sun angle, and least separation of the two: T, rad, rad."""
 
     max_field_error_t: float
@@ -44,7 +47,9 @@ def first_estimate(
     if field is None or sun is None or not reference.lit:
         return None
     b, s = reference.b_eci_t, reference.sun_eci
-    if not consistent(field, sun, b, s, *limits):
+    if not consistent(
+        field, sun, b, s, limits.max_field_error_t, limits.max_angle_error_rad, limits.min_separation_rad
+    ):
         return None
     return mekf.start(triad(sun, field, s, b), ZERO, config)
 
@@ -74,15 +79,15 @@ def with_given(
     return estimate._replace(parameters=parameters, covariance=covariance)
 
 
-def from_batch(
+def estimate_from_batch(
     batch: SampleBatch,
     field: Vec3 | None,
     currents: tuple[float | None, ...],
     reference: Reference,
     limits: StartLimits,
     config: MekfConfig,
-) -> tuple[SampleBatch, Estimate | None]:
-    """The batch after this tick's samples and a tick's work on its search; the estimate if that ends it.
+) -> Estimate | None:
+    """Add this tick's samples to a batch and do a tick's work on its search; the estimate if that ends it.
 
     Args:
         batch: of the ticks before.
@@ -94,17 +99,17 @@ def from_batch(
     """
     cells = config.cells
     if cells is None:
-        return batch, None
+        return None
     sample = _sample(field, currents, reference, limits, cells)
     if sample is not None:
-        batch = kept(batch, sample)
-    starts_now = due(batch)
+        keep_sample(batch, sample)
+    starts_now = search_due(batch)
     if batch.search is None and not starts_now:
-        return batch, None
+        return None
     model = model_of(config, cells)
     if starts_now:
-        batch = batch._replace(searched_s=0.0, search=begun(batch.samples, model))
-    return _searched(batch, sample is not None, reference, model)
+        batch.search, batch.searched_s = start_search(batch.samples, model), 0.0
+    return _search(batch, sample is not None, reference, model)
 
 
 def linear(estimate: Estimate, b_eci_t: Vec3, config: MekfConfig) -> bool:
@@ -148,21 +153,20 @@ def _known(cell: int, current: float | None, cells: CellSet) -> float:
     return UNKNOWN if current is None or cells.may_be_shaded(cell, current) else current
 
 
-def _searched(
-    batch: SampleBatch, measured: bool, reference: Reference, model: BatchModel
-) -> tuple[SampleBatch, Estimate | None]:
-    """The batch after a tick's pieces of the search; an estimate begins only in a tick with a sample.
+def _search(batch: SampleBatch, measured: bool, reference: Reference, model: BatchModel) -> Estimate | None:
+    """Do a tick's pieces of the search; an estimate begins only in a tick with a sample.
 
     One that is not ``linear`` is left for a search over more samples, where there can be more.
     """
-    search = batch.search
     since = rest(batch, reference.b_eci_t, reference.sun_eci, reference.r_eci_m)
     for _ in range(PIECES):
+        search = batch.search
         if search is None or (at_end(search, batch.samples) and not measured):
             break
-        after = worked(search, batch.samples, since, model)
-        if isinstance(after, Estimate):
-            begins = search.searched >= MOST or linear(after, reference.b_eci_t, model.config)
-            return batch._replace(search=None), after if begins else None
-        search = after
-    return batch._replace(search=search), None
+        estimate = work(search, batch.samples, since, model)
+        if search.stage is Stage.ENDED:
+            batch.search = None
+        if estimate is not None:
+            begins = search.searched >= MOST or linear(estimate, reference.b_eci_t, model.config)
+            return estimate if begins else None
+    return None

@@ -1,6 +1,7 @@
 """Many motions of the satellite at once, over some minutes: arrays with one row per motion."""
 
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,9 @@ STEP_RAD, MOST_STEPS = 0.5, 8
 second, which keeps the work of a tick short."""
 
 
-class Leg(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class Leg:
     """What acts between two samples: its length, s, radius direction and field, T, eci, in its middle.
 
     ``gravity_per_s2`` is 3 mu / r^3, ``m_body_am2`` the mean dipole that was driven, body axes.
@@ -28,7 +31,9 @@ class Leg(NamedTuple):
     m_body_am2: Matrix
 
 
-class Disturbed(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class Disturbed:
     """What disturbs each motion: residual dipole, A m^2, and torque, N m, body axes, (n, 3) each.
 
     ``inertia_kgm2``: xx, yy, zz, xy, xz, yz of the inertia tensor less the table's, (n, 6), to first order.
@@ -37,6 +42,10 @@ class Disturbed(NamedTuple):
     dipole_am2: Matrix
     torque_nm: Matrix
     inertia_kgm2: Matrix
+
+    def chosen(self, rows: NDArray[np.bool_]) -> "Disturbed":
+        """Some of them."""
+        return Disturbed(self.dipole_am2[rows], self.torque_nm[rows], self.inertia_kgm2[rows])
 
 
 def in_body(q: Matrix, v: Matrix) -> Matrix:
@@ -83,8 +92,8 @@ def flown(
         return _stepped(q, omega, leg, disturbed, rotor)
     ends, rates = np.empty_like(q), np.empty_like(omega)
     for count in sorted(set(steps.tolist())):
-        rows, part = steps == count, leg._replace(length_s=leg.length_s / count)
-        some, turning, acting = q[rows], omega[rows], Disturbed(*[each[rows] for each in disturbed])
+        rows, part = steps == count, replace(leg, length_s=leg.length_s / count)
+        some, turning, acting = q[rows], omega[rows], disturbed.chosen(rows)
         for _ in range(count):
             some, turning = _stepped(some, turning, part, acting, rotor)
         ends[rows], rates[rows] = some, turning
@@ -110,7 +119,9 @@ def _stepped(q: Matrix, omega: Matrix, leg: Leg, disturbed: Disturbed, rotor: Ro
     return q.T, x[4:].T
 
 
-class _Acting(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class _Acting:
     """A leg by components: radius direction and field, (2, 3, 1); inertia, (3, 3, n); J^-1 - J^-1 dJ J^-1."""
 
     seen: Matrix

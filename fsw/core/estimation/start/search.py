@@ -13,8 +13,9 @@ the work at the end. So the work of a tick does not grow with the number of samp
 Source: Marquardt 1963; batch estimators as in Crassidis and Junkins 2012, section 1.6.
 """
 
+from dataclasses import dataclass
 from enum import IntEnum
-from typing import NamedTuple
+from typing import final
 
 import numpy as np
 
@@ -37,7 +38,7 @@ from fsw.core.estimation.start.batch_model import (
     varied,
 )
 from fsw.core.estimation.start.batch_sample import BatchSample
-from fsw.core.estimation.start.best import Best, improved
+from fsw.core.estimation.start.best import Best, better_of
 from fsw.core.estimation.start.motions import flown
 
 PIECES = 4
@@ -54,14 +55,17 @@ carried through the samples at most so many times."""
 
 
 class Stage(IntEnum):
-    """SURVEY: the cost of all starts; IMPROVE: the best of them; CARRY: the one found, to this tick."""
+    """SURVEY: the cost of all starts; IMPROVE: the best of them; CARRY: the one found; ENDED."""
 
     SURVEY = 0
     IMPROVE = 1
     CARRY = 2
+    ENDED = 3
 
 
-class MotionSearch(NamedTuple):
+@final
+@dataclass(slots=True)
+class MotionSearch:
     """A search under way.
 
     ``searched``: how many samples of the batch are fitted, from the first on; ``at``: the index of the one
@@ -80,14 +84,29 @@ class MotionSearch(NamedTuple):
     equations: Equations
     best: Best | None = None
 
+    def copy(self) -> "MotionSearch":
+        """A search that goes on by itself from here; the arrays are shared, since none is changed."""
+        return MotionSearch(
+            self.searched,
+            self.stage,
+            self.at,
+            self.steps,
+            self.motions,
+            self.q,
+            self.omega,
+            self.equations,
+            self.best,
+        )
 
-Ended = Estimate | None
-"""None where the samples leave more than one motion, or none fits."""
 
-
-def begun(samples: tuple[BatchSample, ...], model: BatchModel) -> MotionSearch:
+def start_search(samples: tuple[BatchSample, ...], model: BatchModel) -> MotionSearch:
     """A search over these samples."""
-    return _passing(Stage.SURVEY, len(samples), 0, starts(samples, model), samples[0], model)
+    motions, first = starts(samples, model), samples[0]
+    q, omega = motions.q, motions.numbers[:, 0:3]
+    equations = add_sample(
+        at_priors(motions, model, len(q)), motions, expected(motions, first, model), first, model
+    )
+    return MotionSearch(len(samples), Stage.SURVEY, 0, 0, motions, q, omega, equations)
 
 
 def at_end(search: MotionSearch, samples: tuple[BatchSample, ...]) -> bool:
@@ -95,13 +114,15 @@ def at_end(search: MotionSearch, samples: tuple[BatchSample, ...]) -> bool:
     return search.stage is Stage.CARRY and search.at >= len(samples) - 1
 
 
-def worked(
+def work(
     search: MotionSearch, samples: tuple[BatchSample, ...], rest: BatchSample | None, model: BatchModel
-) -> MotionSearch | Ended:
-    """The search after a piece of work, or the estimate at this tick with which it ends.
+) -> Estimate | None:
+    """Do a piece of work; the estimate at this tick, if the search ends with one.
+
+    It ends without where the samples leave more than one motion, or none fits.
 
     Args:
-        search: before.
+        search: under way.
         samples: of the batch, oldest first; there may be more than when it began.
         rest: what was driven since the last of them; None: the last is of this tick.
         model: what the table says.
@@ -110,40 +131,37 @@ def worked(
     try:
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # an absurd motion has no cost
             if search.at < last:
-                return _leg_on(search, samples, model)
-            if search.stage is Stage.SURVEY:
-                return _chosen(search, samples[0], model)
-            if search.stage is Stage.IMPROVE:
-                return _improved(search, samples[0], model)
-            return _estimate(search, samples, rest, model)
+                _next_leg(search, samples, model)
+            elif search.stage is Stage.SURVEY:
+                _choose(search, samples[0], model)
+            elif search.stage is Stage.IMPROVE:
+                _improve(search, samples[0], model)
+            else:
+                return _end(search, samples, rest, model)
     except np.linalg.LinAlgError:  # the equations of damaged samples
-        return None
+        search.stage = Stage.ENDED
+    return None
 
 
-def _passing(
-    stage: Stage,
-    count: int,
-    steps: int,
-    motions: Motions,
-    first: BatchSample,
-    model: BatchModel,
-    best: Best | None = None,
-) -> MotionSearch:
-    """A search with the motions at the first sample, which is counted."""
-    going = motions if stage is Stage.SURVEY else varied(motions, model)
+def _pass_again(
+    search: MotionSearch, stage: Stage, motions: Motions, first: BatchSample, model: BatchModel
+) -> None:
+    """Set out with these motions, varied, from the first sample, which is counted."""
+    going = varied(motions, model)
     equations = at_priors(motions, model, len(going.q))
-    equations = add_sample(equations, motions, expected(*going, first, model), first, model)
-    return MotionSearch(count, stage, 0, steps, motions, going.q, going.numbers[:, 0:3], equations, best)
+    search.equations = add_sample(equations, motions, expected(going, first, model), first, model)
+    search.stage, search.at, search.motions = stage, 0, motions
+    search.q, search.omega = going.q, going.numbers[:, 0:3]
 
 
-def _leg_on(search: MotionSearch, samples: tuple[BatchSample, ...], model: BatchModel) -> MotionSearch:
-    """The search with the motions at the next sample, which is counted."""
+def _next_leg(search: MotionSearch, samples: tuple[BatchSample, ...], model: BatchModel) -> None:
+    """Carry the motions to the next sample, which is counted."""
     before, after = samples[search.at], samples[search.at + 1]
     going = _going(search, model)
-    q, omega = _flown(search, going, before, after, model)
-    seen = expected(q, going.numbers, after, model)
-    equations = add_sample(search.equations, search.motions, seen, after, model)
-    return search._replace(at=search.at + 1, q=q, omega=omega, equations=equations)
+    search.q, search.omega = _flown(search, going, before, after, model)
+    seen = expected(Motions(search.q, going.numbers), after, model)
+    search.equations = add_sample(search.equations, search.motions, seen, after, model)
+    search.at += 1
 
 
 def _going(search: MotionSearch, model: BatchModel) -> Motions:
@@ -158,11 +176,10 @@ def _flown(
     return flown(search.q, search.omega, leg(before, after), disturbances(going), rotor, alike)
 
 
-def _chosen(search: MotionSearch, first: BatchSample, model: BatchModel) -> MotionSearch:
-    """The best of the starts go through the samples again."""
+def _choose(search: MotionSearch, first: BatchSample, model: BatchModel) -> None:
+    """Let the best of the starts go through the samples again."""
     best = _order(search.equations.costs)[:IMPROVED]
-    motions = search.motions.chosen(best)
-    return _passing(Stage.IMPROVE, search.searched, 0, motions, first, model)
+    _pass_again(search, Stage.IMPROVE, search.motions.chosen(best), first, model)
 
 
 def _order(costs: Matrix) -> list[int]:
@@ -171,25 +188,29 @@ def _order(costs: Matrix) -> list[int]:
     return order
 
 
-def _improved(search: MotionSearch, first: BatchSample, model: BatchModel) -> MotionSearch | None:
+def _improve(search: MotionSearch, first: BatchSample, model: BatchModel) -> None:
     """Keep the motions that are better than before, and step all of them while there are steps left."""
-    best = improved(search.motions, search.equations, search.q[: len(search.motions.q)], search.best)
+    best = better_of(search.motions, search.equations, search.q[: len(search.motions.q)], search.best)
     if search.steps >= STEPS:
-        return _found(search.searched, best, first, model)
+        _find(search, best, first, model)
+        return
     tried = best.motions.changed(improving_step(best.equations, best.damping))
-    return _passing(Stage.IMPROVE, search.searched, search.steps + 1, tried, first, model, best)
+    search.steps, search.best = search.steps + 1, best
+    _pass_again(search, Stage.IMPROVE, tried, first, model)
 
 
-def _found(count: int, best: Best, first: BatchSample, model: BatchModel) -> MotionSearch | None:
-    """The best motion goes through the samples once more, if it is the only one that they allow."""
+def _find(search: MotionSearch, best: Best, first: BatchSample, model: BatchModel) -> None:
+    """Let the best motion go through the samples once more, if it is the only one that they allow."""
     costs, ends = best.equations.costs, best.ends
     order = _order(costs)
     chosen = order[0]
     others = [one for one in order[1:] if abs(ends[one].dot(ends[chosen])) < APART]
-    alone = all(costs[one] - costs[chosen] > LEAD for one in others)
+    alone = all([costs[one] - costs[chosen] > LEAD for one in others])
     if not (alone and _fits(float(costs[chosen]), best.equations)):
-        return None
-    return _passing(Stage.CARRY, count, 0, best.motions.chosen([chosen]), first, model)
+        search.stage = Stage.ENDED
+        return
+    search.steps, search.best = 0, None
+    _pass_again(search, Stage.CARRY, best.motions.chosen([chosen]), first, model)
 
 
 def _fits(cost: float, equations: Equations) -> bool:
@@ -197,19 +218,20 @@ def _fits(cost: float, equations: Equations) -> bool:
     return 2.0 * cost <= MOST_MISFIT * float(equations.measured[0])
 
 
-def _estimate(
+def _end(
     search: MotionSearch, samples: tuple[BatchSample, ...], rest: BatchSample | None, model: BatchModel
-) -> MotionSearch | Ended:
-    """The estimate at this tick; the motion goes through the samples again if it has not settled."""
+) -> Estimate | None:
+    """The estimate at this tick; let the motion go through the samples again if it has not settled."""
     q, omega = search.q, search.omega
     if rest is not None:
         q, omega = _flown(search, _going(search, model), samples[-1], rest, model)
     estimate, cost = estimate_of(search.motions, search.equations, q, omega, model)
-    if not _fits(cost, search.equations):
-        return None
-    if float(search.equations.costs[0]) - cost < SETTLED:
-        return estimate
-    if search.steps + 1 >= CARRIED:
-        return None
+    fits = _fits(cost, search.equations)
+    settled = float(search.equations.costs[0]) - cost < SETTLED
+    if not fits or settled or search.steps + 1 >= CARRIED:
+        search.stage = Stage.ENDED
+        return estimate if fits and settled else None
     better = search.motions.changed(improving_step(search.equations, np.zeros(1)))
-    return _passing(Stage.CARRY, search.searched, search.steps + 1, better, samples[0], model)
+    search.steps += 1
+    _pass_again(search, Stage.CARRY, better, samples[0], model)
+    return None

@@ -6,22 +6,20 @@ Good ones cancel it. What the filter has learnt of its gain is forgotten. Ticks 
 do not count.
 """
 
-from fsw.core.estimation.estimator import EstimatorState, untraced
+from fsw.core.estimation.estimator import EstimatorState, discard_trace
 from fsw.core.estimation.loaded import forget
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.parameters import COMPONENTS, NAMES, component_places
+from fsw.core.estimation.parameters import COMPONENTS, component_places
 from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig, with_item
 from fsw.core.fdir.coils.weak_test import Older
 from fsw.core.fdir.faults import CoilFault
 
 TRIED = (CoilFault.OPEN, CoilFault.WEAK, CoilFault.REVERSED)
 """Not a stuck one: it conducts without being tried."""
-GAINS = tuple(COMPONENTS.index((NAMES.index("coil_error"), 4 * coil)) for coil in range(3))
+GAINS = tuple(COMPONENTS.index(("coil_error", 4 * coil)) for coil in range(3))
 
 
-def retest(
-    health: CoilHealth, estimator: EstimatorState, sure: bool, config: CoilHealthConfig
-) -> tuple[CoilHealth, EstimatorState]:
+def retest(health: CoilHealth, estimator: EstimatorState, sure: bool, config: CoilHealthConfig) -> CoilHealth:
     """Readmit a coil whose time has come.
 
     Args:
@@ -31,7 +29,7 @@ def retest(
         config: limits.
     """
     if not any(health.faults):
-        return health, estimator
+        return health
     first, second, third = (max(0, ticks - 1) for ticks in health.until_retest)
     health = health._replace(until_retest=(first, second, third))
     half = 0.5 * config.weak.threshold
@@ -42,12 +40,12 @@ def retest(
                 nats=with_item(health.nats, coil, half),
                 older=with_item(health.older, coil, Older(kept=half)),
             )
-            estimator = with_unknown_gain(untraced(estimator), coil, config.mekf)
-    return health, estimator
+            discard_trace(estimator)
+            forget_gain(estimator, coil, config.mekf)
+    return health
 
 
-def with_unknown_gain(state: EstimatorState, coil: int, mekf: MekfConfig) -> EstimatorState:
-    """The state without what the filter has learnt of the gain of a coil; not while parameters are frozen."""
-    if state.frozen or GAINS[coil] not in component_places(mekf.layout):
-        return state
-    return forget(state, GAINS[coil], mekf)
+def forget_gain(state: EstimatorState, coil: int, mekf: MekfConfig) -> None:
+    """Forget what the filter has learnt of the gain of a coil; not while parameters are frozen."""
+    if not state.frozen and GAINS[coil] in component_places(mekf.layout):
+        forget(state, GAINS[coil], mekf)

@@ -43,7 +43,7 @@ def judge_effect(
     believed: BelievedParts,
     unexplained: bool,
     config: CoilHealthConfig,
-) -> tuple[CoilHealth, EstimatorState]:
+) -> CoilHealth:
     """Compare what the filter had to correct with what pulses, and a stray current, should have done.
 
     Args:
@@ -57,7 +57,7 @@ def judge_effect(
         config: limits.
 
     Returns:
-        The health, and the estimator, corrected where a coil certainly did other than assumed.
+        The health; the estimate is corrected where a coil certainly did other than assumed.
     """
     estimate, age, b_eci_t = state.estimate, tick - view.fired_tick, reference.b_eci_t
     as_asked = view.driven_level != 0 and (view.driven_coil, view.driven_level) == view.fired
@@ -66,7 +66,7 @@ def judge_effect(
     hurry = age % EARLY_TICKS == 0 and (unexplained or state.rejected_in_a_row > 0 or flows)
     due = ended or hurry or age == config.pulses.backoff_ticks
     if estimate is None or not (due or flows):
-        return health, state
+        return health
     if flows:
         m_am2 = stray_am2(health, config)
         kicks_radps = stray.kicks_radps(m_am2, config.stray_axes, estimate, b_eci_t, config.mekf)
@@ -77,7 +77,8 @@ def judge_effect(
     if ended:
         gravity_ps2 = 3.0 * MU_M3PS2 / reference.radius_m**3
         estimate = effects.trace_pulse(estimate, view.fired, b_eci_t, gravity_ps2, config.pulses, config.mekf)
-    return health, state._replace(estimate=estimate)
+    state.estimate = estimate
+    return health
 
 
 EARLY_TICKS = 5

@@ -33,7 +33,7 @@ from fsw.core.estimation.estimator import EstimatorState
 from fsw.core.estimation.loaded import forget
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.parameters import COMPONENTS, NAMES, Parameters, component_places
+from fsw.core.estimation.parameters import COMPONENTS, Parameters, component_places
 from fsw.core.fdir.evidence import SIGMAS, EvidenceWeights
 from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.cell_evidence import CellEvidence
@@ -42,7 +42,7 @@ from fsw.core.fdir.sensors.watch import Watch, accuse, readmit
 STILL = 0.06
 """Fraction of full sunlight by which a still current should have moved: eight steps of it on the bus."""
 NO_CURRENT = -1.0
-GAIN_1, EXCESS_1 = (COMPONENTS.index((NAMES.index(name), 0)) for name in ("cell_gain", "cell_excess"))
+GAIN_1, EXCESS_1 = (COMPONENTS.index((name, 0)) for name in ("cell_gain", "cell_excess"))
 """Numbers of these components of the first cell; those of the others follow."""
 
 
@@ -127,8 +127,8 @@ def cell_changes(before: tuple[int, ...], after: tuple[int, ...]) -> list[tuple[
 
 def forget_isolated(
     state: EstimatorState, before: tuple[int, ...], health: CellsHealth, config: MekfConfig
-) -> EstimatorState:
-    """The state without gain and excess of the cells isolated in this tick; as it is while frozen.
+) -> None:
+    """Forget gain and excess of the cells isolated in this tick; not while the parameters are frozen.
 
     Args:
         state: of the estimator.
@@ -139,8 +139,7 @@ def forget_isolated(
     for cell, _, fault in cell_changes(before, cell_faults(health)):
         for number in (GAIN_1 + cell, EXCESS_1 + cell):
             if fault and number in component_places(config.layout) and not state.frozen:
-                state = forget(state, number, config)
-    return state
+                forget(state, number, config)
 
 
 def _judge_cell(
@@ -213,7 +212,7 @@ def _by_dark(fault: int, current: float, cells: CellSet) -> int | None:
 
 def _as_by_table(estimate: Estimate) -> Estimate:
     """The estimate with gains and albedo as in the table: a stuck cell draws its own gain after it."""
-    return estimate._replace(parameters=estimate.parameters._replace(cell_gain=(), earth_light=()))
+    return estimate._replace(parameters=replace(estimate.parameters, cell_gain=(), earth_light=()))
 
 
 def _verdict(

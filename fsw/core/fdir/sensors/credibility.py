@@ -9,7 +9,7 @@ from math import sqrt
 
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.parameters import COMPONENTS, NAMES, OF_CELLS, component_places
+from fsw.core.estimation.parameters import COMPONENTS, OF_CELLS, component_places
 from fsw.core.fdir.evidence import SIGMAS
 
 OF_SENSORS = frozenset({"mag_bias_t", "mag_turn_rad", "mag_scale", "sun_turn_rad", "delay_s"})
@@ -35,7 +35,7 @@ def credibility_config(mekf: MekfConfig) -> CredibilityConfig:
     of_sensors, of_all, but_coils = [], [], []
     for number, place in component_places(mekf.layout).items():
         width = SIGMAS * sqrt(variances[place])
-        name = NAMES[COMPONENTS[number][0]]
+        name = COMPONENTS[number][0]
         if name in OF_CELLS:  # each cell is judged by itself, and the Earth's light is no sensor's fault
             continue
         limits = (number, means[number] - width, means[number] + width)

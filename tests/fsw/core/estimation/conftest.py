@@ -4,7 +4,7 @@ The numbers are chosen so that no term can hide behind another: an inertia tenso
 all axes, parameters that are all nonzero and unequal. Rotations are exact here, of first order in the filter.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians
 
 import numpy as np
@@ -123,7 +123,7 @@ class Satellite:
         covariance = self.covariance() if covariance is None else covariance
         parameters = self.parameters if parameters is None else parameters
         lacking = [name for name in OF_CELLS if name in self.carried and not getattr(parameters, name)]
-        parameters = parameters._replace(**{name: (0.0,) * OF_CELLS[name] for name in lacking})
+        parameters = replace(parameters, **{name: (0.0,) * OF_CELLS[name] for name in lacking})
         return Estimate(self.q, self.omega, parameters, covariance)
 
     def moved(self, estimate, error):
@@ -135,7 +135,7 @@ class Satellite:
         }
         rate = tuple(map(float, np.add(estimate.omega_body_radps, error[3:6])))
         return estimate._replace(
-            q_body_from_eci=q, omega_body_radps=rate, parameters=estimate.parameters._replace(**parts)
+            q_body_from_eci=q, omega_body_radps=rate, parameters=replace(estimate.parameters, **parts)
         )
 
     def error(self, before, after):

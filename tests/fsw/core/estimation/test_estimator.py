@@ -210,7 +210,7 @@ class TestRunning:
     def test_gravity_turns_it_too(self, settled):
         """J dw/dt = 3 mu / r^3 e x J e - w x J w, with a body at rest and nothing else."""
         still = settled.estimate._replace(omega_body_radps=ZERO, parameters=NO_DIFFERENCE)
-        after, _ = step(settled._replace(estimate=still), measured())
+        after, _ = step(replace(settled, estimate=still), measured())
         e = np.array(rotate(still.q_body_from_eci, REFERENCE.r_eci_m)) / REFERENCE.radius_m
         j = np.array(MEKF.rotor.inertia_kgm2)
         pull = 3.0 * 3.986004418e14 / REFERENCE.radius_m**3 * np.linalg.solve(j, np.cross(e, j @ e))
@@ -340,10 +340,11 @@ def test_an_old_field_sample_is_of_where_the_satellite_was():
     rate = (3e-7, -2e-7, 4e-7)
     reference = replace(REFERENCE, b_rate_eci_tps=rate)
     begun = mekf.start(Q_BODY_FROM_ECI, ZERO, AGED.mekf)
-    old = begun._replace(parameters=begun.parameters._replace(delay_s=(1.5, 0.5)))
+    old = begun._replace(parameters=replace(begun.parameters, delay_s=(1.5, 0.5)))
     then = add(REFERENCE.b_eci_t, scale(-1.5, rate))
     sampled = seen_from(field=field_message(rotate(Q_BODY_FROM_ECI, then)), sun=None)
-    after, used = update(EstimatorState(old), sampled, reference, AGED)
+    after = EstimatorState(old)
+    used = update(after, sampled, reference, AGED)
     assert used.field
     assert after.estimate.nis < 1e-12
     assert angle_rad(after.estimate.q_body_from_eci, Q_BODY_FROM_ECI) < 1e-9

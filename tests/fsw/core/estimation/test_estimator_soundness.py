@@ -1,5 +1,6 @@
 """Whatever stands in the state or comes from sensors: a sound estimate or none, and no exception."""
 
+from dataclasses import replace
 from math import inf, nan
 
 import numpy as np
@@ -34,10 +35,10 @@ class TestSoundness:
         estimate = settled.estimate
         if field in NAMES:
             values = (*getattr(estimate.parameters, field)[:-1], bad)
-            estimate = estimate._replace(parameters=estimate.parameters._replace(**{field: values}))
+            estimate = estimate._replace(parameters=replace(estimate.parameters, **{field: values}))
         else:
             estimate = estimate._replace(**{field: (*getattr(estimate, field)[:-1], bad)})
-        broken = settled._replace(estimate=estimate)
+        broken = replace(settled, estimate=estimate)
         state, _ = step(broken, readings)
         assert state.estimate is None or mekf.healthy(state.estimate)
         if not np.isfinite(bad):
@@ -52,7 +53,7 @@ class TestSoundness:
     def test_so_is_a_broken_covariance(self, settled, at, bad):
         covariance = settled.estimate.covariance.copy()
         covariance[at] = covariance[at[::-1]] = bad
-        broken = settled._replace(estimate=settled.estimate._replace(covariance=covariance))
+        broken = replace(settled, estimate=settled.estimate._replace(covariance=covariance))
         for readings in (seen_from(), measured()):
             state, _ = step(broken, readings)
             assert state.estimate is None or mekf.healthy(state.estimate)
@@ -62,7 +63,7 @@ class TestSoundness:
         for value in (1e-2, -1e-2, 1.0, -1.0):
             covariance = settled.estimate.covariance.copy()
             covariance[2, 6] = value
-            broken = settled._replace(estimate=settled.estimate._replace(covariance=covariance))
+            broken = replace(settled, estimate=settled.estimate._replace(covariance=covariance))
             state, _ = step(broken, seen_from())
             assert state.estimate is None or mekf.healthy(state.estimate)
             orbital_attitude(state.estimate, REFERENCE, CONFIG.valid_sigma_rad)
@@ -71,7 +72,7 @@ class TestSoundness:
         spinning = settled.estimate._replace(
             omega_body_radps=(1e60, -2e60, 3e60), covariance=1e100 * np.eye(SIZE)
         )
-        state, used = step(settled._replace(estimate=spinning), seen_from())
+        state, used = step(replace(settled, estimate=spinning), seen_from())
         assert state.restarts == 1
         assert used == Used(True, True, False)
 

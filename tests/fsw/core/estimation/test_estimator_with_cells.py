@@ -1,10 +1,12 @@
 """From field and cells to an estimate: which refusals count, when parameters start anew, lost ticks."""
 
+from dataclasses import replace
 from math import inf, radians
 
 import numpy as np
 import pytest
 from cell_samples import CELLS, Q_BODY_FROM_ECI, REFERENCE, cell_filter, cells_taken
+from changed import changed
 from estimator_samples import IDLE, field_message
 from gate_samples import measured
 
@@ -15,7 +17,7 @@ from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.cells.prediction import earthlit, sunlit
 from fsw.core.estimation.dynamics.error_dynamics import Driven
 from fsw.core.estimation.estimator import EstimatorConfig, EstimatorState, Turning, predict, update
-from fsw.core.estimation.start.batch import EMPTY, kept
+from fsw.core.estimation.start.batch import SampleBatch
 from fsw.core.estimation.start.batch_sample import BatchSample
 from fsw.core.estimation.start.first import StartLimits
 from fsw.wire.messages import SunCells
@@ -59,7 +61,8 @@ def running(turning=Turning.NO):
     ids=["none", "one", "two, but one is taken", "all"],
 )
 def test_cells_count_as_refused_where_more_than_one_is_and_none_is_taken(off, in_a_row):
-    state, used = update(running(), readings(*off), REFERENCE, CONFIG)
+    state = running()
+    used = update(state, readings(*off), REFERENCE, CONFIG)
     assert used.cells.refused == tuple(off)
     assert (state.rejected_in_a_row, state.rejected_total) == (in_a_row, int(in_a_row > 0))
 
@@ -69,8 +72,8 @@ class TestAnew:
 
     def test_with_cells(self):
         before = running(Turning.FAST)
-        same = update(running(), readings(), REFERENCE, CONFIG)[0].estimate
-        state, _ = update(before, readings(), REFERENCE, CONFIG)
+        same = changed(running(), update, readings(), REFERENCE, CONFIG).estimate
+        state = changed(before, update, readings(), REFERENCE, CONFIG)
         assert state.turning is Turning.NO
         np.testing.assert_allclose(state.estimate.covariance[0:6, 0:6], 4.0 * same.covariance[0:6, 0:6])
         np.testing.assert_array_equal(state.estimate.covariance[6:, 6:], MEKF.initial_covariance[6:, 6:])
@@ -81,15 +84,16 @@ class TestAnew:
         before = running(Turning.FAST)
         covariance = before.estimate.covariance.copy()
         covariance[3 + axis, 3 + axis] = radians(0.5) ** 2
-        before = before._replace(estimate=before.estimate._replace(covariance=covariance))
-        state, _ = update(before, readings(), REFERENCE, CONFIG)
+        before = replace(before, estimate=before.estimate._replace(covariance=covariance))
+        state = changed(before, update, readings(), REFERENCE, CONFIG)
         assert state.turning is Turning.FAST
 
 
 def test_of_lost_ticks_each_has_its_dipole_in_the_batch():
     sample = BatchSample(0.0, ZERO, ZERO, (0.0,) * 6, ZERO, ZERO, REFERENCE.r_eci_m, 1.0, 0.0)
     driven = [Driven((0.3, 0.0, -0.1), ZERO), Driven(ZERO, ZERO), Driven((0.0, 0.5, 0.2), ZERO)]
-    state = predict(EstimatorState(batch=kept(EMPTY, sample)), REFERENCE, driven, CONFIG)
+    state = EstimatorState(batch=SampleBatch((sample,)))
+    predict(state, REFERENCE, driven, CONFIG)
     assert state.batch.since_s == 3.0
     assert state.batch.driven_am2s == pytest.approx((0.3, 0.5, 0.1))
 

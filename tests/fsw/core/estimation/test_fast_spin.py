@@ -3,6 +3,7 @@
 The truth is integrated by another method, with the rotation as a matrix instead of a quaternion.
 """
 
+from dataclasses import replace
 from math import inf, nan, radians
 from types import MappingProxyType
 
@@ -179,7 +180,7 @@ def test_a_bias_of_the_magnetometer_is_carried_through_the_pieces():
     turned = np.array(predict(begun, RADIUS, strong_t, 0.0, ZERO, filters).omega_body_radps)
     for place in range(6):
         name, push = ("torque_body_nm", "dipole_body_am2")[place // 3], (1e-6 * np.eye(3)[place % 3]).tolist()
-        pushed = begun._replace(parameters=begun.parameters._replace(**{name: tuple(push)}))
+        pushed = begun._replace(parameters=replace(begun.parameters, **{name: tuple(push)}))
         moved = np.array(predict(pushed, RADIUS, strong_t, 0.0, ZERO, filters).omega_body_radps)
         slope = (moved - turned) / 1e-6
         np.testing.assert_allclose(felt[:, place], slope, atol=0.03 * np.abs(slope).max())

@@ -5,6 +5,7 @@ from math import radians
 
 import numpy as np
 import pytest
+from changed import changed
 from estimator_samples import (
     AGED,
     CONFIG,
@@ -40,9 +41,9 @@ class TestAfterAFastTurn:
     def turning(self, settled, degps, turning=Turning.NO):
         """At this rate, with parameters that differ from their start, and sure of it all."""
         rate = scale(radians(degps), unit((0.6, -0.48, 0.64)))
-        drawn_away = settled.estimate.parameters._replace(mag_bias_t=(9e-7, -8e-7, 7e-7))
+        drawn_away = replace(settled.estimate.parameters, mag_bias_t=(9e-7, -8e-7, 7e-7))
         estimate = settled.estimate._replace(omega_body_radps=rate, parameters=drawn_away)
-        return settled._replace(estimate=estimate, turning=turning)
+        return replace(settled, estimate=estimate, turning=turning)
 
     def begun_anew(self, state):
         same = state.estimate.parameters == MEKF.initial_parameters
@@ -54,7 +55,7 @@ class TestAfterAFastTurn:
         q = state.estimate.q_body_from_eci
         bias = state.estimate.parameters.mag_bias_t
         field = field_message(add(rotate(q, REFERENCE.b_eci_t), bias))
-        return update(state, seen_from(q, **({"field": field} | changes)), REFERENCE, CONFIG)[0]
+        return changed(state, update, seen_from(q, **({"field": field} | changes)), REFERENCE, CONFIG)
 
     @pytest.mark.parametrize(
         ("before", "degps", "expected", "anew"),
@@ -86,26 +87,26 @@ class TestAfterAFastTurn:
             state = self.turning(settled, 0.6)
             covariance = state.estimate.covariance.copy()
             covariance[3:6, 3:6] = radians(sigma_degps) ** 2 * np.eye(3)
-            unsure = state._replace(estimate=state.estimate._replace(covariance=covariance))
+            unsure = replace(state, estimate=state.estimate._replace(covariance=covariance))
             assert bool(self.seen_tick(unsure).turning) is fast
-            assert self.seen_tick(unsure._replace(turning=Turning.FAST)).turning is Turning.FAST
+            assert self.seen_tick(replace(unsure, turning=Turning.FAST)).turning is Turning.FAST
 
     def test_after_a_start_the_parameters_start_anew_once_the_rate_is_known(self, settled):
         """What the first noisy rates have taught of them is wrong; a matched satellite is no exception."""
-        begun = update(settled._replace(estimate=None), seen_from(), REFERENCE, CONFIG)[0]
+        begun = changed(replace(settled, estimate=None), update, seen_from(), REFERENCE, CONFIG)
         assert begun.turning is Turning.FAST
         slow = self.turning(settled, 0.1, Turning.FAST)
         covariance = slow.estimate.covariance.copy()
         covariance[3:6, 3:6] = radians(0.026) ** 2 * np.eye(3)
-        unsure = slow._replace(estimate=slow.estimate._replace(covariance=covariance))
+        unsure = replace(slow, estimate=slow.estimate._replace(covariance=covariance))
         for state, anew in ((unsure, False), (slow, True)):
             after = self.seen_tick(state)
             assert self.begun_anew(after) is anew
             assert after.turning is (Turning.NO if anew else Turning.FAST)
 
     def test_attitude_rate_and_counts_go_on(self, settled):
-        before = self.turning(settled, 0.2, Turning.FAST)._replace(
-            rejected_in_a_row=2, rejected_total=7, restarts=3
+        before = replace(
+            self.turning(settled, 0.2, Turning.FAST), rejected_in_a_row=2, rejected_total=7, restarts=3
         )
         after = self.seen_tick(before)
         assert self.begun_anew(after)
@@ -142,11 +143,11 @@ class TestAfterAFastTurn:
 
     def test_a_filter_that_begins_anew_has_not_turned_fast(self, settled):
         silence = [NOT_DRIVEN] * (round(MAX_ELAPSED_S / CONFIG.mekf.tick_s) + 1)
-        lost = predict(self.turning(settled, 5.0, Turning.FAST), REFERENCE, silence, CONFIG)
+        lost = changed(self.turning(settled, 5.0, Turning.FAST), predict, REFERENCE, silence, CONFIG)
         assert lost == EstimatorState(None, 0, settled.rejected_total, settled.restarts + 1, Turning.NO)
 
     def test_it_is_in_the_checksum_of_the_state(self, settled):
-        assert pack(settled._replace(turning=Turning.FAST)) != pack(settled)
+        assert pack(replace(settled, turning=Turning.FAST)) != pack(settled)
 
 
 class TestOfAFastTurnWhoseRateIsKnown:
@@ -157,13 +158,13 @@ class TestOfAFastTurnWhoseRateIsKnown:
         begun = mekf.start(Q_BODY_FROM_ECI, scale(radians(2.0), unit((0.6, -0.48, 0.64))), config.mekf)
         covariance = begun.covariance.copy()
         covariance[0:6, 0:6] *= np.diag([1e-4] * 3 + [(sigma_degps / 2.0) ** 2] * 3)
-        parameters = begun.parameters._replace(delay_s=(0.8, 0.7))
+        parameters = replace(begun.parameters, delay_s=(0.8, 0.7))
         sure = begun._replace(covariance=covariance, parameters=parameters)
         field, _ = field_prediction(*sure[:3], REFERENCE.b_eci_t, config.mekf)
         sun, _ = sun_prediction(*sure[:3], REFERENCE.sun_eci, config.mekf)
         said = {"field": field_message(field), "sun": SunVector(1, *unit(sun))} | changes
         before = EstimatorState(sure, turning=turning)
-        return sure, update(before, seen_from(**said), REFERENCE, config)[0]
+        return sure, changed(before, update, seen_from(**said), REFERENCE, config)
 
     def begun_anew(self, state, config=AGED):
         same = state.estimate.parameters == config.mekf.initial_parameters

@@ -1,5 +1,7 @@
 """What the sensors should say of an estimate, and how that depends on each part of it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -49,7 +51,7 @@ class TestExpected:
         off = np.subtract(sample, full.measured(kind, estimate)) / unit_of(kind, full)
         assert np.abs(off).max() < 1e-5
         for name in SEEN[kind]:
-            known = estimate.parameters._replace(**{name: getattr(NOTHING, name)})
+            known = replace(estimate.parameters, **{name: getattr(NOTHING, name)})
             without, _ = prediction(kind, full, estimate._replace(parameters=known))
             moved = np.abs(np.subtract(sample, without)).max() / unit_of(kind, full)
             assert moved > 1e-3
@@ -57,7 +59,7 @@ class TestExpected:
     @pytest.mark.parametrize("name", NAMES)
     @KIND
     def test_nothing_but_the_sensor_s_own_parameters_shows_in_it(self, kind, name, full):
-        only = NOTHING._replace(**{name: getattr(full.parameters, name)})
+        only = replace(NOTHING, **{name: getattr(full.parameters, name)})
         sample, direction = expected(kind, full, full.omega, only)
         assert (sample != direction) is (name in SEEN[kind])
 
@@ -113,14 +115,14 @@ class TestPrediction:
         np.testing.assert_allclose(
             found[:, 3:6], expected[:, 3:6], rtol=0.0, atol=0.03 * np.abs(expected[:, 3:6]).max()
         )
-        in_time = estimate._replace(parameters=estimate.parameters._replace(delay_s=(0.0, 0.0)))
+        in_time = estimate._replace(parameters=replace(estimate.parameters, delay_s=(0.0, 0.0)))
         assert found[:, 3:6].any()
         assert not prediction(kind, full, in_time)[1][:, 3:6].any()
 
     def test_a_turn_of_the_sensor_looks_as_a_turn_of_the_body_then(self, kind, full):
         """Why no measurement can tell the common turn of both sensors from an attitude."""
         estimate = full.estimate()
-        in_time = estimate._replace(parameters=estimate.parameters._replace(delay_s=(0.0, 0.0)))
+        in_time = estimate._replace(parameters=replace(estimate.parameters, delay_s=(0.0, 0.0)))
         place = full.place({"field": "mag_turn_rad", "sun": "sun_turn_rad"}[kind])
         _, found = prediction(kind, full, in_time)
         np.testing.assert_array_equal(found[:, place], found[:, 0:3])

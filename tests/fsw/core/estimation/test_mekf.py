@@ -1,6 +1,7 @@
 """The filter: its update against the textbook, its gate, its soundness."""
 
 import csv
+from dataclasses import replace
 from math import inf, nan
 
 import numpy as np
@@ -289,7 +290,7 @@ class TestHealthy:
         (xx, xy, xz), (_, yy, yz), (_, _, zz) = full.config().rotor.inertia_kgm2
         gone = (-xx, -yy, -zz, -xy, -xz, -yz)
         before = full.estimate()
-        before = before._replace(parameters=before.parameters._replace(inertia_error_kgm2=gone))
+        before = before._replace(parameters=replace(before.parameters, inertia_error_kgm2=gone))
         after = predict(before, full.e1_eci, full.b_eci_t, full.gravity_ps2, ZERO, full.config())
         assert mekf.healthy(before)
         assert not mekf.healthy(after)

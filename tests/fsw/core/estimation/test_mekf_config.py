@@ -1,5 +1,6 @@
 """The filter's tuning: what stands where, and what is prepared from it."""
 
+from dataclasses import replace
 from math import radians
 
 import numpy as np
@@ -7,7 +8,7 @@ from cell_samples import CELLS
 
 from fsw.core.algebra.vector import inverse
 from fsw.core.estimation.mekf_config import mekf_config
-from fsw.core.estimation.parameters import NOTHING, OF_CELLS, Parameters, Prior
+from fsw.core.estimation.parameters import NOTHING, OF_CELLS, Parameters, Prior, Rotor
 
 
 def test_the_priors_stand_where_the_layout_says(satellite):
@@ -39,7 +40,7 @@ def test_every_array_has_the_size_of_the_error_state(satellite):
 def test_the_parameters_begin_at_the_means_of_their_priors(full):
     """With cells theirs are there even where they are certain."""
     of_cells = {name: (0.0,) * size for name, size in OF_CELLS.items()}
-    assert full.config(cells=CELLS).initial_parameters == NOTHING._replace(**of_cells)
+    assert full.config(cells=CELLS).initial_parameters == replace(NOTHING, **of_cells)
     tuning = {
         "magnetometer_sigma_t": 2e-7,
         "sun_sigma_rad": 0.01,
@@ -55,12 +56,12 @@ def test_the_parameters_begin_at_the_means_of_their_priors(full):
     config = mekf_config(full.inertia_kgm2, 1.0, late, **tuning)
     assert config.initial_parameters == Parameters(delay_s=(0.5, 0.7))
     with_cells = mekf_config(full.inertia_kgm2, 1.0, late, cells=CELLS, **tuning)
-    assert with_cells.initial_parameters == config.initial_parameters._replace(**of_cells)
+    assert with_cells.initial_parameters == replace(config.initial_parameters, **of_cells)
 
 
 def test_the_rotor_is_that_of_the_table(full):
     config = full.config(wheel_body_nms=(0.01, -0.02, 0.03))
-    assert config.rotor == (full.inertia_kgm2, inverse(full.inertia_kgm2), (0.01, -0.02, 0.03))
+    assert config.rotor == Rotor(full.inertia_kgm2, inverse(full.inertia_kgm2), (0.01, -0.02, 0.03))
 
 
 def test_noise_of_the_sensors(full):

@@ -3,6 +3,7 @@
 Half an hour of a slow tumble under a field that turns, with pulses of the coils in turn.
 """
 
+from dataclasses import replace
 from math import cos, radians, sin
 
 import numpy as np
@@ -24,7 +25,7 @@ RATE = (0.003, -0.005, 0.004)
 BEYOND = 22.5
 """99.9 % of the chi-square of 6 degrees of freedom: attitude and rate."""
 
-NO_EXCESS = NOTHING._replace(**{name: (0.0,) * size for name, size in OF_CELLS.items()})
+NO_EXCESS = replace(NOTHING, **{name: (0.0,) * size for name, size in OF_CELLS.items()})
 """Of a filter that carries what cells may be wrong by."""
 
 
@@ -142,7 +143,7 @@ class TestTurnsOfTheSensors:
 
     def test_a_common_turn_goes_into_the_attitude_unseen_and_inside_its_sigma(self, full):
         turned = (0.004, -0.003, 0.005)
-        estimate, truth = flown(full, NO_EXCESS._replace(mag_turn_rad=turned, sun_turn_rad=turned))
+        estimate, truth = flown(full, replace(NO_EXCESS, mag_turn_rad=turned, sun_turn_rad=turned))
         error, sigma = full.error(estimate, truth), np.sqrt(estimate.covariance.diagonal())
         np.testing.assert_allclose(error[0:3], np.negative(turned), atol=0.4 * np.linalg.norm(turned))
         assert (np.abs(error[0:3]) < 3.0 * sigma[0:3]).all()

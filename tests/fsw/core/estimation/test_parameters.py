@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from changed import changed
 
 from fsw.core.algebra.vector import inverse
 from fsw.core.estimation.parameters import (
@@ -10,7 +11,8 @@ from fsw.core.estimation.parameters import (
     SIZES,
     Parameters,
     Rotor,
-    corrected_parameters,
+    correct_parameters,
+    difference,
     estimated_dipole,
     estimated_rotor,
     layout,
@@ -39,12 +41,11 @@ class TestLayout:
 
     @pytest.mark.parametrize("name", NAMES)
     def test_one_alone_comes_first_and_one_left_out_leaves_no_gap(self, name):
-        index = NAMES.index(name)
         alone = layout({name})
-        assert alone.carried == ((index, slice(6, 6 + SIZES[name])),)
+        assert alone.carried == ((name, slice(6, 6 + SIZES[name])),)
         without = layout(set(NAMES) - {name})
         assert without.size == 54 - SIZES[name]
-        assert index not in [known for known, _ in without.carried]
+        assert name not in [known for known, _ in without.carried]
         ends = [place.stop for _, place in without.carried]
         assert [place.start for _, place in without.carried] == [6, *ends[:-1]]
 
@@ -75,14 +76,25 @@ class TestCorrection:
         before = Parameters(
             torque_body_nm=(5e-8, 6e-8, 7e-8), mag_scale=(0.01, 0.02, 0.03), dipole_body_am2=(0.1, 0.2, 0.3)
         )
-        after = corrected_parameters(before, error, places)
+        after = changed(before, correct_parameters, error, places)
         assert after.torque_body_nm == pytest.approx((6e-8, 4e-8, 1e-7))
         assert after.mag_scale == pytest.approx((0.011, 0.022, 0.027))
         rest = set(NAMES) - {"mag_scale", "torque_body_nm"}
         assert all(getattr(after, name) == getattr(before, name) for name in rest)
 
     def test_leaves_the_parameters_where_none_is_carried(self, full):
-        assert corrected_parameters(full.parameters, [1.0] * 6, layout(set())) == full.parameters
+        after = changed(full.parameters, correct_parameters, [1.0] * 6, layout(set()))
+        assert after == full.parameters
+
+    @pytest.mark.parametrize("names", [NAMES, NAMES[::2], NAMES[1::3], NAMES[-4:]])
+    def test_the_difference_that_it_makes_is_the_error_state_s(self, names, full):
+        places = layout(set(names))
+        error = [0.0] * 6 + [0.5**n for n in range(places.size - 6)]
+        before = Parameters(cell_excess=(0.0,) * 6, cell_gain=(0.0,) * 6, earth_light=(0.0,))
+        after = changed(before, correct_parameters, error, places)
+        assert difference(before, after, places) == error[6:]
+        assert {name for name in NAMES if getattr(after, name) != getattr(before, name)} == set(names)
+        assert sum(after.floats()) == sum(error)
 
 
 class TestRotor:
@@ -124,5 +136,5 @@ class TestDipole:
 
 def test_the_checksum_of_the_state_has_every_number():
     numbers = iter(range(1, 49))
-    parameters = Parameters._make(tuple(next(numbers) for _ in range(SIZES[name])) for name in NAMES)
+    parameters = Parameters(*[tuple(next(numbers) for _ in range(SIZES[name])) for name in NAMES])
     assert parameters.floats() == tuple(range(1, 49))

@@ -30,7 +30,8 @@ def small_turns(satellite):
     """An estimate whose sensors are hardly turned: turns do not commute, which is of the second order."""
     true = satellite.parameters
     return satellite.estimate(
-        parameters=true._replace(
+        parameters=replace(
+            true,
             mag_turn_rad=tuple(0.01 * turn for turn in true.mag_turn_rad),
             sun_turn_rad=tuple(0.01 * turn for turn in true.sun_turn_rad),
         )

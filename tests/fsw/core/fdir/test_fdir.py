@@ -116,8 +116,8 @@ class TestJudgement:
         evidence = Evidence(state.tick, findings, state.coil, reference, used)
 
         def judge(health, estimator=state.estimator):
-            health = deepcopy(health)
-            estimator, attitude = fdir.judge(health, estimator, state.attitude, evidence, config.fdir)
+            health, estimator = deepcopy(health), estimator.copy()
+            attitude = fdir.judge(health, estimator, state.attitude, evidence, config.fdir)
             return (health, estimator, attitude), state
 
         return judge
@@ -178,7 +178,7 @@ class TestJudgement:
         stuck = CoilHealth(faults=(0, CoilFault.STUCK, 0), strange_ticks=90, stray_ma=40, stuck=True)
         evidence = Evidence(state.tick, findings, state.coil, reference, fdir.Used(field, True, False))
         health = Health(sensors(pair=deepcopy(PROVEN)).sensors, stuck)
-        _, attitude = fdir.judge(health, state.estimator, state.attitude, evidence, config.fdir)
+        attitude = fdir.judge(health, state.estimator, state.attitude, evidence, config.fdir)
         assert attitude.valid is valid
 
     def test_what_the_filter_knows_of_a_cell_that_is_isolated_is_forgotten_once(self, judged, monkeypatch):
@@ -229,7 +229,7 @@ class TestJudgement:
 
         def judge_effect(health, view, reference, state, tick, parts, *others):
             asked.append(parts)
-            return health, state
+            return health
 
         monkeypatch.setattr(fdir.torques, "judge_effect", judge_effect)
         judged(sensors(pair=pair))
@@ -249,8 +249,8 @@ class TestJudgement:
         monkeypatch.setattr(fdir.sensor_health, "judge_sensors", None)
 
         def judge(health):
-            health = deepcopy(health)
-            estimator, attitude = fdir.judge(health, state.estimator, state.attitude, evidence, config.fdir)
+            health, estimator = deepcopy(health), state.estimator.copy()
+            attitude = fdir.judge(health, estimator, state.attitude, evidence, config.fdir)
             return (health, estimator, attitude), state
 
         return judge

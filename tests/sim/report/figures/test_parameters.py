@@ -1,11 +1,13 @@
 """What the filter estimates, in summary and report: values, deviations, bounds and truth by component."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from fsw.core.estimation.mekf import Estimate
-from fsw.core.estimation.parameters import NOTHING, OF_CELLS, SIZES
+from fsw.core.estimation.parameters import NAMES, NOTHING, OF_CELLS, SIZES
 from sim.report.figures.parameters import parameter_figures
 from sim.report.parameter_table import UNITS, parameter_table
 from sim.scenario.schema import load
@@ -70,8 +72,11 @@ def estimate_of(parameters, variances):
 @pytest.fixture(scope="module")
 def figures():
     """Of a filter that carries all, every value and deviation another."""
-    parameters = NOTHING._replace(
-        mag_bias_t=(1e-7, -2e-7, 3e-7), coil_error=tuple(0.01 * n for n in range(9)), delay_s=(0.3, 0.6)
+    parameters = replace(
+        NOTHING,
+        mag_bias_t=(1e-7, -2e-7, 3e-7),
+        coil_error=tuple(0.01 * n for n in range(9)),
+        delay_s=(0.3, 0.6),
     )
     estimate = estimate_of(parameters, [(1.0 + n) ** 2 for n in range(41)])
     return parameter_figures(load("microsat", UNLIKE), TRUTH, estimate)
@@ -80,7 +85,7 @@ def figures():
 class TestFigures:
     def test_are_of_every_parameter_that_is_carried(self, figures):
         """Of a satellite without Sun cells there is nothing that these are wrong by."""
-        assert [*NOTHING._fields] == [*UNITS]
+        assert [*NAMES] == [*UNITS]
         assert [*figures] == [name for name in NOTHING._fields if name not in OF_CELLS]
 
     def test_values_and_deviations_are_those_of_the_last_estimate(self, figures):
@@ -152,7 +157,7 @@ class TestCells:
         cells = {"normals": FIVE, "gain": [1.1, 0.9, 1.0, 1.05, 0.95], "turn_deg": None, "albedo": 0.36}
         unlike = {"sensors": {"cells": cells}, "flight": {"cells": {"albedo": 0.3}}}
         known = {name: (0.0,) * size for name, size in OF_CELLS.items()}
-        estimate = estimate_of(NOTHING._replace(**known), [1.0] * sum(SIZES.values()))
+        estimate = estimate_of(replace(NOTHING, **known), [1.0] * sum(SIZES.values()))
         return parameter_figures(load("cubesat-cells", unlike), TRUTH, estimate)
 
     def test_truths_are_beyond_those_of_the_table(self, figures_of_cells):

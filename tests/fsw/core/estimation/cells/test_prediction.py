@@ -19,6 +19,7 @@ from cell_samples import (
 )
 
 from fsw.core.algebra.quaternion import from_small_rotation, multiply, normalise, rotate
+from fsw.core.estimation.cells.cell_set import Light
 from fsw.core.estimation.cells.prediction import LEAST_COSINE, most_behind, prediction, sunlit
 
 CONFIG = cell_filter()
@@ -47,7 +48,7 @@ def moved(estimate, index, step):
         if place.start <= index < place.stop:
             values = list(getattr(parameters, name))
             values[index - place.start] += step
-            return estimate._replace(parameters=parameters._replace(**{name: tuple(values)}))
+            return estimate._replace(parameters=replace(parameters, **{name: tuple(values)}))
     return estimate
 
 
@@ -58,11 +59,11 @@ class TestPrediction:
     @pytest.mark.parametrize("cell", LIT)
     def test_is_the_cosine_and_the_earth_s_light(self, cell):
         level = begun()._replace(
-            parameters=begun().parameters._replace(sun_turn_rad=(0.0,) * 3, delay_s=(0.0, 0.0))
+            parameters=replace(begun().parameters, sun_turn_rad=(0.0,) * 3, delay_s=(0.0, 0.0))
         )
         value, _ = prediction(level, cell, SEEN, CONFIG, CELLS)
         assert value == pytest.approx(shown(gain=GAIN, light=LIGHT)[cell], rel=1e-12)
-        without, _ = prediction(level, cell, SEEN._replace(earth=0.0), CONFIG, CELLS)
+        without, _ = prediction(level, cell, Light(SEEN.s_eci, SEEN.e_eci, 0.0), CONFIG, CELLS)
         assert value - without > 0.002
 
     @pytest.mark.parametrize("cell", LIT)
@@ -96,7 +97,7 @@ class TestPrediction:
 def test_without_light_of_the_earth_it_shows_its_excess_at_most():
     dark = replace(CELLS, albedo=0.0)
     for normal in CELLS.normals_body:
-        most = most_behind(begun(), normal, SEEN._replace(earth=0.0), dark)
+        most = most_behind(begun(), normal, Light(SEEN.s_eci, SEEN.e_eci, 0.0), dark)
         assert most == pytest.approx(0.05 + 4.0 * hypot(EXCESS_SIGMA, LIGHT_SIGMA))
 
 
@@ -104,7 +105,7 @@ def test_without_light_of_the_earth_it_shows_its_excess_at_most():
 def test_a_cell_with_the_sun_behind_it_shows_the_earth_and_its_excess_at_most(light_shown, brighter):
     """The Earth as bright as the cells have shown it, yet not darker than by the table."""
     estimate = begun()
-    estimate = estimate._replace(parameters=estimate.parameters._replace(earth_light=(light_shown,)))
+    estimate = estimate._replace(parameters=replace(estimate.parameters, earth_light=(light_shown,)))
     for normal in CELLS.normals_body:
         view = 0.5 + 0.5 * np.dot(normal, rotate(Q_BODY_FROM_ECI, SEEN.e_eci))
         most = most_behind(estimate, normal, SEEN, CELLS)

@@ -14,6 +14,7 @@ from cell_samples import (
     begun,
     cell_filter,
 )
+from changed import changed
 
 from fsw.core.algebra.quaternion import from_small_rotation, multiply, normalise, rotate
 from fsw.core.algebra.vector import unit
@@ -24,7 +25,7 @@ from fsw.core.estimation.cells.update import update_cells
 from fsw.core.estimation.kalman import Cause, Trace
 from fsw.core.estimation.measurement import field_prediction
 from fsw.core.estimation.mekf_config import with_frozen_parameters
-from fsw.core.estimation.parameters import Prior, corrected_parameters
+from fsw.core.estimation.parameters import Prior, correct_parameters
 
 TURNED = {"mag_turn_rad": Prior((0.02, 0.03, 0.015), (0.0,) * 3), "mag_scale": Prior((0.01,) * 3, (0.0,) * 3)}
 CONFIG = cell_filter(**TURNED)
@@ -41,8 +42,11 @@ def told(q=Q_BODY_FROM_ECI):
     mixed = np.random.default_rng(8).normal(size=(size, size))
     sigma = np.sqrt(CONFIG.initial_covariance.diagonal())
     covariance = sigma[:, None] * (mixed @ mixed.T / size) * sigma
-    known = estimate.parameters._replace(
-        mag_bias_t=(2e-7, -3e-7, 4e-7), mag_turn_rad=(0.01, -0.02, 0.015), mag_scale=(0.004, -0.006, 0.003)
+    known = replace(
+        estimate.parameters,
+        mag_bias_t=(2e-7, -3e-7, 4e-7),
+        mag_turn_rad=(0.01, -0.02, 0.015),
+        mag_scale=(0.004, -0.006, 0.003),
     )
     return estimate._replace(parameters=known, covariance=covariance)
 
@@ -53,7 +57,7 @@ def added_to(estimate, error):
     return estimate._replace(
         q_body_from_eci=normalise(multiply(estimate.q_body_from_eci, from_small_rotation(turn))),
         omega_body_radps=tuple(np.add(estimate.omega_body_radps, rate)),
-        parameters=corrected_parameters(estimate.parameters, error, PARTS),
+        parameters=changed(estimate.parameters, correct_parameters, error, PARTS),
     )
 
 
@@ -198,7 +202,9 @@ class TestInformation:
             covariance[place, place] *= 1e-8
         right = mekf.start(Q_BODY_FROM_ECI, (0.0,) * 3, config)
         error = np.sqrt(covariance.diagonal()) * random.normal(size=places.size)
-        true = right._replace(parameters=corrected_parameters(right.parameters, error.tolist(), places))
+        true = right._replace(
+            parameters=changed(right.parameters, correct_parameters, error.tolist(), places)
+        )
         turn = from_small_rotation(tuple(radians(6.0) * random.normal() * field))
         q = normalise(multiply(Q_BODY_FROM_ECI, turn))
         return right._replace(q_body_from_eci=q, covariance=covariance), true, field

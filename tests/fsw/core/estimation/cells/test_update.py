@@ -18,6 +18,7 @@ from cell_samples import (
     cells_taken,
     shown,
 )
+from changed import changed
 
 from fsw.core.algebra.vector import norm
 from fsw.core.estimation import mekf
@@ -32,7 +33,7 @@ from fsw.core.estimation.cells.update import (
     taken,
 )
 from fsw.core.estimation.kalman import Cause, Trace
-from fsw.core.estimation.parameters import corrected_parameters
+from fsw.core.estimation.parameters import correct_parameters
 from fsw.core.packing import pack
 
 CONFIG = cell_filter()
@@ -140,7 +141,7 @@ class TestExcess:
         effect[parts.cells, 0], effect[parts.earth_light, 0] = (0.01, -0.02, 0.03, 0.01, -0.01, 0.02), 0.04
         effect[0:3, 0] = 1e-3
         traced = estimate._replace(trace=Trace((Cause(0, 0.0, 0.0),), effect, np.zeros((2, 2)), 0))
-        known = corrected_parameters(estimate.parameters, effect[:, 0].tolist(), parts)
+        known = changed(estimate.parameters, correct_parameters, effect[:, 0].tolist(), parts)
         before, wrong = faded(traced, CONFIG), faded(estimate._replace(parameters=known), CONFIG)
         left = correction(before, wrong, CONFIG)
         np.testing.assert_allclose(before.trace.effect[6:, 0], left[6:], rtol=1e-9, atol=1e-15)

@@ -26,8 +26,8 @@ TURNING = ["torque_body_nm", "dipole_body_am2", "coil_error", "inertia_error_kgm
 def strong(satellite, **changes):
     """An estimate whose every term is of order one; the inertia as in the table."""
     given = {"inertia_error_kgm2": UNCHANGED_INERTIA, **STRONG, **changes}
-    parameters = satellite.parameters._replace(
-        **{name: value for name, value in given.items() if name in satellite.carried}
+    parameters = replace(
+        satellite.parameters, **{name: value for name, value in given.items() if name in satellite.carried}
     )
     return satellite.estimate(parameters=parameters)._replace(omega_body_radps=RATE)
 
@@ -130,8 +130,8 @@ class TestTransition:
 
 class TestProcessNoise:
     def still(self, satellite):
-        parameters = satellite.parameters._replace(
-            torque_body_nm=ZERO, dipole_body_am2=ZERO, coil_error=UNCHANGED_COILS
+        parameters = replace(
+            satellite.parameters, torque_body_nm=ZERO, dipole_body_am2=ZERO, coil_error=UNCHANGED_COILS
         )
         size = satellite.size()
         still = satellite.estimate(np.zeros((size, size)), parameters)
@@ -206,7 +206,7 @@ class TestAgeAlongTheMotion:
         """With its own inertia, and a wheel: d(rotation, rate)/dt by differences of the motion."""
         satellite = replace(full, wheel_body_nms=(0.03, -0.02, 0.04))
         kept = {"torque_body_nm": ZERO, "dipole_body_am2": ZERO, "coil_error": UNCHANGED_COILS}
-        estimate = satellite.estimate(parameters=full.parameters._replace(**kept))
+        estimate = satellite.estimate(parameters=replace(full.parameters, **kept))
         ahead, behind = (nonlinear_flow(estimate, satellite, ZERO, ZERO, 0.0, dt) for dt in (1e-3, -1e-3))
         found = free_motion(estimate.omega_body_radps, estimate.parameters, satellite.config().rotor)
         by_differences = (satellite.error(estimate, ahead) - satellite.error(estimate, behind))[:6] / 2e-3

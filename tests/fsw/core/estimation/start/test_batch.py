@@ -5,23 +5,25 @@ from math import inf
 
 import pytest
 from cell_samples import REFERENCE, cell_filter
+from changed import changed
 
 from fsw.core.algebra.vector import ZERO, scale
 from fsw.core.estimation.start.batch import (
     AGAIN_S,
-    EMPTY,
     GAP_S,
     LEAST_S,
     MOST_S,
     SHORT_S,
     SPACING_S,
-    due,
-    kept,
+    SampleBatch,
+    discard_samples,
+    keep_sample,
+    pass_tick,
     rest,
-    waited,
+    search_due,
 )
 from fsw.core.estimation.start.batch_sample import UNKNOWN, BatchSample
-from fsw.core.estimation.start.first import StartLimits, from_batch
+from fsw.core.estimation.start.first import StartLimits, estimate_from_batch
 
 SUN = (0.6, -0.48, 0.64)
 
@@ -41,15 +43,39 @@ def sample(lit=1.0, coarse=None):
     )
 
 
+def begun(lit=1.0, coarse=None):
+    batch = SampleBatch()
+    keep_sample(batch, sample(lit, coarse))
+    return batch
+
+
 def filled(seconds, coarse=None, lit=1.0, tick_s=1.0):
-    batch = kept(EMPTY, sample(lit, coarse))
+    batch = begun(lit, coarse)
     for _ in range(round(seconds / tick_s)):
-        batch = kept(waited(batch, (0.1, 0.0, -0.2), tick_s), sample(lit, coarse))
+        pass_tick(batch, (0.1, 0.0, -0.2), tick_s)
+        keep_sample(batch, sample(lit, coarse))
     return batch
 
 
 def test_nothing_is_kept_before_the_first_sample():
-    assert waited(EMPTY, (1.0, 2.0, 3.0), 1.0) == EMPTY
+    batch = SampleBatch()
+    pass_tick(batch, (1.0, 2.0, 3.0), 1.0)
+    assert batch == SampleBatch()
+
+
+def test_discarded_samples_leave_nothing():
+    batch = filled(30.0)
+    batch.search = "under way"
+    discard_samples(batch)
+    assert batch == SampleBatch()
+
+
+def test_a_copy_goes_on_by_itself():
+    batch = filled(30.0)
+    before, copy = batch.copy(), batch.copy()
+    pass_tick(copy, (0.1, 0.2, 0.3), 10.0)
+    keep_sample(copy, sample())
+    assert batch == before != copy
 
 
 @pytest.mark.parametrize("tick_s", [1.0, 0.25, 7.0])
@@ -61,10 +87,10 @@ def test_a_sample_is_kept_when_it_is_due(tick_s):
 
 
 def test_the_dipole_of_a_leg_is_the_mean_of_what_was_driven():
-    batch = kept(EMPTY, sample())
+    batch = begun()
     for tick in range(20):
-        batch = waited(batch, (0.6, 0.0, -0.3) if tick < 5 else ZERO, 1.0)
-    batch = kept(batch, sample())
+        pass_tick(batch, (0.6, 0.0, -0.3) if tick < 5 else ZERO, 1.0)
+    keep_sample(batch, sample())
     assert batch.samples[1].m_body_am2 == pytest.approx((0.15, 0.0, -0.075))
     assert batch.driven_am2s == ZERO
 
@@ -72,9 +98,10 @@ def test_the_dipole_of_a_leg_is_the_mean_of_what_was_driven():
 def test_after_a_gap_it_begins_anew():
     batch = filled(100.0)
     for _ in range(round(GAP_S)):
-        batch = waited(batch, ZERO, 1.0)
+        pass_tick(batch, ZERO, 1.0)
     assert len(batch.samples) == 6
-    assert waited(batch, ZERO, 1.0) == EMPTY
+    pass_tick(batch, ZERO, 1.0)
+    assert batch == SampleBatch()
 
 
 def test_the_oldest_are_dropped():
@@ -82,19 +109,23 @@ def test_the_oldest_are_dropped():
 
 
 def test_while_a_search_is_under_way_none_is_dropped():
-    full = filled(MOST_S)
-    searched = kept(waited(full, ZERO, SPACING_S)._replace(search="under way"), sample())
-    assert searched.samples[:-1] == full.samples
-    assert searched.search == "under way"
-    ended = kept(waited(searched._replace(search=None), ZERO, SPACING_S), sample())
-    assert len(ended.samples) == len(full.samples)
+    batch = filled(MOST_S)
+    full, batch.search = batch.samples, "under way"
+    pass_tick(batch, ZERO, SPACING_S)
+    keep_sample(batch, sample())
+    assert batch.samples[:-1] == full
+    assert batch.search == "under way"
+    batch.search = None
+    pass_tick(batch, ZERO, SPACING_S)
+    keep_sample(batch, sample())
+    assert len(batch.samples) == len(full)
 
 
 def test_the_rest_is_what_was_driven_since_the_last_sample():
     batch = filled(40.0)
     assert rest(batch, ZERO, SUN, ZERO) is None
     for tick in range(8):
-        batch = waited(batch, (0.6, 0.0, -0.3) if tick < 2 else ZERO, 1.0)
+        pass_tick(batch, (0.6, 0.0, -0.3) if tick < 2 else ZERO, 1.0)
     since = rest(batch, (1e-5, 2e-5, 3e-5), SUN, (7e6, 0.0, 1e5))
     assert (since.since_s, since.b_eci_t, since.r_eci_m) == (8.0, (1e-5, 2e-5, 3e-5), (7e6, 0.0, 1e5))
     assert since.m_body_am2 == pytest.approx((0.15, 0.0, -0.075))
@@ -103,31 +134,32 @@ def test_the_rest_is_what_was_driven_since_the_last_sample():
 class TestDue:
     @pytest.mark.parametrize(("coarse", "least_s"), [(None, LEAST_S), (SUN, SHORT_S)])
     def test_with_three_lit_cells_sooner(self, coarse, least_s):
-        assert not due(filled(least_s - SPACING_S, coarse))
-        assert due(filled(least_s, coarse))
+        assert not search_due(filled(least_s - SPACING_S, coarse))
+        assert search_due(filled(least_s, coarse))
 
     def test_one_sample_without_three_lit_cells_makes_it_the_long_one(self):
         batch = filled(SHORT_S, SUN)
-        changed = batch.samples[2]._replace(coarse=None)
-        batch = batch._replace(samples=(*batch.samples[:2], changed, *batch.samples[3:]))
-        assert not due(batch)
+        without = replace(batch.samples[2], coarse=None)
+        batch.samples = (*batch.samples[:2], without, *batch.samples[3:])
+        assert not search_due(batch)
 
     def test_only_with_a_sample_just_kept(self):
-        assert not due(waited(filled(LEAST_S), ZERO, 1.0))
-        assert not due(EMPTY)
+        assert not search_due(changed(filled(LEAST_S), pass_tick, ZERO, 1.0))
+        assert not search_due(SampleBatch())
 
     def test_not_while_a_search_is_under_way(self):
-        assert not due(filled(LEAST_S)._replace(search="under way"))
+        assert not search_due(replace(filled(LEAST_S), search="under way"))
 
     def test_not_in_the_shadow(self):
-        assert not due(filled(LEAST_S, lit=0.0))
+        assert not search_due(filled(LEAST_S, lit=0.0))
 
     def test_again_after_a_while(self):
-        batch = filled(LEAST_S)._replace(searched_s=0.0)
-        for _ in range(round(AGAIN_S) - 1):
-            batch = kept(waited(batch, ZERO, 1.0), sample())
-            assert not due(batch)
-        assert due(kept(waited(batch, ZERO, 1.0), sample()))
+        batch = replace(filled(LEAST_S), searched_s=0.0)
+        for second in range(round(AGAIN_S)):
+            assert second == 0 or not search_due(batch)
+            pass_tick(batch, ZERO, 1.0)
+            keep_sample(batch, sample())
+        assert search_due(batch)
 
 
 @pytest.mark.parametrize("tick_hz", [1, 3, 5, 7, 10, 20])
@@ -136,20 +168,22 @@ class TestTicks:
 
     @pytest.mark.parametrize(("coarse", "at_s"), [(SUN, [100, 200, 300, 400]), (None, [400, 500, 600, 700])])
     def test_searches_begin_when_they_are_due(self, tick_hz, coarse, at_s):
-        batch, begun = kept(EMPTY, sample(coarse=coarse)), []
+        batch, searches = begun(coarse=coarse), []
         for tick in range(1, 750 * tick_hz):
-            batch = kept(waited(batch, ZERO, 1.0 / tick_hz), sample(coarse=coarse))
-            if due(batch):
-                begun.append(tick)
-                batch = batch._replace(searched_s=0.0)
-        assert begun[:4] == [one * tick_hz for one in at_s]
+            pass_tick(batch, ZERO, 1.0 / tick_hz)
+            keep_sample(batch, sample(coarse=coarse))
+            if search_due(batch):
+                searches.append(tick)
+                batch.searched_s = 0.0
+        assert searches[:4] == [one * tick_hz for one in at_s]
 
     def test_a_batch_ends_after_the_gap_and_not_before(self, tick_hz):
-        batch = kept(EMPTY, sample())
+        batch = begun()
         for _ in range(round(GAP_S * tick_hz)):
-            batch = waited(batch, ZERO, 1.0 / tick_hz)
+            pass_tick(batch, ZERO, 1.0 / tick_hz)
         assert batch.samples
-        assert waited(batch, ZERO, 1.0 / tick_hz) == EMPTY
+        pass_tick(batch, ZERO, 1.0 / tick_hz)
+        assert batch == SampleBatch()
 
 
 def test_every_number_of_a_batch_counts(blind_places):
@@ -165,7 +199,9 @@ class TestSample:
 
     def taken(self, field, reference=REFERENCE, currents=CURRENTS):
         limits = StartLimits(3e-6, inf, 0.0)
-        return from_batch(EMPTY, field, currents, reference, limits, cell_filter())[0].samples
+        batch = SampleBatch()
+        assert estimate_from_batch(batch, field, currents, reference, limits, cell_filter()) is None
+        return batch.samples
 
     @pytest.mark.parametrize(("part", "count"), [(0.9, 0), (0.95, 1), (1.05, 1), (1.1, 0)])
     def test_of_a_field_that_is_neither_too_weak_nor_too_strong(self, part, count):

@@ -37,12 +37,12 @@ def test_cost_gradient_and_normal_equations_are_those_of_the_residuals():
     values, weights = measured(sample, MODEL)
 
     def left(changed):
-        seen = expected(*changed, sample, MODEL).values
+        seen = expected(changed, sample, MODEL).values
         return np.hstack(((seen - values) * weights, changed.numbers[:, 3:] / MODEL.prior[6:]))
 
     going = varied(motions, MODEL)
     begun = at_priors(motions, MODEL, len(going.q))
-    found = add_sample(begun, motions, expected(*going, sample, MODEL), sample, MODEL)
+    found = add_sample(begun, motions, expected(going, sample, MODEL), sample, MODEL)
     np.testing.assert_allclose(found.costs, 0.5 * (left(motions) ** 2).sum(axis=1))
     assert found.measured.tolist() == [8.0] * 3
     slopes = np.zeros((3, len(values) + SIZE - 6, SIZE))
@@ -65,7 +65,7 @@ def test_without_varied_motions_there_is_only_the_cost():
     sample, motions = flight(*STARTS[0], 1)[0][0], of_motions(2)
     alone, all_of_it = (
         add_sample(
-            at_priors(motions, MODEL, len(going.q)), motions, expected(*going, sample, MODEL), sample, MODEL
+            at_priors(motions, MODEL, len(going.q)), motions, expected(going, sample, MODEL), sample, MODEL
         )
         for going in (motions, varied(motions, MODEL))
     )

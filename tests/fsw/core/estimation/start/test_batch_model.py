@@ -1,5 +1,6 @@
 """What a batch makes of the table, and what a motion shows: as the filter has it, and written out again."""
 
+from dataclasses import replace
 from math import hypot
 
 import numpy as np
@@ -33,12 +34,12 @@ NUMBERS = np.array([(*OMEGA, *[0.0] * 12, *BIAS, *EXCESS, *GAIN, LIGHT)])
 
 
 def shown(numbers=NUMBERS, q=Q):
-    return expected(np.array([q]), numbers, SAMPLES[0], MODEL)
+    return expected(Motions(np.array([q]), numbers), SAMPLES[0], MODEL)
 
 
 def test_between_two_samples_acts_what_is_in_their_middle_and_was_driven_up_to_the_later():
-    before, after = SAMPLES[0], SAMPLES[1]._replace(since_s=23.0)
-    before = before._replace(r_eci_m=(6.6e6, 0.4e6, -2.0e6), m_body_am2=(1.0, 2.0, 3.0))
+    before, after = SAMPLES[0], replace(SAMPLES[1], since_s=23.0)
+    before = replace(before, r_eci_m=(6.6e6, 0.4e6, -2.0e6), m_body_am2=(1.0, 2.0, 3.0))
     found = leg(before, after)
     middle = 0.5 * (np.array(before.r_eci_m) + np.array(after.r_eci_m))
     assert found.length_s == 23.0
@@ -63,7 +64,7 @@ def test_a_part_of_bias_and_of_all_that_a_cell_is_wrong_by_is_noise_of_each_samp
 def test_a_motion_shows_what_the_filter_predicts(q):
     found = shown(q=q).values[0]
     estimate = mekf.start(q, OMEGA, CONFIG)
-    known = estimate.parameters._replace(delay_s=(0.0, 0.0), cell_gain=GAIN, earth_light=(LIGHT,))
+    known = replace(estimate.parameters, delay_s=(0.0, 0.0), cell_gain=GAIN, earth_light=(LIGHT,))
     estimate = estimate._replace(parameters=known)
     seen = light(SAMPLES[0].r_eci_m, SAMPLES[0].s_eci, CELLS.albedo)
     cells = [prediction(estimate, cell, seen, CONFIG, CELLS)[0] + EXCESS[cell] for cell in range(6)]
@@ -83,7 +84,7 @@ def test_the_slopes_by_what_shows_at_once_are_its_differences():
 class TestStarts:
     """Rotations about the field, each with rates that carry it to where it is seen next."""
 
-    FIRST = SAMPLES[0]._replace(coarse=None)
+    FIRST = replace(SAMPLES[0], coarse=None)
     SECOND = SAMPLES[1]
 
     def checked(self, first, second, count):
@@ -108,13 +109,13 @@ class TestStarts:
         assert apart.max() < 0.999
 
     def test_with_the_sun_along_the_field_too(self):
-        first = self.FIRST._replace(s_eci=unit(self.FIRST.b_eci_t))
+        first = replace(self.FIRST, s_eci=unit(self.FIRST.b_eci_t))
         attitudes = self.checked(first, self.SECOND, TURNS * len(RATES_DEGPS))
         assert np.abs(np.linalg.norm(attitudes, axis=1) - 1.0).max() < 1e-12
         ups = np.array([rotate(tuple(q), unit(first.r_eci_m)) for q in attitudes[:: len(RATES_DEGPS)]])
         assert (ups @ ups.T - np.eye(TURNS)).max() < 0.999
 
     def test_with_three_the_one_that_they_show(self):
-        first = SAMPLES[0]._replace(coarse=rotate(Q, SAMPLES[0].s_eci))
+        first = replace(SAMPLES[0], coarse=rotate(Q, SAMPLES[0].s_eci))
         attitude = self.checked(first, self.SECOND, len(RATES_DEGPS))[0]
         assert norm(cross(rotate(tuple(attitude), first.s_eci), first.coarse)) < 0.02

@@ -4,7 +4,7 @@ import numpy as np
 
 from fsw.core.estimation.start.batch_fit import Equations
 from fsw.core.estimation.start.batch_model import Motions
-from fsw.core.estimation.start.best import BOLDER, FIRST_DAMPING, MORE_CAREFUL, improved
+from fsw.core.estimation.start.best import BOLDER, FIRST_DAMPING, MORE_CAREFUL, better_of
 
 
 def passed(first, costs):
@@ -17,15 +17,15 @@ def passed(first, costs):
 
 def test_the_first_are_the_best():
     motions, equations, ends = passed(0.0, [3.0, 1.0, 2.0])
-    best = improved(motions, equations, ends, None)
+    best = better_of(motions, equations, ends, None)
     assert (best.motions, best.equations) == (motions, equations)
     np.testing.assert_array_equal(best.damping, FIRST_DAMPING)
 
 
 def test_each_is_kept_or_replaced_by_itself():
-    before = improved(*passed(0.0, [3.0, 1.0, np.nan]), None)
+    before = better_of(*passed(0.0, [3.0, 1.0, np.nan]), None)
     now = passed(100.0, [2.0, 1.5, 2.0])
-    best = improved(*now, before)
+    best = better_of(*now, before)
     np.testing.assert_array_equal(best.equations.costs, [2.0, 1.0, np.nan])
     for kept, old, new in (
         (best.motions.q, before.motions.q, now[0].q),

@@ -104,9 +104,9 @@ class TestFast:
         """One just above the limit beside one just below: the difference is that of the motions alone."""
         rate = STEP_RAD / 20.0
         q, turning = Q[[0, 0]], np.array([[0.0, 0.0, 0.99999 * rate], [0.0, 0.0, 1.00001 * rate]])
-        of_two = Disturbed(*[each[:2] for each in self.DISTURBED])
+        of_two = self.DISTURBED.chosen(slice(2))
         ends, _ = flown(q, turning, leg(20.0), of_two, self.ROTOR, alike=1)
-        first, _ = flown(q[:1], turning[:1], leg(20.0), Disturbed(*[each[:1] for each in of_two]), self.ROTOR)
+        first, _ = flown(q[:1], turning[:1], leg(20.0), of_two.chosen(slice(1)), self.ROTOR)
         np.testing.assert_array_equal(ends[0], first[0])
         moved = 2.0 * np.linalg.norm(ends[1] - ends[0])
         assert moved == pytest.approx(20.0 * (turning[1, 2] - turning[0, 2]), rel=0.1)

@@ -13,15 +13,15 @@ from scipy.optimize import least_squares
 from fsw.core.algebra.quaternion import conjugate, multiply
 from fsw.core.algebra.vector import norm
 from fsw.core.estimation.cells.cell_set import light
-from fsw.core.estimation.mekf import Estimate, healthy, start
+from fsw.core.estimation.mekf import healthy, start
 from fsw.core.estimation.start import first as first_module
 from fsw.core.estimation.start import search as search_module
-from fsw.core.estimation.start.batch import EMPTY, SPACING_S, waited
+from fsw.core.estimation.start.batch import SPACING_S, SampleBatch, pass_tick
 from fsw.core.estimation.start.batch_model import Motions, disturbances, expected, leg, measured, model_of
 from fsw.core.estimation.start.batch_sample import UNKNOWN
-from fsw.core.estimation.start.first import StartLimits, from_batch, linear
+from fsw.core.estimation.start.first import StartLimits, estimate_from_batch, linear
 from fsw.core.estimation.start.motions import flown, in_body
-from fsw.core.estimation.start.search import IMPROVED, PIECES, MotionSearch, Stage, begun, worked
+from fsw.core.estimation.start.search import IMPROVED, PIECES, Stage, start_search, work
 from fsw.core.packing import pack
 from sim.faults.node_kinds import count_doubles, flip
 
@@ -38,12 +38,18 @@ def error(estimate, q, omega):
     return np.concatenate((2.0 * turn[1:], omega - np.array(estimate.omega_body_radps)))
 
 
-def fitted(samples):
-    """The whole search at once."""
-    search = begun(samples, MODEL)
-    while isinstance(search, MotionSearch):
-        search = worked(search, samples, None, MODEL)
-    return search
+def end_of(search, samples, model=MODEL):
+    """What a search ends in, all at once."""
+    estimate = None
+    while search.stage is not Stage.ENDED:
+        assert estimate is None
+        estimate = work(search, samples, None, model)
+    return estimate
+
+
+def fitted(samples, model=MODEL):
+    """What a search over these samples ends in."""
+    return end_of(start_search(samples, model), samples, model)
 
 
 @pytest.mark.parametrize(("q", "omega"), STARTS)
@@ -77,8 +83,9 @@ def test_what_fits_no_motion_is_not_believed():
     """Cells 1 and 3 connected crosswise."""
     samples, _, _ = flight(*STARTS[0], 25)
     crossed = [
-        sample._replace(
-            currents=(*sample.currents[2:3], sample.currents[1], sample.currents[0], *sample.currents[3:])
+        replace(
+            sample,
+            currents=(*sample.currents[2:3], sample.currents[1], sample.currents[0], *sample.currents[3:]),
         )
         for sample in samples
     ]
@@ -93,19 +100,14 @@ class TestSettled:
         best = self.carried(samples)
         turn = np.zeros((1, MODEL.prior.size))
         turn[0, 0:3] = np.radians(away) / np.sqrt(3.0)
-        search = search_module._passing(
-            Stage.CARRY, len(samples), 0, best.motions.changed(turn), samples[0], MODEL
-        )
-        count = 0
-        while isinstance(search, MotionSearch):
-            search, before = worked(search, samples, None, MODEL), search
-            count += not isinstance(search, MotionSearch) or search.steps > before.steps
-        return search, count
+        search = best.copy()
+        search_module._pass_again(search, Stage.CARRY, best.motions.changed(turn), samples[0], MODEL)
+        return end_of(search, samples), search.steps + 1
 
     def carried(self, samples):
-        search = begun(samples, MODEL)
+        search = start_search(samples, MODEL)
         while search.stage is not Stage.CARRY:
-            search = worked(search, samples, None, MODEL)
+            work(search, samples, None, MODEL)
         return search
 
     def test_a_motion_that_is_not_the_best_goes_through_the_samples_again(self):
@@ -152,13 +154,11 @@ def test_what_it_finds_of_the_cells_is_nearer_to_the_truth_than_the_table():
 def test_fewer_cells_than_there_may_be_leave_the_others_as_they_were():
     few = replace(CELLS, normals_body=CELLS.normals_body[:5], full_sun=CELLS.full_sun[:5], shades=((),) * 5)
     samples, _, _ = flight(*STARTS[0], 25)
-    samples = tuple([sample._replace(currents=sample.currents[:5]) for sample in samples])
-    search = begun(samples, model := model_of(cell_filter(few, **MOVING_PRIORS), few))
-    while isinstance(search, MotionSearch):
-        search = worked(search, samples, None, model)
-    assert len(search.parameters.cell_excess) == len(search.parameters.cell_gain) == 6
-    assert search.parameters.cell_excess[5] == search.parameters.cell_gain[5] == 0.0
-    assert all(search.parameters.cell_excess[:5])
+    samples = tuple([replace(sample, currents=sample.currents[:5]) for sample in samples])
+    known = fitted(samples, model_of(cell_filter(few, **MOVING_PRIORS), few)).parameters
+    assert len(known.cell_excess) == len(known.cell_gain) == 6
+    assert known.cell_excess[5] == known.cell_gain[5] == 0.0
+    assert all(known.cell_excess[:5])
 
 
 @pytest.mark.parametrize(("q", "omega"), STARTS)
@@ -199,7 +199,7 @@ class TestLinear:
 @pytest.mark.parametrize("bad", [float("nan"), 1e300])
 def test_damaged_samples_give_none(bad):
     samples, _, _ = flight(*STARTS[0], 25)
-    broken = samples[4]._replace(field_t=(bad, 0.0, 0.0))
+    broken = replace(samples[4], field_t=(bad, 0.0, 0.0))
     assert fitted((*samples[:4], broken, *samples[5:])) is None
 
 
@@ -213,7 +213,7 @@ def left_over(numbers, q, samples):
             after = leg(samples[number - 1], sample)
             q, omega = flown(q, omega, after, disturbances(motions), CONFIG.rotor)
         values, weights = measured(sample, MODEL)
-        parts.append((expected(q, motions.numbers, sample, MODEL).values - values) * weights)
+        parts.append((expected(Motions(q, motions.numbers), sample, MODEL).values - values) * weights)
     return np.hstack((*parts, motions.numbers[:, 3:] / MODEL.prior[6:])), q[0], omega[0]
 
 
@@ -250,10 +250,10 @@ def ticks_of(samples):
 
 def started(samples, after_tick=lambda batch: None):
     """By single ticks, over each of which a dipole is driven: the batch, and the estimate that it gives."""
-    batch = EMPTY
+    batch = SampleBatch()
     for field, currents, reference in ticks_of(samples):
-        batch = waited(batch, MOVED_AM2, 1.0)
-        batch, estimate = from_batch(batch, field, currents, reference, LIMITS, CONFIG)
+        pass_tick(batch, MOVED_AM2, 1.0)
+        estimate = estimate_from_batch(batch, field, currents, reference, LIMITS, CONFIG)
         after_tick(batch)
         if estimate is not None:
             return batch, estimate
@@ -270,7 +270,7 @@ def samples():
 def batches(samples):
     """The batch after each tick."""
     found = []
-    started(samples, found.append)
+    started(samples, lambda batch: found.append(batch.copy()))
     return found
 
 
@@ -289,11 +289,9 @@ class TestByTicks:
         batch, estimate = started(samples)
         searched = next(one.search.searched for one in batches if one.search)
         assert searched < len(batch.samples)
-        search = begun(batch.samples[:searched], MODEL)
-        while isinstance(search, MotionSearch):
-            search = worked(search, batch.samples, None, MODEL)
-        sigmas = np.sqrt(search.covariance.diagonal()[0:6])
-        there = error(search, estimate.q_body_from_eci, np.array(estimate.omega_body_radps))
+        at_once = end_of(start_search(batch.samples[:searched], MODEL), batch.samples)
+        sigmas = np.sqrt(at_once.covariance.diagonal()[0:6])
+        there = error(at_once, estimate.q_body_from_eci, np.array(estimate.omega_body_radps))
         assert (abs(there) / sigmas).max() < 0.01  # the first steps were with fewer samples
         np.testing.assert_allclose(np.sqrt(estimate.covariance.diagonal()[0:6]), sigmas, rtol=0.01)
 
@@ -313,7 +311,7 @@ class TestByTicks:
         assert sum(tick > 0 for tick in by_tick) > 60
         begins = [one != other for one, other in zip(passes[1:], passes, strict=False)]
         assert all(by_tick[1:][begins] <= PIECES)
-        assert {one[0] for one in passes if one} == set(Stage)
+        assert {one[0] for one in passes if one} == set(Stage) - {Stage.ENDED}
 
     def test_an_estimate_too_uncertain_for_the_filter_is_left_for_more_samples(self, samples, monkeypatch):
         asked = []
@@ -336,18 +334,17 @@ class TestByTicks:
         assert len(batch.samples) < 30
 
     def test_a_gap_ends_it(self, batches):
-        batch = next(one for one in batches if one.search)
+        batch = next(one for one in batches if one.search).copy()
         for _ in range(61):
-            batch = waited(batch, MOVED_AM2, 1.0)
-        assert batch == EMPTY
+            pass_tick(batch, MOVED_AM2, 1.0)
+        assert batch == SampleBatch()
 
     def test_it_goes_on_without_samples_but_starts_nothing_without(self, samples, batches):
-        batch = next(one for one in reversed(batches) if one.search)
+        batch = next(one for one in reversed(batches) if one.search).copy()
         assert batch.search.stage is Stage.CARRY
         reference = list(ticks_of(samples))[-1][2]
         for _ in range(30):
-            batch, estimate = from_batch(batch, None, (), reference, LIMITS, CONFIG)
-            assert estimate is None
+            assert estimate_from_batch(batch, None, (), reference, LIMITS, CONFIG) is None
         assert batch.search.at == len(batch.samples) - 1
 
     def test_every_number_counts(self, batches):
@@ -361,10 +358,8 @@ class TestByTicks:
     def test_a_flipped_bit_ends_in_an_estimate_that_is_one_or_none(self, batches):
         batch = next(one for one in batches if one.search and one.search.steps == 12)
         for number in range(0, 64 * count_doubles(batch.search), 64 * 3001 + 13):
-            ended = flip(batch.search, *divmod(number, 64))
-            while isinstance(ended, MotionSearch):
-                ended = worked(ended, batch.samples, None, MODEL)
-            assert ended is None or (isinstance(ended, Estimate) and healthy(ended))
+            ended = end_of(flip(batch.search, *divmod(number, 64)), batch.samples)
+            assert ended is None or healthy(ended)
 
 
 def noted(legs, q, *others):

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from changed import changed
 from flight_states import altered, stepped
 
 from fsw.core.estimation.estimator import restart
-from fsw.core.estimation.start.batch import EMPTY
+from fsw.core.estimation.start.batch import SampleBatch
 from fsw.core.packing import checksum, copy_state, pack
 from fsw.core.restart import begin_count
 from fsw.core.state import Inbox
@@ -67,8 +68,8 @@ def test_a_new_count_of_ticks_and_a_restart_of_the_filter_end_it(searching):
     config, state, _ = searching
     again = copy_state(state)
     begin_count(again, 7, config)
-    assert again.estimator.batch == EMPTY
-    assert restart(state.estimator).batch == EMPTY
+    assert again.estimator.batch == SampleBatch()
+    assert changed(state.estimator, restart).batch == SampleBatch()
 
 
 def test_the_step_is_pure(searching):

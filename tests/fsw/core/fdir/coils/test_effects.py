@@ -51,7 +51,7 @@ def test_the_carried_effect_is_what_a_second_filter_shows_that_knew_of_it():
 
 @pytest.mark.parametrize(("level", "torque_nm", "ratio"), [(2, 0.0, 0.0), (2, 3e-6, 0.833), (3, 3e-6, 0.417)])
 def test_a_pulse_proves_little_beside_a_torque_that_does_as_much_by_the_next(level, torque_nm, ratio):
-    pushed = START._replace(parameters=START.parameters._replace(torque_body_nm=(0.0, torque_nm, 0.0)))
+    pushed = START._replace(parameters=replace(START.parameters, torque_body_nm=(0.0, torque_nm, 0.0)))
     across = rotate(conjugate(START.q_body_from_eci), (0.0, 0.0, 3e-5))
     cause = traced(pushed, Pulse(1, level), across).trace.causes[0]
     assert cause.uncertain == pytest.approx(hypot(0.05, ratio), rel=1e-3)
@@ -61,7 +61,7 @@ def test_a_pulse_proves_little_beside_a_torque_that_does_as_much_by_the_next(lev
 
 
 def test_a_torque_acts_until_the_next_pulse_whatever_the_length_of_a_tick():
-    pushed = START._replace(parameters=START.parameters._replace(torque_body_nm=(0.0, 3e-6, 0.0)))
+    pushed = START._replace(parameters=replace(START.parameters, torque_body_nm=(0.0, 3e-6, 0.0)))
     across = rotate(conjugate(START.q_body_from_eci), (0.0, 0.0, 3e-5))
     short = replace(PULSES_1_HZ, pulse_ticks=30, backoff_ticks=1000, tick_s=0.1)
     causes = [
@@ -74,7 +74,7 @@ def test_a_torque_acts_until_the_next_pulse_whatever_the_length_of_a_tick():
 @pytest.mark.parametrize(("coil", "part"), [(0, 1.1), (1, 0.6), (2, 1.3)])
 def test_what_is_taken_for_its_effect_is_by_the_gain_that_the_filter_has_of_its_coil(coil, part):
     errors = (0.1, 0.02, 0.03, 0.04, -0.4, 0.06, 0.07, 0.08, 0.3)
-    known = START._replace(parameters=START.parameters._replace(coil_error=errors))
+    known = START._replace(parameters=replace(START.parameters, coil_error=errors))
     cause = traced(known, Pulse(coil, 3)).trace.causes[0]
     assert cause[:2] == (coil, pytest.approx(part))
 
@@ -85,7 +85,7 @@ WITH_INERTIA = tuned(**QUIET, inertia_error_kgm2=Prior((0.06, 0.1, 0.08, 0.02, 0
 
 def with_inertia(*error_kgm2):
     estimate = mekf.start(START.q_body_from_eci, START.omega_body_radps, WITH_INERTIA)
-    return estimate._replace(parameters=estimate.parameters._replace(inertia_error_kgm2=error_kgm2))
+    return estimate._replace(parameters=replace(estimate.parameters, inertia_error_kgm2=error_kgm2))
 
 
 @pytest.mark.parametrize("beyond", [(0.0, 0.0, 0.0), (0.2, -0.3, 0.1), (-0.25, 0.25, 0.0)])

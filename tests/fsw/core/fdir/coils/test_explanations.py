@@ -1,5 +1,7 @@
 """Which coil a solution isolates: by how much, how surely, and never one of two that look alike."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from estimator_samples import tuned
@@ -210,7 +212,7 @@ class TestGain:
             errors = [0.01] * 9
             errors[4 * coil] = gain
             estimate = mekf.start((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), config)
-            parameters = estimate.parameters._replace(coil_error=tuple(errors))
+            parameters = replace(estimate.parameters, coil_error=tuple(errors))
             return estimate._replace(parameters=parameters), config
 
         return make

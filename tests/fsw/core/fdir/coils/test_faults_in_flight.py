@@ -1,5 +1,6 @@
 """Coil faults in closed loop: named by current or by what pulses do, left out, SAFE where one is stuck."""
 
+from dataclasses import replace
 from math import acos, degrees
 
 import pytest
@@ -106,7 +107,7 @@ def teach(world, coil, error, sigma):
     errors[4 * coil], place = error, layout.coils.start + 4 * coil
     covariance[place, :] = covariance[:, place] = 0.0
     covariance[place, place] = sigma**2
-    parameters = state.estimate.parameters._replace(coil_error=tuple(errors))
+    parameters = replace(state.estimate.parameters, coil_error=tuple(errors))
     taught = state.estimate._replace(parameters=parameters, covariance=covariance, trace=None)
     world.state = altered(world.state, estimator=state._replace(estimate=taught))
 

@@ -1,6 +1,9 @@
 """A coil that was isolated is tried again: what has passed is believed, what has not, one pulse finds."""
 
+from dataclasses import replace
+
 import pytest
+from changed import changed
 from flight_states import altered
 
 from fsw.core.estimation.loaded import load
@@ -97,17 +100,18 @@ class TestTime:
     @pytest.mark.parametrize("fault", TRIED)
     def test_the_coil_comes_back_when_it_is_over_and_half_of_the_evidence_stays(self, world, config, fault):
         health, estimator = CoilHealth((0, 0, fault), until_retest=(7, 9, 2)), world.state.estimator
-        health, same = retest(health, estimator, True, config)
-        assert (health.faults, health.until_retest, same) == ((0, 0, fault), (6, 8, 1), estimator)
-        health, other = retest(health, estimator, True, config)
+        before = estimator.copy()
+        health = retest(health, estimator, True, config)
+        assert (health.faults, health.until_retest, estimator) == ((0, 0, fault), (6, 8, 1), before)
+        health = retest(health, estimator, True, config)
         half = (0.0, 0.0, 0.5 * config.weak.threshold)
         older = (NOTHING_OLDER, NOTHING_OLDER, Older(kept=0.5 * config.weak.threshold))
         assert (health.faults, health.nats, health.older) == ((0, 0, 0), half, older)
-        assert other.estimate.trace is None
+        assert estimator.estimate.trace is None
 
     def test_not_while_the_estimate_could_not_tell(self, world, config):
         health = CoilHealth((CoilFault.WEAK, 0, 0))
-        assert retest(health, world.state.estimator, False, config)[0] == health
+        assert retest(health, world.state.estimator, False, config) == health
 
 
 def test_what_the_filter_has_learnt_of_its_gain_is_forgotten(make_world):
@@ -116,20 +120,22 @@ def test_what_the_filter_has_learnt_of_its_gain_is_forgotten(make_world):
     config, state = world.config.fdir.coils, world.state.estimator
     place = config.mekf.layout.coils.start
     errors = (0.01, 0.0, 0.0, 0.0, -0.4, 0.0, 0.0, 0.0, 0.02)
-    parameters = state.estimate.parameters._replace(coil_error=errors)
-    learnt = state._replace(estimate=state.estimate._replace(parameters=parameters))
-    _, after = retest(CoilHealth((0, CoilFault.WEAK, 0)), learnt, True, config)
+    parameters = replace(state.estimate.parameters, coil_error=errors)
+    learnt = replace(state, estimate=state.estimate._replace(parameters=parameters))
+    after = learnt.copy()
+    retest(CoilHealth((0, CoilFault.WEAK, 0)), after, True, config)
     assert after.estimate.parameters.coil_error == (0.01, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.02)
     variances = after.estimate.covariance.diagonal()[place : place + 9 : 4]
     prior = config.mekf.initial_covariance[place + 4, place + 4]
     assert variances[1] == prior
     assert variances[0] < prior
     assert after.first is None, "the next start is that of any filter"
-    given = load(learnt, GAINS[1], 0.03, config.mekf)
-    _, again = retest(CoilHealth((0, CoilFault.WEAK, 0)), given, True, config)
+    given = changed(learnt, load, GAINS[1], 0.03, config.mekf)
+    again = given.copy()
+    retest(CoilHealth((0, CoilFault.WEAK, 0)), again, True, config)
     assert again.estimate.parameters.coil_error[4] == 0.03, "what the ground has set stays"
     assert (again.first, again.loaded) == (given.first, (GAINS[1],))
-    frozen = learnt._replace(frozen=True)
-    _, kept = retest(CoilHealth((0, CoilFault.WEAK, 0)), frozen, True, config)
+    kept = replace(learnt, frozen=True)
+    retest(CoilHealth((0, CoilFault.WEAK, 0)), kept, True, config)
     assert kept.estimate.parameters.coil_error == errors
     assert len(set(GAINS)) == 3

@@ -21,7 +21,7 @@ LIMITS = CoilHealthConfig((40.0, 120.0, 400.0), WEAK, 1.0, 5, PULSES, CONFIG, 30
 def judged(estimate, believed=WEAK_COIL, health=HEALTH):
     """The health when the next pulse is due."""
     view, state = CoilView(fired_tick=1000 - EVERY), EstimatorState(estimate)
-    return judge_effect(health, view, REFERENCE, state, 1000, believed, False, LIMITS)
+    return judge_effect(health, view, REFERENCE, state, 1000, believed, False, LIMITS), state
 
 
 @pytest.mark.parametrize(
@@ -97,7 +97,8 @@ ENDED = CoilView(fired_tick=1000 - PULSE_S, fired=Pulse(2, -3), driven_coil=2, d
 
 def ended(view=ENDED, estimate=START, health=HEALTH):
     """Health and state of the estimator at the end of a pulse."""
-    return judge_effect(health, view, REFERENCE, EstimatorState(estimate), 1000, WEAK_COIL, False, LIMITS)
+    state = EstimatorState(estimate)
+    return judge_effect(health, view, REFERENCE, state, 1000, WEAK_COIL, False, LIMITS), state
 
 
 def test_a_pulse_that_ends_is_traced_with_the_gravity_of_its_orbit(monkeypatch):
@@ -171,7 +172,7 @@ def test_a_stray_current_is_traced_from_its_first_tick_on_through_all_that_follo
     lengths = []
     for tick in range(1000, 1004):
         view, state = CoilView(fired_tick=tick - PULSE_S - 1), EstimatorState(estimate)
-        _, state = judge_effect(health, view, REFERENCE, state, tick, WEAK_COIL, False, LIMITS)
+        judge_effect(health, view, REFERENCE, state, tick, WEAK_COIL, False, LIMITS)
         estimate, health = state.estimate, health._replace(strange_ticks=health.strange_ticks + 1)
         first = torques.stray.kicks_radps(LEVEL_AM2, LIMITS.stray_axes, estimate, B_ECI_T, CONFIG)[0]
         lengths.append(float(estimate.trace.effect[3, 0] / first[0]))
