@@ -33,7 +33,9 @@ def test_the_mode_diagram_has_every_mode_and_transition_of_the_table(draw):
     assert {mode.name for mode in Mode} <= set(shown)
     conditions = [text.partition(" for ")[0].replace(" ", "_") for text in shown]
     for row in TABLE:
-        assert conditions.count(row.condition) == sum(other.condition == row.condition for other in TABLE)
+        assert conditions.count(row.condition.name.lower()) == sum(
+            other.condition == row.condition for other in TABLE
+        )
     assert len(arrows(draw.modes())) == len({(row.source, row.target) for row in TABLE})
 
 

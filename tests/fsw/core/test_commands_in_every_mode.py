@@ -77,7 +77,7 @@ def obey(flight, mode, *telecommands):
     state = altered(state, attitude=attitude, modes=ModeState(mode, state.tick))
     sent = tuple(message.encode() for message in telecommands)
     said = []
-    for inbox in (inboxes[0]._replace(frames=(*sent, *inboxes[0].frames)), *inboxes[1:]):
+    for inbox in (inboxes[0].replace(frames=(*sent, *inboxes[0].frames)), *inboxes[1:]):
         state, outbox = stepped(state, inbox, config)
         said += [CLASSES[frame.can_id].decode(frame.data) for frame in outbox]
     assert state.tick == inboxes[-1].tick

@@ -12,6 +12,7 @@ import pytest
 from fsw.core.laws.table import LAWS, OWN_NUMBER
 from fsw.core.orbit.elements import RANGES, Elements
 from fsw.core.orbit.propagation import element_orbit, sgp4_orbit, state_eci
+from fsw.core.packing import copy_state
 from fsw.input.schema import TableError
 from fsw.node import FlightNode
 from fsw.table.config import flight_config
@@ -248,7 +249,7 @@ class TestFlight:
 
     def test_it_replays_to_the_last_bit(self, entries, refly):
         states = {}
-        shown = refly(entries, lambda state: states.update({state.tick: state}))
+        shown = refly(entries, lambda state: states.update({state.tick: copy_state(state)}))
         assert shown.bit_exact
         assert shown.ended
         assert shown.ticks == TICKS
