@@ -26,7 +26,7 @@ from sim.flight.fsw_answers import (
 )
 from sim.plant.plant import Plant
 from sim.plant.truth_row import TruthRow
-from sim.record.inbox_order import split_at_sync
+from sim.record.inbox_order import has_from_ground, split_at_sync
 from sim.record.pace import LOCKSTEP, Pace
 from sim.scenario.telecommands import Uplink
 
@@ -69,11 +69,11 @@ def fly(
     epoch_unix_s: int,
     tick_hz: int,
     pace: Pace = LOCKSTEP,
-    watch: ProgressCallback = lambda tick: None,
-    uplink: Uplink = lambda tick: [],
+    watch: ProgressCallback | None = None,
+    uplink: Uplink | None = None,
     patience: Patience | None = None,
-    overhear: Overhear = lambda tick, before, answers, again: None,
-    waiting: Callable[[float], None] = lambda waited_s: None,
+    overhear: Overhear | None = None,
+    waiting: Callable[[float], None] | None = None,
 ) -> FlightOutcome:
     """Fly ``ticks`` ticks; in each, telecommands go before the frames of the boards.
 
@@ -89,7 +89,7 @@ def fly(
         watch: called with the tick every ``WATCH_TICKS`` ticks.
         uplink: the telecommands of a tick.
         patience: how long to wait for the flight software; None: the default.
-        overhear: called in each tick with the frames of other nodes.
+        overhear: called in each tick with the frames of other nodes; None: there are none.
         waiting: called every second until the flight software boots, with the time waited [s].
 
     Raises:
@@ -108,25 +108,29 @@ def fly(
     silence = Silence(patience.silence_s, period_s, began)
     for tick in range(ticks):
         timestamp_us = epoch_us + tick * 1_000_000 // tick_hz
-        sent = uplink(tick) + plant.begin_tick()
-        inbox = answers + (before := waiting_frames(bus)) + sent
+        sent = plant.begin_tick() if uplink is None else uplink(tick) + plant.begin_tick()
+        late, before, sync = answers, waiting_frames(bus), sent[-1]
         bus.send(sent)
         if pace.factor is None:
-            answers = lockstep_answers(bus, tick, sent[-1], patience.answer_s)
+            answers = lockstep_answers(bus, tick, sync, patience.answer_s)
         else:
-            answers = list(frames_until(bus, began + (tick + 1) * period_s))
+            answers = frames_until(bus, began + (tick + 1) * period_s)
             plant.slips += not has_answer(answers, tick)
             silence.end(before + answers, tick)
-        from_others = [frame for frame in answers if frame is not sent[-1]]
-        overhear(tick, before, from_others, len(from_others) < len(answers))
-        received, answers = split_at_sync(inbox, answers, tick)
-        before += received
-        for frame in before + answers:
+        if overhear is not None:
+            from_others = [frame for frame in answers if frame is not sync]
+            overhear(tick, before, from_others, len(from_others) < len(answers))
+        if has_from_ground(answers):
+            received, answers = split_at_sync(late + before + sent, answers, tick)
+            before += received
+        for frame in before:
+            plant.receive(frame)
+        for frame in answers:
             plant.receive(frame)
         log.write(timestamp_us, before + sent + answers)
         truth.append(plant.truth())
         plant.end_tick()
-        if tick % WATCH_TICKS == 0:
+        if watch is not None and tick % WATCH_TICKS == 0:
             watch(tick)
     if not has_answer(answers, ticks - 1):
         log.write(timestamp_us, late_answers(bus, ticks - 1))

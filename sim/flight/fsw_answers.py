@@ -1,7 +1,7 @@
 """How the plant waits for the flight software: for its boot and for the answer to a tick, with deadlines."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import inf
 
@@ -41,11 +41,14 @@ class Patience:
     silence_s: float = inf
 
 
-def await_boot(bus: Bus, boot_s: float, overhear: Overhear, waiting: Callable[[float], None]) -> Frame:
+def await_boot(
+    bus: Bus, boot_s: float, overhear: Overhear | None, waiting: Callable[[float], None] | None
+) -> Frame:
     """Wait for FSW_BOOT; PLANT_BOOT asks flight software that booted earlier to repeat it."""
     began = time.monotonic()
     while (waited_s := time.monotonic() - began) < boot_s:
-        waiting(waited_s)
+        if waiting is not None:
+            waiting(waited_s)
         bus.send([PlantBoot(reason=0, version=1, table_crc=0).encode()])
         deadline = min(time.monotonic() + BOOT_REQUEST_S, began + boot_s)
         while (remaining_s := deadline - time.monotonic()) > 0.0:
@@ -55,7 +58,8 @@ def await_boot(bus: Bus, boot_s: float, overhear: Overhear, waiting: Callable[[f
             if frame.can_id == FswBoot.ID:
                 return frame
             if SENDERS[frame.can_id] == "PLANT":
-                overhear(0, [frame], [], False)
+                if overhear is not None:
+                    overhear(0, [frame], [], False)
                 raise CounterpartError(f"another plant sent {NAMES[frame.can_id]} before the flight began")
     raise CounterpartError(f"the flight software has not booted within {boot_s:.0f} s")
 
@@ -68,16 +72,24 @@ def waiting_frames(bus: Bus) -> list[Frame]:
     return frames
 
 
-def frames_until(bus: Bus, deadline: float) -> Iterator[Frame]:
-    """All frames up to a deadline of the monotonic clock; those already received if it has passed."""
+def frames_until(bus: Bus, deadline: float, tick: int | None = None) -> list[Frame]:
+    """All frames up to a deadline of the monotonic clock; those already received if it has passed.
+
+    If ``tick`` is given, none after its TICK_DONE.
+    """
+    frames: list[Frame] = []
     late = 0
     while late < MOST_WAITING:
         left_s = max(0.0, deadline - time.monotonic())
         frame = bus.receive(left_s)
         if frame is None:
-            return
-        yield frame
-        late += left_s == 0.0
+            break
+        frames.append(frame)
+        if tick is not None and _is_answer(frame, tick):
+            break
+        if left_s == 0.0:
+            late += 1
+    return frames
 
 
 def lockstep_answers(bus: Bus, tick: int, sync: Frame, answer_s: float) -> list[Frame]:
@@ -88,10 +100,9 @@ def lockstep_answers(bus: Bus, tick: int, sync: Frame, answer_s: float) -> list[
     answers: list[Frame] = []
     deadline = time.monotonic() + answer_s
     while True:
-        for frame in frames_until(bus, min(deadline, time.monotonic() + REPEAT_SYNC_S)):
-            answers.append(frame)
-            if _is_answer(frame, tick):
-                return answers
+        answers += frames_until(bus, min(deadline, time.monotonic() + REPEAT_SYNC_S), tick)
+        if answers and _is_answer(answers[-1], tick):
+            return answers
         if time.monotonic() >= deadline:
             raise CounterpartError(
                 f"no answer from the flight software to tick {tick} within {answer_s:.0f} s"
@@ -149,7 +160,7 @@ class Silence:
 
 def has_answer(frames: list[Frame], tick: int) -> bool:
     """Whether the TICK_DONE of ``tick`` is among the frames."""
-    return any(_is_answer(frame, tick) for frame in frames)
+    return any([_is_answer(frame, tick) for frame in frames])
 
 
 def _is_answer(frame: Frame, tick: int) -> bool:

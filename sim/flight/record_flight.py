@@ -60,9 +60,9 @@ def record_flight(
     path: Path,
     scenario: Scenario,
     bus: Bus,
-    watch: ProgressCallback = lambda tick: None,
+    watch: ProgressCallback | None = None,
     patience: Patience | None = None,
-    waiting: Callable[[float], None] = lambda waited_s: None,
+    waiting: Callable[[float], None] | None = None,
     alone: bool = False,
 ) -> None:
     """Fly a run that was begun, and record its log, its histories and its second senders.
@@ -91,7 +91,7 @@ def record_flight(
         run_dir.update(path, second_senders=[sender.as_json() for sender in senders.found])
 
     def overhear(tick: int, before: list[Frame], answers: list[Frame], again: bool) -> None:
-        if not alone and senders.take(tick, before, answers, again):
+        if senders.take(tick, before, answers, again):
             store_senders()
 
     try:
@@ -111,7 +111,7 @@ def record_flight(
                 watch,
                 uplink(scenario.telecommand, scenario.time.tick_hz),
                 patience,
-                overhear,
+                None if alone else overhear,
                 waiting,
             )
     finally:

@@ -6,6 +6,8 @@ from collections import deque
 from collections.abc import Sequence
 from pathlib import Path
 
+from mypy_extensions import mypyc_attr
+
 from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.table.own_law import LawError
@@ -16,6 +18,7 @@ from sim.record import run_dir
 from sim.scenario.schema import Scenario, flight_table
 
 
+@mypyc_attr(allow_interpreted_subclasses=True)
 class VirtualBus:
     """The plant's end of a bus whose only other node is the flight software, which answers at once."""
 

@@ -7,10 +7,10 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
-from typing import NamedTuple, Self
+from typing import Self, final
 
 from fsw.input.gzip_text import is_compressed
-from fsw.wire.candump_line import format_line, format_time
+from fsw.wire.candump_line import format_lines, format_time
 from fsw.wire.frame import Frame
 from sim.errors import FlightError
 from sim.record.log_index import LogIndex
@@ -23,10 +23,14 @@ LEVEL = 1
 """Of compression: a quarter of the text remains; the next levels take three times as long for little gain."""
 
 
-class _Write(NamedTuple):
-    stamp: str
-    text: bytes
-    lines: int
+@final
+class _Write:
+    __slots__ = ("lines", "stamp", "text")
+
+    def __init__(self, stamp: str, text: bytes, lines: int) -> None:
+        self.stamp = stamp
+        self.text = text
+        self.lines = lines
 
 
 class BusLog:
@@ -61,8 +65,8 @@ class BusLog:
 
     def write(self, timestamp_us: int, frames: list[Frame]) -> None:
         """Append frames that share one time stamp."""
-        stamp, channel = format_time(timestamp_us), self._channel
-        text = "".join([format_line(stamp, channel, frame) for frame in frames]).encode("ascii")
+        stamp = format_time(timestamp_us)
+        text = format_lines(stamp, self._channel, frames).encode("ascii")
         self._waiting.append(_Write(stamp, text, len(frames)))
         if len(self._waiting) >= BLOCK_WRITES or self._clock_s() - self._written_s >= BLOCK_S:
             self._write_block()
@@ -76,12 +80,12 @@ class BusLog:
 
     def _put_one_by_one(self, waiting: list[_Write]) -> None:
         """Write as much as there is room for of a block that does not fit."""
-        for stamp, text, lines in waiting:
+        for write in waiting:
             try:
-                self._put(text, lines)
+                self._put(write.text, write.lines)
             except OSError as error:
                 raise FlightError(
-                    f"{self._path}: cannot be written at {stamp}: {error.strerror}; "
+                    f"{self._path}: cannot be written at {write.stamp}: {error.strerror}; "
                     "the log up to then is kept"
                 ) from None
 

@@ -12,6 +12,14 @@ from fsw.wire.messages import SENDERS, TcAck, intact
 FROM_GROUND = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "GROUND")
 
 
+def has_from_ground(frames: list[Frame]) -> bool:
+    """Whether a frame under an identifier of the ground is among them."""
+    ground = False
+    for frame in frames:
+        ground = ground or frame.can_id in FROM_GROUND
+    return ground
+
+
 def split_at_sync(inbox: list[Frame], after: list[Frame], tick: int) -> tuple[list[Frame], list[Frame]]:
     """Separate the telecommands that were in this tick's inbox from the later frames.
 
@@ -24,8 +32,6 @@ def split_at_sync(inbox: list[Frame], after: list[Frame], tick: int) -> tuple[li
         The telecommands of ``after`` that the flight software acknowledges in this tick, beyond those of
         ``inbox``, and the rest of ``after``.
     """
-    if not any(frame.can_id in FROM_GROUND for frame in after):
-        return [], after
     acks = [TcAck.decode(frame.data) for frame in after if frame.can_id == TcAck.ID and intact(frame)]
     answered = Counter((ack.command, ack.command_counter) for ack in acks if ack.tick == tick)
     answered.subtract(map(_key, filter(_is_telecommand, inbox)))
