@@ -7,7 +7,7 @@ until the next tick.
 
 from collections.abc import Callable, Sequence
 from math import isfinite
-from typing import Any, Final, NamedTuple, final
+from typing import Any, Final, final
 
 from fsw.wire.value import Value
 from sim.plant.errors import PlantError
@@ -67,12 +67,16 @@ class Moment(Value):
         self.v_eci_mps = v_eci_mps
 
 
-class OwnEffect(NamedTuple):
+@final
+class OwnEffect:
     """An effect; the histories call its torque ``source``, messages call it ``name``."""
 
-    source: str
-    name: str
-    effect: object
+    __slots__ = ("effect", "name", "source")
+
+    def __init__(self, source: str, name: str, effect: object) -> None:
+        self.source = source
+        self.name = name
+        self.effect = effect
 
     def action(self, name: str) -> Callable[..., Any] | None:
         """What it does under one of ``ACTIONS``, if anything."""
