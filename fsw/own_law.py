@@ -5,19 +5,14 @@ remember in ``Demand.memory``. Without gains of its own the function is all that
 with another form in ACQUIRE, a ``ControlLaw`` names it. Its gains are in ``config.gains[setpoint.law]``.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
+from fsw.core.algebra.vector import ZERO
+from fsw.core.laws import interface
 from fsw.core.laws.entry import Aim
-from fsw.core.laws.interface import (
-    ControlConfig,
-    Demand,
-    FieldSample,
-    Law,
-    LawInput,
-    Memory,
-    Setpoint,
-)
-from fsw.core.laws.plan.pulse_model import NO_PULSE, Pulse
+from fsw.core.laws.interface import ControlConfig, FieldSample, LawInput, Memory, Setpoint
 from fsw.input.quantities import quantity
 
 GROUP = "torquer.laws"
@@ -38,6 +33,30 @@ __all__ = [
     "Setpoint",
     "quantity",
 ]
+
+
+class Pulse(NamedTuple):
+    """A pulse to fire: coil 0..2, level -3..3; level 0 is none."""
+
+    coil: int
+    level: int
+
+
+NO_PULSE = Pulse(0, 0)
+
+
+class Demand(NamedTuple):
+    """What a law demands, of numbers and sequences of any kind; what it means is said in ``interface``."""
+
+    m_body_am2: Any = ZERO
+    impulse_body_nms: Any = None
+    memory: Any = ()
+    pulse: Any = None
+    wheel_torque_nm: Any = None
+
+
+Law = Callable[[LawInput, Memory, Setpoint, ControlConfig], Demand | interface.Demand]
+"""One control law: pure, called once a tick. It may return what a shipped one has answered."""
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ one TC_ACK. One with the counter of the one before it is not carried out again, 
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from math import sqrt
 from typing import Any, final
 
@@ -130,7 +131,7 @@ def _law(state: FlightState, message: TcLaw, situation: Situation) -> TcAckResul
     if name is None or (name in LAWS and not _can_fly(LAWS[name], config)):
         return TcAckResult.UNKNOWN
     if name != state.setpoint.law:
-        state.setpoint, state.memory = state.setpoint._replace(law=name), ()
+        state.setpoint, state.memory = replace(state.setpoint, law=name), ()
     return TcAckResult.ACCEPTED
 
 
@@ -142,7 +143,7 @@ def _can_fly(law: LawEntry, config: ControlConfig) -> bool:
 def _spin(state: FlightState, message: TcSpin, situation: Situation) -> TcAckResult:
     if abs(message.spin) > MAX_SPIN_RADPS:
         return TcAckResult.OUT_OF_RANGE
-    state.setpoint = state.setpoint._replace(spin_radps=message.spin)
+    state.setpoint = replace(state.setpoint, spin_radps=message.spin)
     return TcAckResult.ACCEPTED
 
 
@@ -153,7 +154,7 @@ def _gain(state: FlightState, message: TcGain, situation: Situation) -> TcAckRes
     if message.mantissa < 0 or value > MAX_GAIN:
         return TcAckResult.OUT_OF_RANGE
     changed: dict[str, Any] = {Gain(message.gain).name.lower(): value}
-    state.setpoint = state.setpoint._replace(**changed)
+    state.setpoint = replace(state.setpoint, **changed)
     return TcAckResult.ACCEPTED
 
 

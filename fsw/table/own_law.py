@@ -13,14 +13,15 @@ from types import FrameType
 from typing import Any
 
 from fsw.core.laws.entry import Aim
-from fsw.core.laws.interface import ControlConfig, Demand, Law, LawInput, Memory, OwnLaw, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, OwnLaw, Setpoint
 from fsw.core.laws.plan.pulse_model import Pulse
 from fsw.core.laws.table import LAWS
 from fsw.input import own_code
 from fsw.input.own_code import error_clause
 from fsw.input.quantities import with_values
 from fsw.input.schema import Nested, TableError
-from fsw.own_law import GROUP, ControlLaw
+from fsw.own_law import GROUP, ControlLaw, Law
+from fsw.own_law import Demand as OwnDemand
 from fsw.table.sections import ControlTable
 
 LONGEST_S = 5.0
@@ -169,7 +170,7 @@ class GuardedLaw:
         except (Exception, SystemExit) as error:
             raise self._error(inputs, f"it fails: {error_clause(error, self.file)}") from None
         try:
-            return _whole(answer)
+            return whole(answer)
         except ValueError as error:
             raise self._error(inputs, str(error)) from None
 
@@ -177,13 +178,13 @@ class GuardedLaw:
         return LawError(f"the law {self.name}, tick {inputs.tick}: {what}")
 
 
-def _whole(answer: object) -> Demand:
+def whole(answer: object) -> Demand:
     """The answer of a law, its numbers as floats.
 
     Raises:
         ValueError: it is not a demand of finite numbers.
     """
-    if not isinstance(answer, Demand):
+    if not isinstance(answer, Demand | OwnDemand):
         raise ValueError(f"it returns {_kind(answer)}, not a Demand")
     impulse, wheel = answer.impulse_body_nms, answer.wheel_torque_nm
     return Demand(
@@ -196,8 +197,9 @@ def _whole(answer: object) -> Demand:
 
 
 def _pulse(value: object) -> Pulse:
+    pair = (value.coil, value.level) if isinstance(value, Pulse) else value
     try:
-        coil, level = map(index, value)  # type: ignore[call-overload]  # whatever they gave
+        coil, level = map(index, pair)  # type: ignore[call-overload]  # whatever they gave
     except (TypeError, ValueError):
         coil, level = -1, 0
     if coil not in range(3) or level not in range(-3, 4):

@@ -1,15 +1,16 @@
 """The shipped scheduler in the form that ``audit_scheduler`` tests, alone or behind a law of your own."""
 
 from collections.abc import Sequence
-from math import isfinite
 
 from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import ActuatorConfig, CoilView, actuate, update_view
 from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.gate.calibration import NO_CALIBRATION, measure
 from fsw.core.gate.readings import Readings
-from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, Law, LawInput, Memory
+from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, LawInput, Memory
 from fsw.core.laws.plan.pulse_model import AXES
+from fsw.own_law import Law
+from fsw.table.own_law import whole
 from fsw.wire.messages import CoilBoot, CoilFire
 from sim.testing.scheduler_flight import Fire, Heard, Limits, MakeScheduler, Scheduler
 
@@ -83,10 +84,11 @@ class _SchedulerUnderLaw:
         """Ask the law for its demand, and the scheduler for requests."""
         before, self._sample = self._sample, FieldSample(heard.b_body_t, heard.tick)
         law_input = LawInput(heard.attitude, heard.b_body_t, self._sample, before, tick=heard.tick)
-        demand = self._law(law_input, self._memory, self._control.setpoint, self._control)
-        values = (*demand.m_body_am2, *(demand.impulse_body_nms or ()), *demand.memory)
-        if not all(map(isfinite, values)):
-            raise UnsoundLawError(f"tick {heard.tick}: {demand} is not finite, for {law_input}")
+        answer = self._law(law_input, self._memory, self._control.setpoint, self._control)
+        try:
+            demand = whole(answer)
+        except ValueError as error:
+            raise UnsoundLawError(f"tick {heard.tick}: {error}, for {law_input}") from None
         self._memory = demand.memory
         return self._scheduler.step_with_demand(heard, demand)
 

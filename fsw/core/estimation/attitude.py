@@ -1,18 +1,45 @@
 """The attitude as control and telemetry use it."""
 
-from typing import NamedTuple
+from typing import final
 
+from fsw.core.algebra.quaternion import Quaternion
 from fsw.core.algebra.vector import ZERO, Vec3
+from fsw.wire.value import Value
 
 
-class Attitude(NamedTuple):
+@final
+class Attitude(Value):
     """Attitude and rate of the body relative to the orbital frame, with 3 sigma of each."""
 
-    q_body_from_orbit: tuple[float, float, float, float]
-    omega_body_orbit_radps: Vec3
-    sigma3_attitude_rad: float
-    sigma3_rate_radps: float
-    valid: bool
+    FIELDS = (
+        *("q_body_from_orbit", "omega_body_orbit_radps"),
+        *("sigma3_attitude_rad", "sigma3_rate_radps", "valid"),
+    )
+    __slots__ = FIELDS
+
+    def __init__(
+        self,
+        q_body_from_orbit: Quaternion,
+        omega_body_orbit_radps: Vec3,
+        sigma3_attitude_rad: float,
+        sigma3_rate_radps: float,
+        valid: bool,
+    ) -> None:
+        self.q_body_from_orbit = q_body_from_orbit
+        self.omega_body_orbit_radps = omega_body_orbit_radps
+        self.sigma3_attitude_rad = sigma3_attitude_rad
+        self.sigma3_rate_radps = sigma3_rate_radps
+        self.valid = valid
+
+    def invalid(self) -> "Attitude":
+        """The same attitude, which is not valid."""
+        return Attitude(
+            self.q_body_from_orbit,
+            self.omega_body_orbit_radps,
+            self.sigma3_attitude_rad,
+            self.sigma3_rate_radps,
+            False,
+        )
 
 
 UNKNOWN = Attitude((1.0, 0.0, 0.0, 0.0), ZERO, 4.0, 1.0, False)
@@ -23,4 +50,5 @@ RATE_LIMIT_RADPS = 0.5
 
 def rate_bounded(attitude: Attitude) -> bool:
     """Whether the rate is one that the satellite may have."""
-    return max(map(abs, attitude.omega_body_orbit_radps)) < RATE_LIMIT_RADPS
+    x, y, z = attitude.omega_body_orbit_radps
+    return max(abs(x), abs(y), abs(z)) < RATE_LIMIT_RADPS

@@ -24,7 +24,7 @@ def perfect_attitude(measurements: Measurements, before: Attitude) -> Attitude:
     """The attitude the reference messages give; the one before, no longer valid, where they are missing."""
     attitude, rate = measurements.ref_attitude, measurements.ref_rate
     if attitude is None or rate is None or not attitude.valid or not rate.valid:
-        return before._replace(valid=False)
+        return before.invalid()
     q1, q2, q3 = attitude.vector
     scalar = max(0.0, 1.0 - q1**2 - q2**2 - q3**2) ** 0.5
     near_unit = (scalar, q1, q2, q3)  # near 180 deg rounding makes the vector longer than 1

@@ -140,7 +140,7 @@ def judge(
         pair.skip_judgement(sensors.pair, used, estimator.estimate, weights)
         valid = attitude.valid and not _is_inconclusive(health, used, config)
         discard_trace(estimator)
-        return attitude._replace(valid=valid)
+        return attitude if valid else attitude.invalid()
     before, cells_before = sensor_health.sensor_faults(sensors), cell_faults(sensors.cells)
     reference = evidence.reference
     sensor_health.judge_sensors(
@@ -174,7 +174,7 @@ def judge(
         discard_estimate(estimator)
         attitude = UNKNOWN
     if _is_inconclusive(health, used, config):
-        attitude = attitude._replace(valid=False)
+        attitude = attitude.invalid()
     return attitude
 
 

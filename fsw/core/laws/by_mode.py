@@ -32,7 +32,7 @@ def demand(
         case Mode.SAFE:
             return None
         case Mode.DETUMBLE if not open_loop(setpoint):
-            return detumble(inputs, memory, setpoint, config)._replace(memory=())
+            return detumble(inputs, memory, setpoint, config).without_memory()
         case Mode.ACQUIRE | Mode.DETUMBLE:
             return _net(_forms(setpoint, config).acquire(inputs, memory, setpoint, config), inputs)
         case Mode.POINT:
@@ -53,4 +53,5 @@ def _net(wanted: Demand, inputs: LawInput) -> Demand:
     """
     if wanted.impulse_body_nms is not None or wanted.pulse is not None or not inputs.attitude.valid:
         return wanted
-    return wanted._replace(m_body_am2=sub(wanted.m_body_am2, inputs.dipole_body_am2))
+    m_body_am2 = sub(wanted.m_body_am2, inputs.dipole_body_am2)
+    return Demand(m_body_am2, memory=wanted.memory, wheel_torque_nm=wanted.wheel_torque_nm)

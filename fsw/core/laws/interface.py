@@ -2,27 +2,33 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, final
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3
 from fsw.core.estimation.attitude import Attitude
 from fsw.core.laws.plan.pulse_model import NEVER, Pulse, PulseModel
 from fsw.core.laws.plan.riccati import Schedule
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference
+from fsw.wire.value import Value
 
 Memory = tuple[float, ...]
 """What a law carries from one tick to the next; empty when it begins."""
 
 
-@dataclass(frozen=True, slots=True)
-class FieldSample:
+@final
+class FieldSample(Value):
     """The last usable field sample, body axes, and its tick (-1: none)."""
 
-    b_body_t: Vec3 = ZERO
-    tick: int = -1
+    FIELDS = ("b_body_t", "tick")
+    __slots__ = FIELDS
+
+    def __init__(self, b_body_t: Vec3 = ZERO, tick: int = -1) -> None:
+        self.b_body_t = b_body_t
+        self.tick = tick
 
 
-class LawInput(NamedTuple):
+@final
+class LawInput(Value):
     """What a law receives in one tick.
 
     ``b_body_t`` is the modelled field where the attitude is valid, otherwise the last measured one;
@@ -38,18 +44,39 @@ class LawInput(NamedTuple):
     known.
     """
 
-    attitude: Attitude
-    b_body_t: Vec3
-    sample: FieldSample
-    before: FieldSample
-    sun_body: Vec3 | None = None
-    reference: Reference | None = None
-    torque_body_nm: Vec3 = ZERO
-    dipole_body_am2: Vec3 = ZERO
-    tick: int = 0
-    ephemeris: EphemerisModel | None = None
-    wait_ticks: tuple[int, int, int] = (NEVER, NEVER, NEVER)
-    wheel_nms: float | None = None
+    FIELDS = (
+        *("attitude", "b_body_t", "sample", "before", "sun_body", "reference", "torque_body_nm"),
+        *("dipole_body_am2", "tick", "ephemeris", "wait_ticks", "wheel_nms"),
+    )
+    __slots__ = FIELDS
+
+    def __init__(
+        self,
+        attitude: Attitude,
+        b_body_t: Vec3,
+        sample: FieldSample,
+        before: FieldSample,
+        sun_body: Vec3 | None = None,
+        reference: Reference | None = None,
+        torque_body_nm: Vec3 = ZERO,
+        dipole_body_am2: Vec3 = ZERO,
+        tick: int = 0,
+        ephemeris: EphemerisModel | None = None,
+        wait_ticks: tuple[int, int, int] = (NEVER, NEVER, NEVER),
+        wheel_nms: float | None = None,
+    ) -> None:
+        self.attitude = attitude
+        self.b_body_t = b_body_t
+        self.sample = sample
+        self.before = before
+        self.sun_body = sun_body
+        self.reference = reference
+        self.torque_body_nm = torque_body_nm
+        self.dipole_body_am2 = dipole_body_am2
+        self.tick = tick
+        self.ephemeris = ephemeris
+        self.wait_ticks = wait_ticks
+        self.wheel_nms = wheel_nms
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +110,8 @@ MAX_GAIN = 1e12
 """Largest gain that a setpoint may hold: a hundred times that of a satellite of many tons."""
 
 
-class Setpoint(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Setpoint:
     """What the ground may change in flight: law, gains, and the spin wanted.
 
     Units: ``k_w`` N m s/T^2, ``k_a`` N m/T^2, ``k_i`` N m/(T^2 s), ``spin_radps`` rad/s: about body axis 1
@@ -97,7 +125,8 @@ class Setpoint(NamedTuple):
     spin_radps: float
 
 
-class OwnLaw(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class OwnLaw:
     """A law that is not in the table of laws: its name in the setpoint, its forms in ACQUIRE and POINT."""
 
     name: str
@@ -140,7 +169,8 @@ class ControlConfig:
     wheel: Wheel | None = None
 
 
-class Demand(NamedTuple):
+@final
+class Demand(Value):
     """The demand of a law: a mean dipole, an angular impulse to be given at the next opportunity, or a pulse.
 
     An impulse law leaves the dipole to the actuator, which chooses the one with the least energy left. A law
@@ -149,11 +179,26 @@ class Demand(NamedTuple):
     its axis, the opposite of that on the body; None: the wheel coasts.
     """
 
-    m_body_am2: Vec3 = ZERO
-    impulse_body_nms: Vec3 | None = None
-    memory: Memory = ()
-    pulse: Pulse | None = None
-    wheel_torque_nm: float | None = None
+    FIELDS = ("m_body_am2", "impulse_body_nms", "memory", "pulse", "wheel_torque_nm")
+    __slots__ = FIELDS
+
+    def __init__(
+        self,
+        m_body_am2: Vec3 = ZERO,
+        impulse_body_nms: Vec3 | None = None,
+        memory: Memory = (),
+        pulse: Pulse | None = None,
+        wheel_torque_nm: float | None = None,
+    ) -> None:
+        self.m_body_am2 = m_body_am2
+        self.impulse_body_nms = impulse_body_nms
+        self.memory = memory
+        self.pulse = pulse
+        self.wheel_torque_nm = wheel_torque_nm
+
+    def without_memory(self) -> "Demand":
+        """The same, of which the law remembers nothing."""
+        return Demand(self.m_body_am2, self.impulse_body_nms, (), self.pulse, self.wheel_torque_nm)
 
 
 Law = Callable[[LawInput, Memory, Setpoint, ControlConfig], Demand]

@@ -6,6 +6,7 @@ around a tick does not depend on earlier ticks.
 
 from dataclasses import dataclass, replace
 from math import cos, isfinite, sin
+from typing import final
 
 from fsw.core.algebra.quaternion import Quaternion, conjugate, from_dcm, rotate
 from fsw.core.algebra.vector import ZERO, Vec3, cross, dot, norm, scale, sub
@@ -14,28 +15,40 @@ from fsw.core.orbit.field import FieldKind, OnboardField, field_eci_t, prepare_f
 from fsw.core.orbit.igrf_coefficients import MAX_DEGREE
 from fsw.core.orbit.propagation import Orbit, element_orbit, state_eci
 from fsw.core.orbit.sun import lit, sun_eci
+from fsw.wire.value import Value
 
 NODE_S_RANGE = (10, 30)
 
 Weights = tuple[float, float, float, float]
 
 
-@dataclass(frozen=True, slots=True)
-class EphemerisNode:
+@final
+class EphemerisNode(Value):
     """One node: position (m), velocity (m/s), field (T), unit vector to the Sun; all eci."""
 
-    r_eci_m: Vec3
-    v_eci_mps: Vec3
-    b_eci_t: Vec3
-    sun_eci: Vec3
+    FIELDS = ("r_eci_m", "v_eci_mps", "b_eci_t", "sun_eci")
+    __slots__ = FIELDS
+
+    def __init__(self, r_eci_m: Vec3, v_eci_mps: Vec3, b_eci_t: Vec3, sun_eci: Vec3) -> None:
+        self.r_eci_m = r_eci_m
+        self.v_eci_mps = v_eci_mps
+        self.b_eci_t = b_eci_t
+        self.sun_eci = sun_eci
 
 
-@dataclass(frozen=True, slots=True)
-class EphemerisWindow:
+Nodes = tuple[EphemerisNode, EphemerisNode, EphemerisNode, EphemerisNode]
+
+
+@final
+class EphemerisWindow(Value):
     """Four successive nodes; the ticks it serves lie between the second and the third."""
 
-    first_node: int
-    nodes: tuple[EphemerisNode, EphemerisNode, EphemerisNode, EphemerisNode]
+    FIELDS = ("first_node", "nodes")
+    __slots__ = FIELDS
+
+    def __init__(self, first_node: int, nodes: Nodes) -> None:
+        self.first_node = first_node
+        self.nodes = nodes
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,22 +62,39 @@ class EphemerisModel:
     node_ticks: int
 
 
-@dataclass(frozen=True, slots=True)
-class Reference:
+@final
+class Reference(Value):
     """Orbit, field and Sun that the satellite expects in one tick.
 
     Orbit axes: 1 along the radius, 2 ahead, 3 along the orbit normal. ``orbit_rate_radps`` is about axis 3;
     ``b_rate_eci_tps`` is how the field changes along the orbit, T/s, within a few percent.
     """
 
-    r_eci_m: Vec3
-    radius_m: float
-    b_eci_t: Vec3
-    sun_eci: Vec3
-    lit: bool
-    q_orbit_from_eci: Quaternion
-    orbit_rate_radps: float
-    b_rate_eci_tps: Vec3 = ZERO
+    FIELDS = (
+        *("r_eci_m", "radius_m", "b_eci_t", "sun_eci", "lit", "q_orbit_from_eci", "orbit_rate_radps"),
+        "b_rate_eci_tps",
+    )
+    __slots__ = FIELDS
+
+    def __init__(
+        self,
+        r_eci_m: Vec3,
+        radius_m: float,
+        b_eci_t: Vec3,
+        sun_eci: Vec3,
+        lit: bool,
+        q_orbit_from_eci: Quaternion,
+        orbit_rate_radps: float,
+        b_rate_eci_tps: Vec3 = ZERO,
+    ) -> None:
+        self.r_eci_m = r_eci_m
+        self.radius_m = radius_m
+        self.b_eci_t = b_eci_t
+        self.sun_eci = sun_eci
+        self.lit = lit
+        self.q_orbit_from_eci = q_orbit_from_eci
+        self.orbit_rate_radps = orbit_rate_radps
+        self.b_rate_eci_tps = b_rate_eci_tps
 
 
 def ephemeris_model(
@@ -113,8 +143,10 @@ def advance(window: EphemerisWindow | None, tick: int, model: EphemerisModel) ->
             return window
         if window.first_node == first - 1:
             new = node(first + 3, model)
-            return None if new is None else EphemerisWindow(first, (*window.nodes[1:], new))
-    n0, n1, n2, n3 = (node(first + i, model) for i in range(4))
+            _, a, b, c = window.nodes
+            return None if new is None else EphemerisWindow(first, (a, b, c, new))
+    n0, n1 = node(first, model), node(first + 1, model)
+    n2, n3 = node(first + 2, model), node(first + 3, model)
     if n0 is None or n1 is None or n2 is None or n3 is None:
         return None
     return EphemerisWindow(first, (n0, n1, n2, n3))

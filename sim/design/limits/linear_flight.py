@@ -121,7 +121,7 @@ def fly(scenario: Scenario, theta_rad: Vec3, met: Sequence[Passed], told: bool =
         seen = law_input(x, passed, tick, config, known)
         waits = wait_ticks(scheduler, view, REPORTED, tick, timing, NO_FAULTS)
         demand = by_mode.demand(
-            Mode.POINT, seen._replace(wait_ticks=waits), memory, config.control.setpoint, config.control
+            Mode.POINT, seen.replace(wait_ticks=waits), memory, config.control.setpoint, config.control
         )
         memory = demand.memory if demand is not None else ()
         request = actuate(scheduler, view, demand, seen.b_body_t, REPORTED, tick, config.coils, NO_FAULTS)

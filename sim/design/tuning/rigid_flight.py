@@ -94,13 +94,13 @@ def _fly(
     before, mode = FieldSample(), Mode.ACQUIRE
     rows: list[tuple[Quaternion, Quaternion, Vec3, Vec3, Vec3]] = []
     for tick, reference in enumerate(path.references):
-        seen = law_input(motion, reference, tick, before, config)._replace(
+        seen = law_input(motion, reference, tick, before, config).replace(
             torque_body_nm=disturbing.torque_nm, dipole_body_am2=disturbing.residual_dipole_am2
         )
         before = seen.sample
         mode = _mode(mode, seen.attitude, config)
         waits = wait_ticks(scheduler, view, REPORTED, tick, coils.timing, NO_FAULTS)
-        demand = by_mode.demand(mode, seen._replace(wait_ticks=waits), memory, control.setpoint, control)
+        demand = by_mode.demand(mode, seen.replace(wait_ticks=waits), memory, control.setpoint, control)
         assert demand is not None
         memory = demand.memory
         if coils.continuous is not None:

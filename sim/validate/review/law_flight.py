@@ -132,7 +132,7 @@ def fly(case: LawFlight) -> LawHistory:
         near, place = case.near or tick * case.step_s >= hand_over_s, 2 * tick
         inputs, relative, from_orbit = _inputs(case, orbit, place, rate, motion, before, tick)
         h = None if wheel is None else wheel.relative_nms(motion.omega_body_radps)
-        inputs = inputs._replace(wheel_nms=h)
+        inputs = inputs.replace(wheel_nms=h)
         demand = (row.point if near else row.acquire)(inputs, memory, setpoint, settings)
         _check_numbers(case, tick, demand)
         before, memory = inputs.sample, demand.memory

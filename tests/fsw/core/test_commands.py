@@ -65,7 +65,7 @@ class TestMode:
     @pytest.mark.parametrize("before", Mode)
     def test_safe_is_given_always_and_held(self, obey, state, before, trips, violated):
         start = altered(state, modes=ModeState(before, 7, trips=trips))
-        start = altered(start, attitude=start.attitude._replace(valid=False))
+        start = altered(start, attitude=start.attitude.replace(valid=False))
         after, results = obey(start, TcMode(Mode.SAFE), violated=violated)
         assert results == [TcAckResult.ACCEPTED]
         assert (after.modes.mode, after.modes.held, after.modes.trips) == (Mode.SAFE, True, trips)
@@ -98,11 +98,11 @@ class TestMode:
 
     @pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
     def test_a_law_that_needs_the_attitude_waits_until_it_is_known(self, refused, state, mode):
-        lost = altered(state, attitude=state.attitude._replace(valid=False), modes=ModeState(Mode.DETUMBLE))
+        lost = altered(state, attitude=state.attitude.replace(valid=False), modes=ModeState(Mode.DETUMBLE))
         refused(TcAckResult.NOT_ALLOWED, TcMode(mode), start=lost)
 
     def test_detumbling_needs_no_attitude(self, obey, state):
-        lost = altered(state, attitude=state.attitude._replace(valid=False))
+        lost = altered(state, attitude=state.attitude.replace(valid=False))
         after, _ = obey(lost, TcMode(Mode.DETUMBLE))
         assert after.modes.mode is Mode.DETUMBLE
 
@@ -131,11 +131,11 @@ class TestLaw:
 
     @pytest.mark.parametrize("name", LAWS)
     def test_begins_without_a_memory(self, obey, state, config, name):
-        start = altered(state, setpoint=state.setpoint._replace(law="bdot" if name == "pd" else "pd"))
+        start = altered(state, setpoint=replace(state.setpoint, law="bdot" if name == "pd" else "pd"))
         wheels = replace(config.control, wheel_body_nms=(0.0, 0.0, 0.05), wheel=WHEEL)
         after, results = obey(start, TcLaw(LAWS[name].number), config=replace(config, control=wheels))
         assert results == [TcAckResult.ACCEPTED]
-        assert after == altered(start, setpoint=start.setpoint._replace(law=name), memory=())
+        assert after == altered(start, setpoint=replace(start.setpoint, law=name), memory=())
 
     def test_the_law_that_flies_already_goes_on_with_its_memory(self, obey, state):
         assert obey(state, TcLaw(LAWS[state.setpoint.law].number)) == (state, [TcAckResult.ACCEPTED])
@@ -145,7 +145,7 @@ class TestLaw:
         with_own = replace(config, control=replace(config.control, own=own))
         after, results = obey(state, TcLaw(OWN_NUMBER), config=with_own)
         assert results == [TcAckResult.ACCEPTED]
-        assert after == altered(state, setpoint=state.setpoint._replace(law="mine"), memory=())
+        assert after == altered(state, setpoint=replace(state.setpoint, law="mine"), memory=())
         back, _ = obey(after, TcLaw(LAWS[state.setpoint.law].number), config=with_own)
         assert back.setpoint == state.setpoint
 
@@ -177,7 +177,7 @@ class TestSpin:
             assert results == [TcAckResult.OUT_OF_RANGE]
         else:
             assert results == [TcAckResult.ACCEPTED]
-            assert after == altered(state, setpoint=state.setpoint._replace(spin_radps=on_the_wire))
+            assert after == altered(state, setpoint=replace(state.setpoint, spin_radps=on_the_wire))
 
     @pytest.mark.parametrize("spin", [0.1 + 2**-19, -0.1 - 2**-19, 0.125, -0.125])
     def test_beyond_what_may_be_asked_for(self, refused, spin):
@@ -192,7 +192,7 @@ class TestGain:
     def test_is_exactly_the_decimal_number(self, obey, state, gain, mantissa, exponent, value):
         after, results = obey(state, TcGain(gain, exponent, mantissa))
         assert results == [TcAckResult.ACCEPTED]
-        assert after == altered(state, setpoint=state.setpoint._replace(**{gain.name.lower(): value}))
+        assert after == altered(state, setpoint=replace(state.setpoint, **{gain.name.lower(): value}))
 
     @pytest.mark.parametrize("gain", range(3, 16))
     def test_that_is_not_there(self, refused, gain):

@@ -202,7 +202,7 @@ class TestConditions:
     )
     def test_a_rate_counts_beside_the_spin_that_is_wanted(self, omega_degps, expected):
         """Wanted are 1.2 deg/s about body axis 1: that alone is no rate, none is too much of one."""
-        turning = known(30.0, 0.0)._replace(omega_body_orbit_radps=tuple(radians(w) for w in omega_degps))
+        turning = known(30.0, 0.0).replace(omega_body_orbit_radps=tuple(radians(w) for w in omega_degps))
         assert judged(turning, spin_radps=radians(1.2)) - {"clear"} == set(expected.split())
 
     @pytest.mark.parametrize(
@@ -225,7 +225,7 @@ class TestConditions:
 
     def test_the_sign_of_the_quaternion_is_the_same_attitude(self):
         attitude = known(10.0, 0.45)
-        mirrored = attitude._replace(q_body_from_orbit=tuple(-c for c in attitude.q_body_from_orbit))
+        mirrored = attitude.replace(q_body_from_orbit=tuple(-c for c in attitude.q_body_from_orbit))
         assert judged(mirrored) == judged(attitude)
         assert judged(mirrored, config=replace(CONFIG, axis_only=True)) == judged(
             attitude, config=replace(CONFIG, axis_only=True)
@@ -234,10 +234,10 @@ class TestConditions:
     def test_an_attitude_that_is_not_valid_says_nothing_but_that(self):
         for rate in (0.0, 1.0):
             for angle in (0.0, 90.0):
-                assert judged(known(angle, rate)._replace(valid=False)) == {"clear", "lost_attitude"}
+                assert judged(known(angle, rate).replace(valid=False)) == {"clear", "lost_attitude"}
 
     def test_without_a_field_and_an_attitude_nothing_can_act(self):
-        lost = known()._replace(valid=False)
+        lost = known().replace(valid=False)
         assert judged(lost, has_field=False) == {"lost_attitude", "blind"}
         assert judged(known(30.0, 0.45), has_field=False) == {"clear"}
 

@@ -22,11 +22,11 @@ WELL = MonitorInput(
 
 
 def with_q(*q):
-    return WELL.replace(attitude=WELL.attitude._replace(q_body_from_orbit=q))
+    return WELL.replace(attitude=WELL.attitude.replace(q_body_from_orbit=q))
 
 
 def with_rate(*omega):
-    return WELL.replace(attitude=WELL.attitude._replace(omega_body_orbit_radps=omega))
+    return WELL.replace(attitude=WELL.attitude.replace(omega_body_orbit_radps=omega))
 
 
 def owing(*impulse):
@@ -38,7 +38,7 @@ def owing(*impulse):
     [
         WELL,
         WELL.replace(attitude=UNKNOWN),
-        WELL.replace(attitude=WELL.attitude._replace(valid=False)),
+        WELL.replace(attitude=WELL.attitude.replace(valid=False)),
         with_q(1.0, 0.0, 0.0, 0.0),
         with_q(*(c * (1.0 + 4e-7) for c in Q)),
         with_rate(0.499, -0.499, 0.499),

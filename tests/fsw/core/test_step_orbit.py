@@ -1,6 +1,5 @@
 """The flight loop when the orbit has ended, or its ephemeris is spoiled."""
 
-from dataclasses import replace
 from math import acos, degrees, inf, nan
 
 import pytest
@@ -45,9 +44,9 @@ def test_an_ephemeris_of_what_is_no_number_is_made_anew(make_world, vector, brok
     world.fly(205)
     assert world.state.attitude.valid
     whole = world.state.ephemeris
-    spoiled = replace(whole.nodes[1], **{vector: (broken, 1.0, 1.0)})
+    spoiled = whole.nodes[1].replace(**{vector: (broken, 1.0, 1.0)})
     world.state = altered(
-        world.state, ephemeris=replace(whole, nodes=(whole.nodes[0], spoiled, *whole.nodes[2:]))
+        world.state, ephemeris=whole.replace(nodes=(whole.nodes[0], spoiled, *whole.nodes[2:]))
     )
     replies = world.step()
     assert not world.state.attitude.valid

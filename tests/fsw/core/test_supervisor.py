@@ -56,7 +56,7 @@ def test_a_sound_state_stays_where_it_is(supervised):
 
 
 def test_the_attitude_is_the_one_of_this_tick(supervised):
-    spinning = WELL._replace(omega_body_orbit_radps=(0.0, 0.6, 0.0))
+    spinning = WELL.replace(omega_body_orbit_radps=(0.0, 0.6, 0.0))
     assert supervised(spinning).violated is Monitor.RATE_BOUNDED
 
 
@@ -83,7 +83,7 @@ def test_a_coil_that_was_not_requested_trips(supervised):
 @pytest.mark.parametrize(("law", "leaves"), [("bdot", False), ("phasing", True)])
 def test_without_field_and_attitude_only_a_law_without_feedback_leaves_safe(world, supervised, law, leaves):
     blind = Health(SensorHealth(field=Watch(SensorFault.FROZEN)))
-    setpoint = world.state.setpoint._replace(law=law)
+    setpoint = replace(world.state.setpoint, law=law)
     modes = supervised(UNKNOWN, Mode.SAFE, health=blind, setpoint=setpoint).modes
     assert max(modes.held_since) == (TICK if leaves else -1)
     assert max(supervised(WELL, Mode.SAFE, health=blind, setpoint=setpoint).modes.held_since) == TICK
@@ -104,7 +104,7 @@ def test_a_trip_leads_to_safe_in_the_same_tick_and_is_counted(supervised):
     assert (modes.mode, modes.trips, modes.since_tick) == (Mode.SAFE, 1, TICK)
 
 
-FAST = WELL._replace(omega_body_orbit_radps=(0.0, 0.6, 0.0))
+FAST = WELL.replace(omega_body_orbit_radps=(0.0, 0.6, 0.0))
 
 
 @pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
@@ -123,7 +123,7 @@ def test_too_fast_a_turn_is_left_to_detumbling(supervised):
 
 
 def test_a_rate_that_is_no_number_is_not_braked(supervised):
-    endless = WELL._replace(omega_body_orbit_radps=(0.0, float("inf"), 0.0))
+    endless = WELL.replace(omega_body_orbit_radps=(0.0, float("inf"), 0.0))
     assert supervised(endless, Mode.DETUMBLE).modes.mode is Mode.SAFE
     assert max(supervised(endless, Mode.SAFE).modes.held_since) == -1
 

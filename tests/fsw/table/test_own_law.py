@@ -7,6 +7,7 @@ from time import process_time
 import numpy as np
 import pytest
 
+import fsw.own_law
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.entry import Aim
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
@@ -187,7 +188,13 @@ class TestInFlight:
     def test_a_pulse_stays_one(self):
         demand = answer_of(returning(Demand(pulse=(np.int64(2), True))))
         assert demand == Demand(pulse=Pulse(2, 1))
-        assert [type(number) for number in demand.pulse] == [int, int]
+        assert (type(demand.pulse.coil), type(demand.pulse.level)) == (int, int)
+        assert answer_of(returning(Demand(pulse=Pulse(2, 1)))) == demand
+
+    def test_a_demand_of_the_law_s_own_is_one_of_the_flight_software(self):
+        """Its numbers and sequences may be of any kind."""
+        own = fsw.own_law.Demand([1, 2, 3], memory=range(2), pulse=fsw.own_law.Pulse(2, -1))
+        assert answer_of(returning(own)) == Demand((1.0, 2.0, 3.0), None, (0.0, 1.0), Pulse(2, -1))
 
     @pytest.mark.parametrize(
         ("answer", "what"),

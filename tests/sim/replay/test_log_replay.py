@@ -291,7 +291,7 @@ class TestOtherTable:
 
     def test_the_answers_differ_under_other_gains(self, recorded_run, config):
         setpoint = config.control.setpoint
-        tripled = setpoint._replace(k_a=3.0 * setpoint.k_a)
+        tripled = replace(setpoint, k_a=3.0 * setpoint.k_a)
         stronger = replace(config, control=replace(config.control, setpoint=tripled))
         result = replay(recorded_run / BUS_LOG, stronger)
         assert not result.bit_exact

@@ -43,7 +43,9 @@ def judge_current(
     if health.strange_ticks:
         health = health._replace(strange_ticks=0, stray_ma=0, stuck=False, conducts=ZERO)
     fired = view.fired
-    if tick != view.fired_tick + _judged_after(config.pulses) or (status.coil, status.level) != fired:
+    if tick != view.fired_tick + _judged_after(config.pulses):
+        return health
+    if status.coil != fired.coil or status.level != fired.level:
         return health
     if not status.level or not (status.remaining_ms or config.pulses.pulse_ticks == 1):
         return health

@@ -60,7 +60,7 @@ def judge_effect(
         The health; the estimate is corrected where a coil certainly did other than assumed.
     """
     estimate, age, b_eci_t = state.estimate, tick - view.fired_tick, reference.b_eci_t
-    as_asked = view.driven_level != 0 and (view.driven_coil, view.driven_level) == view.fired
+    as_asked = view.driven_level != 0 and view.as_fired
     ended = as_asked and age == config.pulses.pulse_ticks
     flows = flows_somewhere(health)
     hurry = age % EARLY_TICKS == 0 and (unexplained or state.rejected_in_a_row > 0 or flows)

@@ -1,6 +1,6 @@
 """Field tracking: the measured field is turned onto that of the nominal attitude, without an estimate."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import Vec3, add, scale, sub
@@ -80,7 +80,7 @@ def track(error_t: Vec3, tick: int, memory: Memory, setpoint: Setpoint, config: 
 def tracking_before_pd(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Field tracking far from the goal, before the hand-over; without memory when it returns from PD."""
     gains: HandOverGains = config.gains["field_tracking_pd"]
-    own = setpoint._replace(k_w=gains.share_w * setpoint.k_w, k_a=gains.share_a * setpoint.k_a)
+    own = replace(setpoint, k_w=gains.share_w * setpoint.k_w, k_a=gains.share_a * setpoint.k_a)
     return field_tracking(inputs, memory if len(memory) == TRACKED else (), own, config)
 
 

@@ -220,4 +220,4 @@ def exact_torque(inputs: LawInput, reference: Reference, table: Schedule, config
 
 def without_memory(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Far from the goal: the PD law's far form, without memory for the law near it."""
-    return pd_far(inputs, (), setpoint, config)._replace(memory=())
+    return pd_far(inputs, (), setpoint, config).without_memory()

@@ -1,23 +1,29 @@
 """What pulsed coils can be asked for, and how the body moves from one opportunity to the next."""
 
-from typing import NamedTuple
+from typing import NamedTuple, final
 
 import numpy as np
 
 from fsw.core.algebra.vector import Mat3, Vec3, product, scale, skew
 from fsw.core.laws.plan.orbit_ahead import Sight
 from fsw.core.laws.plan.riccati import Array, Problem
+from fsw.wire.value import Value
 
 NEVER = -1
 """Ticks until a coil with a fault may be fired."""
 AXES: Mat3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
-class Pulse(NamedTuple):
+@final
+class Pulse(Value):
     """A pulse to fire: coil 0..2, level -3..3; level 0 is none."""
 
-    coil: int
-    level: int
+    FIELDS = ("coil", "level")
+    __slots__ = FIELDS
+
+    def __init__(self, coil: int, level: int) -> None:
+        self.coil = coil
+        self.level = level
 
 
 NO_PULSE = Pulse(0, 0)

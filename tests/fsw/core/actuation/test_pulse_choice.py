@@ -56,13 +56,13 @@ def impulse(config, coil, level, b_body_t):
 
 def rate_left(config, wanted, b_body_t, pulse):
     """|J^-1 (r - T m x b)|^2, by numpy."""
-    rest = np.array(wanted) - (0.0 if pulse is None else impulse(config, *pulse, b_body_t))
+    rest = np.array(wanted) - (0.0 if pulse is None else impulse(config, pulse.coil, pulse.level, b_body_t))
     return float(np.sum((np.array(config.energy_metric) @ rest) ** 2))
 
 
 def energy_left(config, wanted, b_body_t, pulse):
     """(r - T m x b)^T J^-1 (r - T m x b), twice the energy of the rate that is left, by numpy."""
-    rest = np.array(wanted) - (0.0 if pulse is None else impulse(config, *pulse, b_body_t))
+    rest = np.array(wanted) - (0.0 if pulse is None else impulse(config, pulse.coil, pulse.level, b_body_t))
     return float(rest @ np.linalg.solve(np.linalg.inv(config.energy_metric), rest))
 
 

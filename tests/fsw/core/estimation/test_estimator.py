@@ -93,7 +93,7 @@ class TestStart:
 
     def test_not_in_eclipse(self):
         """The sensor may be fooled by the Earth's limb; the model says there is no Sun to see."""
-        state, _ = step(EstimatorState(), seen_from(), replace(REFERENCE, lit=False))
+        state, _ = step(EstimatorState(), seen_from(), REFERENCE.replace(lit=False))
         assert state == EstimatorState()
 
     def test_not_with_field_and_sun_nearly_parallel(self):
@@ -104,7 +104,7 @@ class TestStart:
                 np.cos(radians(separation_deg)) * np.array(toward)
                 + np.sin(radians(separation_deg)) * np.array(aside)
             )
-            reference = replace(REFERENCE, sun_eci=tuple(map(float, sun)))
+            reference = REFERENCE.replace(sun_eci=tuple(map(float, sun)))
             state, _ = step(EstimatorState(), seen_from(reference=reference), reference)
             assert (state.estimate is not None) is starts
 
@@ -190,7 +190,7 @@ class TestRunning:
         assert used == Used(False, True, True)
 
     def test_in_eclipse_the_magnetometer_alone_carries_on(self, settled):
-        eclipse = replace(REFERENCE, lit=False)
+        eclipse = REFERENCE.replace(lit=False)
         state = settled
         for _ in range(300):
             state, used = step(state, seen_from(sun=SunVector(0, 0.0, 0.0, 0.0)), eclipse)
@@ -219,7 +219,7 @@ class TestRunning:
 
 class TestElapsedTicks:
     QUIET = measured()
-    STILL = replace(REFERENCE, orbit_rate_radps=0.0)
+    STILL = REFERENCE.replace(orbit_rate_radps=0.0)
 
     def test_three_ticks_at_once_are_three_ticks(self, settled):
         at_once, _ = step(settled, self.QUIET, self.STILL, driven=[NOT_DRIVEN] * 3)
@@ -250,7 +250,7 @@ class TestElapsedTicks:
             turned = rate * left
             r = scale(REFERENCE.radius_m, add(scale(np.cos(turned), up), scale(-np.sin(turned), ahead)))
             b = sub(REFERENCE.b_eci_t, scale(left, b_rate))
-            return replace(REFERENCE, r_eci_m=r, b_eci_t=b, b_rate_eci_tps=b_rate)
+            return REFERENCE.replace(r_eci_m=r, b_eci_t=b, b_rate_eci_tps=b_rate)
 
         drives = [Driven((0.0, 0.8, 0.0))] * 50
         at_once, _ = step(settled, self.QUIET, of_tick(0), driven=drives)
@@ -259,7 +259,7 @@ class TestElapsedTicks:
             state, _ = step(state, self.QUIET, of_tick(-left), driven=[one])
         rates = [one.estimate.omega_body_radps for one in (at_once, state)]
         assert rates[0] == pytest.approx(rates[1], rel=1e-6, abs=1e-12)
-        wrong, _ = step(settled, self.QUIET, replace(of_tick(0), orbit_rate_radps=0.0), driven=drives)
+        wrong, _ = step(settled, self.QUIET, of_tick(0).replace(orbit_rate_radps=0.0), driven=drives)
         assert norm(sub(wrong.estimate.omega_body_radps, rates[1])) > 1e-7
 
     def test_a_doubt_moves_nothing_and_is_known_of(self, settled):
@@ -338,7 +338,7 @@ class TestRejections:
 def test_an_old_field_sample_is_of_where_the_satellite_was():
     """1.5 s ago, where the field was 750 nT different: ten times what shows in the estimate otherwise."""
     rate = (3e-7, -2e-7, 4e-7)
-    reference = replace(REFERENCE, b_rate_eci_tps=rate)
+    reference = REFERENCE.replace(b_rate_eci_tps=rate)
     begun = mekf.start(Q_BODY_FROM_ECI, ZERO, AGED.mekf)
     old = begun._replace(parameters=replace(begun.parameters, delay_s=(1.5, 0.5)))
     then = add(REFERENCE.b_eci_t, scale(-1.5, rate))

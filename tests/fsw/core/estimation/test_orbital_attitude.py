@@ -106,7 +106,7 @@ class TestPerfectKnowledge:
     )
     def test_without_both_the_one_before_stays_and_is_not_valid(self, changes):
         attitude = perfect_attitude(measured(**changes), self.BEFORE)
-        assert attitude == self.BEFORE._replace(valid=False)
+        assert attitude == self.BEFORE.replace(valid=False)
 
     def test_upside_down_the_wire_s_rounding_still_gives_a_unit_quaternion(self):
         for vector in ((0.6, -0.48, 0.64), (0.57735027, 0.57735027, 0.57735027), (0.999985, 0.0, 0.0)):

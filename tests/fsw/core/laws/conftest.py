@@ -216,7 +216,7 @@ def fly(
         c_body_from_eci, omega = state[:, :3], inverse @ (state[:, 3] - wheel - h * axis)
         now = c_orbit[2 * tick], b_eci[2 * tick]
         inputs = inputs_in(orbit, tick, *now, c_body_from_eci, omega, before, sun, known)
-        inputs = inputs._replace(wheel_nms=h if body.driven else None)
+        inputs = inputs.replace(wheel_nms=h if body.driven else None)
         demand = law(look(inputs), memory, law_setpoint, settings)
         before, memory = inputs.sample, demand.memory
         m = [max(-body.most_am2, min(body.most_am2, part)) for part in demand.m_body_am2]

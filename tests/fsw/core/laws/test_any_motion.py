@@ -40,7 +40,7 @@ def test_a_law_answers_with_numbers(bench, law, rate_radps):
         rate_radps * direction / np.linalg.norm(direction),
         FieldSample((1.5e-5, -2.6e-5, 3.3e-5), tick=tick - 1),
         sun_eci=np.array([0.6, 0.0, 0.8]),
-    )._replace(
+    ).replace(
         ephemeris=bench.model_of(orbit),
         torque_body_nm=(1e-7, -2e-7, 5e-8),
         dipole_body_am2=(0.05, -0.02, 0.03),
@@ -49,7 +49,7 @@ def test_a_law_answers_with_numbers(bench, law, rate_radps):
     )
     for mode in ("acquire", "point"):
         first = getattr(LAWS[law], mode)(inputs, (), config.setpoint, config)
-        later = inputs._replace(tick=tick + 1)
+        later = inputs.replace(tick=tick + 1)
         second = getattr(LAWS[law], mode)(later, first.memory, config.setpoint, config)
         for demand in (first, second):
             assert all(map(isfinite, (*demand.m_body_am2, *demand.memory)))

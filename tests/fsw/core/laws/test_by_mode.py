@@ -21,8 +21,8 @@ TICK_S = 0.25
 INERTIA: Mat3 = ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95))
 K_W, K_A = 6.2694e6, 1614.9
 PD = Setpoint("pd", K_W, K_A, k_i=0.0, spin_radps=0.0)
-DAMPING = PD._replace(law="rate_damping")
-PREDICTIVE = PD._replace(law="predictive")
+DAMPING = replace(PD, law="rate_damping")
+PREDICTIVE = replace(PD, law="predictive")
 CONFIG = ControlConfig(
     setpoint=PD,
     gains={name: law.gains() for name, law in LAWS.items() if law.gains is not None},
@@ -38,8 +38,8 @@ B_BODY_T = (1.7e-5, -2.3e-5, 3.1e-5)
 BEFORE = FieldSample((1.5e-5, -2.6e-5, 3.3e-5), tick=40)
 SAMPLE = FieldSample((1.6e-5, -2.4e-5, 3.2e-5), tick=44)
 KNOWN = Attitude(normalise((0.9, 0.1, -0.2, 0.3)), (0.001, -0.002, 0.003), 0.01, 1e-4, True)
-NOT_VALID = KNOWN._replace(valid=False)
-TOO_FAST = KNOWN._replace(omega_body_orbit_radps=(0.001, -0.5, 0.003))
+NOT_VALID = KNOWN.replace(valid=False)
+TOO_FAST = KNOWN.replace(omega_body_orbit_radps=(0.001, -0.5, 0.003))
 REFERENCE = Reference(
     r_eci_m=(4.302e6, -3.4416e6, 4.5888e6),
     radius_m=7.17e6,
@@ -119,7 +119,7 @@ def test_detumble_with_a_continuous_driver_is_proportional(attitude, expected):
 def test_acquire_and_point_fly_the_law_of_the_setpoint(law, mode):
     row = LAWS[law]
     flies = row.acquire if mode is Mode.ACQUIRE else row.point
-    setpoint = PD._replace(law=law)
+    setpoint = replace(PD, law=law)
     assert run(mode, setpoint) == flies(inputs(), (), setpoint, CONFIG)
 
 
@@ -128,9 +128,9 @@ RESIDUAL_AM2 = (0.04, -0.03, 0.07)
 
 def with_a_residual_dipole(mode, law, attitude=KNOWN):
     """The demand beside the same one without it."""
-    setpoint = PD._replace(law=law)
+    setpoint = replace(PD, law=law)
     given = inputs(attitude)
-    known = given._replace(dipole_body_am2=RESIDUAL_AM2)
+    known = given.replace(dipole_body_am2=RESIDUAL_AM2)
     return tuple(by_mode.demand(mode, case, (), setpoint, CONFIG) for case in (known, given))
 
 
@@ -138,22 +138,22 @@ def with_a_residual_dipole(mode, law, attitude=KNOWN):
 @pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
 def test_from_every_dipole_the_residual_one_is_taken_off(law, mode):
     known, without = with_a_residual_dipole(mode, law)
-    assert known == without._replace(m_body_am2=sub(without.m_body_am2, RESIDUAL_AM2))
+    assert known == without.replace(m_body_am2=sub(without.m_body_am2, RESIDUAL_AM2))
 
 
 @pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
 def test_it_is_taken_off_too_where_a_law_lacks_what_it_needs_beside_the_attitude(mode):
-    in_the_shadow = inputs()._replace(sun_body=None, dipole_body_am2=RESIDUAL_AM2)
-    demand = by_mode.demand(mode, in_the_shadow, (), PD._replace(law="sun_pointing"), CONFIG)
+    in_the_shadow = inputs().replace(sun_body=None, dipole_body_am2=RESIDUAL_AM2)
+    demand = by_mode.demand(mode, in_the_shadow, (), replace(PD, law="sun_pointing"), CONFIG)
     assert demand == Demand(sub(ZERO, RESIDUAL_AM2))
 
 
 @pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
 @pytest.mark.parametrize("measuring", [True, False])
 def test_while_a_law_measures_its_coils_are_off_and_then_it_is_taken_off(mode, measuring):
-    setpoint = PD._replace(law="pd_apart")
+    setpoint = replace(PD, law="pd_apart")
     memory = (0.0, 0.0 if measuring else 1.0, *(ZERO if measuring else (0.1, -0.2, 0.3)))
-    demand = by_mode.demand(mode, inputs()._replace(dipole_body_am2=RESIDUAL_AM2), memory, setpoint, CONFIG)
+    demand = by_mode.demand(mode, inputs().replace(dipole_body_am2=RESIDUAL_AM2), memory, setpoint, CONFIG)
     taken = ZERO if measuring else sub((0.1, -0.2, 0.3), RESIDUAL_AM2)
     assert demand == Demand(taken, memory=memory, pulse=NO_PULSE if measuring else None)
 
@@ -176,21 +176,21 @@ def test_without_an_attitude_that_holds_no_dipole_is_taken_off(law):
 @EVERY_LAW
 def test_safe_asks_for_nothing_whatever_the_law(law):
     """Not even for no dipole: what was owed is forgotten."""
-    assert run(Mode.SAFE, PD._replace(law=law)) is None
+    assert run(Mode.SAFE, replace(PD, law=law)) is None
 
 
 @pytest.mark.parametrize("attitude", [KNOWN, NOT_VALID, UNKNOWN])
 @pytest.mark.parametrize("mode", [Mode.DETUMBLE, Mode.ACQUIRE, Mode.POINT])
 def test_a_law_that_acts_without_looking_is_flown_in_each_mode_and_remembers(mode, attitude):
-    ready = inputs(attitude)._replace(wait_ticks=(0, 0, 0))
-    demand = by_mode.demand(mode, ready, (4.0,), PD._replace(law="phasing"), CONFIG)
+    ready = inputs(attitude).replace(wait_ticks=(0, 0, 0))
+    demand = by_mode.demand(mode, ready, (4.0,), replace(PD, law="phasing"), CONFIG)
     assert demand == Demand(memory=(5.0,), pulse=Pulse(1, -3))
 
 
 @pytest.mark.parametrize("law", [law for law, row in LAWS.items() if not row.open_loop])
 @pytest.mark.parametrize("attitude", [KNOWN, NOT_VALID, UNKNOWN])
 def test_detumble_flies_the_same_whatever_the_law_and_forgets(law, attitude):
-    with_memory = run(Mode.DETUMBLE, PD._replace(law=law), attitude, memory=(1.0, 2.0, 3.0))
+    with_memory = run(Mode.DETUMBLE, replace(PD, law=law), attitude, memory=(1.0, 2.0, 3.0))
     assert with_memory == run(Mode.DETUMBLE, PD, attitude)
     assert with_memory.memory == ()
 
@@ -198,10 +198,10 @@ def test_detumble_flies_the_same_whatever_the_law_and_forgets(law, attitude):
 class TestSpin:
     """A spin about body axis 1, relative to the orbital frame, is what damping and prediction leave alone."""
 
-    SPINNING = DAMPING._replace(spin_radps=0.02)
+    SPINNING = replace(DAMPING, spin_radps=0.02)
 
     def spinning_at(self, *omega):
-        return inputs(KNOWN._replace(omega_body_orbit_radps=omega))
+        return inputs(KNOWN.replace(omega_body_orbit_radps=omega))
 
     def test_the_rate_wanted_is_left_alone(self):
         m = rate_damping(self.spinning_at(0.02, 0.0, 0.0), (), self.SPINNING, CONFIG).m_body_am2
@@ -219,7 +219,7 @@ class TestSpin:
     def test_prediction_misses_the_momentum_of_the_spin_that_is_wanted(self):
         without, wanting = (
             predictive(inputs(), (), setpoint, CONFIG).impulse_body_nms
-            for setpoint in (PREDICTIVE, PREDICTIVE._replace(spin_radps=0.02))
+            for setpoint in (PREDICTIVE, replace(PREDICTIVE, spin_radps=0.02))
         )
         momentum = tuple(0.02 * row[0] for row in INERTIA)
         more = tuple(b - a for a, b in zip(without, wanting, strict=True))
@@ -266,12 +266,12 @@ class TestOwnLaw:
     CONFIG = replace(CONFIG, own=OWN)
 
     def test_it_flies_in_both_modes(self):
-        mine = PD._replace(law="mine")
+        mine = replace(PD, law="mine")
         assert run(Mode.ACQUIRE, mine, config=self.CONFIG) == Demand((1.0, 0.0, 0.0))
         assert run(Mode.POINT, mine, config=self.CONFIG) == Demand((0.0, 1.0, 0.0))
 
     def test_damping_and_the_other_laws_stay(self):
-        mine = PD._replace(law="mine")
+        mine = replace(PD, law="mine")
         assert run(Mode.DETUMBLE, mine, config=self.CONFIG) == BY_PREDICTION
         assert run(Mode.SAFE, mine, config=self.CONFIG) is None
         assert run(Mode.POINT, PD, config=self.CONFIG) == BY_PD

@@ -55,7 +55,7 @@ def flown(bench):
                     np.array([0.004, -0.003, 0.005]),
                     FieldSample((1.5e-5, -2.6e-5, 3.3e-5), tick=tick - 1),
                     sun_eci=np.array([0.6, 0.0, 0.8]),
-                )._replace(ephemeris=bench.model_of(orbit), wait_ticks=(0, 0, 0), wheel_nms=0.05)
+                ).replace(ephemeris=bench.model_of(orbit), wait_ticks=(0, 0, 0), wheel_nms=0.05)
                 memory = getattr(LAWS[law], form)(inputs, memory, config.setpoint, config).memory
 
     return fly

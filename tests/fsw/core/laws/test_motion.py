@@ -33,7 +33,7 @@ def test_without_attitude_or_orbit_there_is_none(bench, body, missing):
     known = missing != "attitude"
     inputs = bench.inputs_at(bench.Orbit(), 9, 1.0, np.eye(3), np.zeros(3), FieldSample(), known=known)
     if missing == "orbit":
-        inputs = inputs._replace(reference=None)
+        inputs = inputs.replace(reference=None)
     assert motion(inputs, bench.config(body, 1.0)) is None
 
 
@@ -60,7 +60,7 @@ def asked(bench, turned, law, settings, wheel_nms):
     for tick in range(700, 704):
         c = turned((1, -2, 3), 25.0 + 0.1 * tick) @ orbit.c_orbit_from_eci(float(tick))
         inputs = bench.inputs_at(orbit, tick, 1.0, c, np.array([1e-3, 2e-3, -1e-3]), FieldSample())
-        inputs = inputs._replace(ephemeris=bench.model_of(orbit), wheel_nms=wheel_nms)
+        inputs = inputs.replace(ephemeris=bench.model_of(orbit), wheel_nms=wheel_nms)
         demand = LAWS[law].point(inputs, memory, bench.setpoint(k_w=1e6, k_a=1e3, spin_radps=0.02), settings)
         memory = demand.memory
         demands.append((*demand.m_body_am2, *(demand.impulse_body_nms or ()), *demand.memory))

@@ -83,7 +83,7 @@ def ask(bench, turned):
                 sampled=missing != "second sample" or tick == 500,
             )
             if missing == "orbit":
-                inputs = inputs._replace(reference=None)
+                inputs = inputs.replace(reference=None)
             demand = row.acquire(inputs, memory, point, settings)
             before, memory = inputs.sample, demand.memory
         return demand.m_body_am2

@@ -26,7 +26,7 @@ def asked(waits, gains=None, pulsed=True):
         inputs = LawInput(UNKNOWN, ZERO, FieldSample(), FieldSample(), wait_ticks=wait)
         demand = phasing(inputs, memory, None, config)
         memory = demand.memory
-        found.append(None if demand.pulse == NO_PULSE else tuple(demand.pulse))
+        found.append(None if demand.pulse == NO_PULSE else demand.pulse.values())
     return found
 
 

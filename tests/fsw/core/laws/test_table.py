@@ -22,9 +22,9 @@ from fsw.table.table import flight_table
 
 CONFIG = flight_config(flight_table({"body": {"wheel_nms": [0.01, -0.02, 0.03]}}, "table"))
 CONTROL = CONFIG.control
-SETPOINT = CONTROL.setpoint._replace(k_i=0.05, spin_radps=0.01)
+SETPOINT = replace(CONTROL.setpoint, k_i=0.05, spin_radps=0.01)
 KNOWN = Attitude(normalise((0.9, 0.1, -0.2, 0.3)), (0.001, -0.002, 0.003), 0.01, 1e-4, True)
-NOT_VALID = KNOWN._replace(valid=False)
+NOT_VALID = KNOWN.replace(valid=False)
 B_BODY_T = (1.7e-5, -2.3e-5, 3.1e-5)
 SAMPLE = FieldSample((1.6e-5, -2.4e-5, 3.2e-5), tick=44)
 BEFORE = FieldSample((1.5e-5, -2.6e-5, 3.3e-5), tick=43)
@@ -38,7 +38,7 @@ BOTH = pytest.mark.parametrize("mode", ["acquire", "point"])
 
 def asks_for_nothing(demand):
     """Whatever it remembers."""
-    return demand.pulse in (None, NO_PULSE) and demand._replace(memory=(), pulse=None) == Demand()
+    return demand.pulse in (None, NO_PULSE) and demand.replace(memory=(), pulse=None) == Demand()
 
 
 def blind(attitude):
@@ -47,7 +47,7 @@ def blind(attitude):
 
 
 def asked(name, mode, inputs, memory=()):
-    return getattr(LAWS[name], mode)(inputs, memory, SETPOINT._replace(law=name), CONTROL)
+    return getattr(LAWS[name], mode)(inputs, memory, replace(SETPOINT, law=name), CONTROL)
 
 
 def test_numbers_are_unique_and_fit_a_telecommand():
@@ -128,14 +128,14 @@ def test_a_law_is_a_function_and_takes_back_what_it_remembered(name, mode):
 
 def test_every_law_has_its_own_place_in_the_checksum():
     state = boot(CONFIG)
-    sums = {checksum(altered(state, setpoint=SETPOINT._replace(law=name))) for name in LAWS}
+    sums = {checksum(altered(state, setpoint=replace(SETPOINT, law=name))) for name in LAWS}
     assert len(sums) == len(LAWS)
 
 
 @pytest.mark.parametrize("field", ["k_w", "k_a", "k_i", "spin_radps"])
 def test_every_number_of_the_setpoint_shows_in_the_checksum(field):
     state = altered(boot(CONFIG), setpoint=SETPOINT)
-    changed = SETPOINT._replace(**{field: getattr(SETPOINT, field) * (1.0 + 2.0**-52)})
+    changed = replace(SETPOINT, **{field: getattr(SETPOINT, field) * (1.0 + 2.0**-52)})
     assert checksum(altered(state, setpoint=changed)) != checksum(state)
 
 

@@ -209,7 +209,7 @@ class TestSample:
 
     def test_in_sunlight_and_in_the_shadow(self):
         (lit,) = self.taken(REFERENCE.b_eci_t)
-        behind = replace(REFERENCE, r_eci_m=scale(-7.0e6, REFERENCE.sun_eci), radius_m=7.0e6)
+        behind = REFERENCE.replace(r_eci_m=scale(-7.0e6, REFERENCE.sun_eci), radius_m=7.0e6)
         (dark,) = self.taken(REFERENCE.b_eci_t, behind)
         assert lit.lit == 1.0
         assert lit.earth > 0.1

@@ -240,7 +240,7 @@ def ticks_of(samples):
     """For each tick of 1 s field and currents, nothing between the samples, and the models."""
     for number, sample in enumerate(samples):
         r, b = sample.r_eci_m, sample.b_eci_t
-        reference = replace(REFERENCE, r_eci_m=r, b_eci_t=b, radius_m=norm(r))
+        reference = REFERENCE.replace(r_eci_m=r, b_eci_t=b, radius_m=norm(r))
         if number:
             for _ in range(round(SPACING_S) - 1):
                 yield None, (), reference

@@ -1,5 +1,7 @@
 """What is known of a coil after the pulses that showed it: kept with them, forgotten with them."""
 
+from dataclasses import replace
+
 import pytest
 from pulse_samples import B_ECI_T, CONFIG, EVERY, LEVEL_AM2, PULSE_S, PULSES, REFERENCE, START, WEAK, fly
 
@@ -121,7 +123,7 @@ def test_a_pulse_that_ends_is_traced_with_the_gravity_of_its_orbit(monkeypatch):
     ids=["reversed", "another level", "another coil", "not driven"],
 )
 def test_a_pulse_that_was_not_driven_as_requested_is_not_traced(changes):
-    _, state = ended(ENDED._replace(**changes))
+    _, state = ended(replace(ENDED, **changes))
     assert state.estimate.trace is None
 
 
@@ -129,7 +131,7 @@ def test_nor_does_it_take_the_place_of_one_that_is():
     """The oldest of its coil is still traced: added up with the older ones it would count twice."""
     full, _ = fly([2, 0, 2, 1, 2], [0.5, 1.0, 0.5, 1.0, 0.5])
     before = HEALTH._replace(older=NONE_OLDER)
-    health, state = ended(ENDED._replace(driven_level=3), full, before)
+    health, state = ended(replace(ENDED, driven_level=3), full, before)
     assert state.estimate.trace.numbers.count(2) == 3
     assert health == before
 

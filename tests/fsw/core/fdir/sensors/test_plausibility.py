@@ -1,6 +1,5 @@
 """What speaks against a sample by itself: each check at its limit, in its order, by its memory."""
 
-from dataclasses import replace
 from math import cos, nan, radians, sin
 
 import pytest
@@ -110,12 +109,12 @@ def test_a_sun_in_certain_shadow_is_none(reference, readings):
     across = turned(reference, radians(90.0))
     for side_m, cause in ((SHADOW_M - 1e3, SensorFault.UNLIT), (SHADOW_M + 1e3, 0)):
         behind = add(scale(-7.0e6, reference.sun_eci), scale(side_m, across))
-        dark = replace(reference, r_eci_m=behind, lit=False)
+        dark = reference.replace(r_eci_m=behind, lit=False)
         assert causes(examine(Memory(), readings(), dark, LIMITS))[1] == cause
 
 
 def behind_the_earth(reference):
-    return replace(reference, r_eci_m=scale(-7.0e6, reference.sun_eci), lit=False)
+    return reference.replace(r_eci_m=scale(-7.0e6, reference.sun_eci), lit=False)
 
 
 class TestCells:

@@ -40,8 +40,8 @@ def seen(bench, turned):
         orbit = bench.Orbit()
         c = turned((1, -2, 3), 25.0 + 0.05729578 * tick) @ orbit.c_orbit_from_eci(float(tick))
         inputs = bench.inputs_at(orbit, tick, 1.0, c, np.zeros(3), None)
-        hidden = inputs.attitude._replace(omega_body_orbit_radps=(nan, nan, nan))
-        return inputs._replace(attitude=hidden)
+        hidden = inputs.attitude.replace(omega_body_orbit_radps=(nan, nan, nan))
+        return inputs.replace(attitude=hidden)
 
     return at
 
@@ -65,13 +65,13 @@ def test_a_body_that_turns_steadily_is_braked_as_by_its_rate(bench, seen):
         memory = demand.memory
     rate = 1e-3 * np.array([1.0, -2.0, 3.0]) / np.sqrt(14.0)
     known = seen(721)
-    known = known._replace(attitude=known.attitude._replace(omega_body_orbit_radps=tuple(rate)))
+    known = known.replace(attitude=known.attitude.replace(omega_body_orbit_radps=tuple(rate)))
     assert demand.m_body_am2 == pytest.approx(pd_far(known, (), point, settings).m_body_am2, rel=1e-3)
 
 
 def test_an_unknown_attitude_asks_for_nothing_and_forgets(bench, seen):
     settings = bench.config(bench.Body(), 1.0, {"pd_delayed": DelayGains()})
-    demand = delayed(seen(700)._replace(attitude=UNKNOWN), (0.0,) * 10, bench.setpoint(), settings)
+    demand = delayed(seen(700).replace(attitude=UNKNOWN), (0.0,) * 10, bench.setpoint(), settings)
     assert demand.m_body_am2 == (0.0, 0.0, 0.0)
     assert demand.memory == ()
 
@@ -86,8 +86,8 @@ def test_it_converges_without_a_rate_while_the_delay_is_short(bench, turned, del
         c_body_from_orbit=turned((1, 2, 3), 20.0),
         orbits=5.0,
         step_s=10.0,
-        look=lambda inputs: inputs._replace(
-            attitude=inputs.attitude._replace(omega_body_orbit_radps=(nan, nan, nan))
+        look=lambda inputs: inputs.replace(
+            attitude=inputs.attitude.replace(omega_body_orbit_radps=(nan, nan, nan))
         ),
     )
     assert low <= run.angle_deg[-600:].max() < high

@@ -74,7 +74,7 @@ def asked(bench, turned):
     def ask(tick, memory, known_orbit=True):
         c = turned((1, 2, 3), 0.5 * tick)
         inputs = bench.inputs_at(bench.Orbit(), tick, 1.0, c, np.zeros(3), FieldSample(), known=False)
-        inputs = inputs if known_orbit else inputs._replace(reference=None)
+        inputs = inputs if known_orbit else inputs.replace(reference=None)
         return field_direction(inputs, memory, bench.setpoint(k_w=1e7, k_a=2000.0), settings)
 
     return ask
@@ -100,6 +100,6 @@ def test_the_size_of_the_field_is_no_error(bench, turned):
         c = bench.Orbit().c_orbit_from_eci(tick)
         inputs = bench.inputs_at(bench.Orbit(), tick, 1.0, c, np.zeros(3), FieldSample(), known=False)
         scaled = FieldSample(tuple(1.1 * part for part in inputs.sample.b_body_t), tick)
-        asked = field_direction(inputs._replace(sample=scaled), memory, point, settings)
+        asked = field_direction(inputs.replace(sample=scaled), memory, point, settings)
         memory = asked.memory
     assert asked.m_body_am2 == pytest.approx(NOTHING, abs=1e-9)

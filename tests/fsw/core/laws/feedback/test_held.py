@@ -52,7 +52,7 @@ def test_an_unknown_attitude_ends_the_cycle(bench, turned, name):
     inputs = bench.inputs_at(orbit, 700, 1.0, turned((1, 2, 3), 25.0), np.zeros(3), None)
     settings = bench.config(bench.Body(), 1.0, {name: LAWS[name].gains()})
     demand = LAWS[name].point(
-        inputs._replace(attitude=UNKNOWN), (650.0, 1.0, 0.1, 0.2, 0.3), bench.setpoint(), settings
+        inputs.replace(attitude=UNKNOWN), (650.0, 1.0, 0.1, 0.2, 0.3), bench.setpoint(), settings
     )
     assert demand.m_body_am2 == NOTHING
     assert demand.memory == ()

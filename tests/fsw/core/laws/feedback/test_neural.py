@@ -77,8 +77,8 @@ def test_two_lags_in_a_row_follow_what_changes(ask, inputs):
 
 
 def test_without_an_attitude_nothing_is_asked_for(inputs, ask):
-    unknown = inputs._replace(attitude=inputs.attitude._replace(valid=False))
-    for absent in (unknown, inputs._replace(reference=None)):
+    unknown = inputs.replace(attitude=inputs.attitude.replace(valid=False))
+    for absent in (unknown, inputs.replace(reference=None)):
         demand = ask(NOTHING, inputs=absent)
         assert (demand.m_body_am2, demand.memory) == ((0.0, 0.0, 0.0), ())
 

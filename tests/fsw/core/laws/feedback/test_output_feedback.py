@@ -42,9 +42,7 @@ def inputs(bench, turned):
 
 
 def with_attitude(inputs, q, omega=(nan, nan, nan)):
-    return inputs._replace(
-        attitude=inputs.attitude._replace(q_body_from_orbit=q, omega_body_orbit_radps=omega)
-    )
+    return inputs.replace(attitude=inputs.attitude.replace(q_body_from_orbit=q, omega_body_orbit_radps=omega))
 
 
 @pytest.fixture(scope="module")
@@ -135,12 +133,12 @@ def test_with_the_rate_it_converges_sooner(flight):
 
 
 def test_an_unknown_attitude_asks_for_nothing_and_forgets(inputs, settings, bench):
-    demand = output_feedback(inputs._replace(attitude=UNKNOWN), Q, bench.setpoint(k_w=K_W, k_a=K_A), settings)
+    demand = output_feedback(inputs.replace(attitude=UNKNOWN), Q, bench.setpoint(k_w=K_W, k_a=K_A), settings)
     assert demand.m_body_am2 == (0.0, 0.0, 0.0)
     assert demand.memory == ()
 
 
 def test_without_a_field_nothing_is_asked_for(inputs, settings, bench):
-    dark = with_attitude(inputs, Q)._replace(b_body_t=(0.0, 0.0, 0.0))
+    dark = with_attitude(inputs, Q).replace(b_body_t=(0.0, 0.0, 0.0))
     demand = output_feedback(dark, (), bench.setpoint(k_w=K_W, k_a=K_A), settings)
     assert demand.m_body_am2 == (0.0, 0.0, 0.0)

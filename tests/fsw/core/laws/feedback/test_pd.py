@@ -1,5 +1,6 @@
 """The PD dipole law: the equation, what its torque does, and where it is blind."""
 
+from dataclasses import replace
 from math import pi, radians, sin
 
 import numpy as np
@@ -176,20 +177,20 @@ class TestIntegral:
         np.testing.assert_allclose(demand.m_body_am2, -0.08 * np.cross(B_BODY_T, memory), rtol=1e-12)
 
     def test_without_its_gain_it_neither_grows_nor_acts(self):
-        demand = pd(inputs(), (), SETPOINT._replace(k_i=0.0), CONFIG)
+        demand = pd(inputs(), (), replace(SETPOINT, k_i=0.0), CONFIG)
         assert demand == Demand(pd_dipole(B_BODY_T, KNOWN.omega_body_orbit_radps, S, K_W, K_A), memory=ZERO)
 
     @pytest.mark.parametrize("law", [pd, pd_far])
     def test_with_a_gain_raised_since_it_is_limited_to_what_the_coils_give(self, law):
         at_goal = Attitude(IDENTITY, ZERO, 0.01, 1e-4, True)
         memory = (3000.0, -2000.0, 1000.0)
-        demand = law(inputs(at_goal), memory, SETPOINT._replace(k_i=800.0), CONFIG)
+        demand = law(inputs(at_goal), memory, replace(SETPOINT, k_i=800.0), CONFIG)
         limit = MEAN_AM2 / (800.0 * np.linalg.norm(B_BODY_T))
         assert np.linalg.norm(demand.m_body_am2) <= MEAN_AM2 * (1.0 + 1e-12)
         np.testing.assert_allclose(demand.memory, limit * np.array(memory) / np.linalg.norm(memory))
 
     @pytest.mark.parametrize("law", [pd, pd_far])
-    @pytest.mark.parametrize("attitude", [UNKNOWN, KNOWN._replace(valid=False)])
+    @pytest.mark.parametrize("attitude", [UNKNOWN, KNOWN.replace(valid=False)])
     def test_without_an_attitude_it_is_kept_and_nothing_asked_for(self, law, attitude):
         memory = (30.0, -20.0, 10.0)
         assert law(inputs(attitude), memory, SETPOINT, CONFIG) == Demand(memory=memory)

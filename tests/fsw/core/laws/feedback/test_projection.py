@@ -169,7 +169,7 @@ def test_a_weight_on_the_axis_of_small_moment_steadies_it_at_the_others_cost(axe
 def test_an_unknown_attitude_asks_for_nothing(bench, settings, inputs, name, mode):
     law, point = getattr(LAWS[name], mode), bench.setpoint(k_w=K_W, k_a=K_A)
     given_ = settings(name, LAWS[name].gains())
-    assert law(inputs._replace(attitude=UNKNOWN), (), point, given_).m_body_am2 == (0.0, 0.0, 0.0)
+    assert law(inputs.replace(attitude=UNKNOWN), (), point, given_).m_body_am2 == (0.0, 0.0, 0.0)
     assert any(law(inputs, (), point, given_).m_body_am2)
 
 
@@ -182,4 +182,4 @@ def test_upside_down_the_far_form_turns_and_the_near_form_rests(bench, settings,
 
 
 def replace_attitude(inputs, q):
-    return inputs._replace(attitude=inputs.attitude._replace(q_body_from_orbit=q))
+    return inputs.replace(attitude=inputs.attitude.replace(q_body_from_orbit=q))

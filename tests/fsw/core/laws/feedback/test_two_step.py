@@ -77,10 +77,8 @@ def asked(bench, turned):
     def ask(q, memory=(), rate=0.0):
         c = turned((0, 0, 1), 0.0) @ orbit.c_orbit_from_eci(700.0)
         inputs = bench.inputs_at(orbit, 700, 1.0, c, np.zeros(3), None)
-        attitude = inputs.attitude._replace(q_body_from_orbit=q, omega_body_orbit_radps=(rate, 0.0, 0.0))
-        return two_step(
-            inputs._replace(attitude=attitude), memory, bench.setpoint(k_w=K_W, k_a=K_A), settings
-        )
+        attitude = inputs.attitude.replace(q_body_from_orbit=q, omega_body_orbit_radps=(rate, 0.0, 0.0))
+        return two_step(inputs.replace(attitude=attitude), memory, bench.setpoint(k_w=K_W, k_a=K_A), settings)
 
     c = turned((0, 0, 1), 0.0) @ orbit.c_orbit_from_eci(700.0)
     field = np.array(bench.inputs_at(orbit, 700, 1.0, c, np.zeros(3), None).b_body_t)

@@ -1,7 +1,5 @@
 """Field tracking by direction: the size of the field does not count, and the air gives the third axis."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -35,7 +33,7 @@ def test_a_model_that_is_too_weak_leaves_nothing_to_do_at_the_nominal_attitude(b
             c = bench.Orbit().c_orbit_from_eci(float(tick))
             inputs = bench.inputs_at(bench.Orbit(), tick, 1.0, c, np.zeros(3), FieldSample())
             weak = tuple(0.9 * part for part in inputs.reference.b_eci_t)
-            inputs = inputs._replace(reference=replace(inputs.reference, b_eci_t=weak))
+            inputs = inputs.replace(reference=inputs.reference.replace(b_eci_t=weak))
             demand = law(inputs, memory, bench.setpoint(k_w=1e6, k_a=800.0), bench.config(bench.Body(), 1.0))
             memory = demand.memory
         asked[law] = np.linalg.norm(demand.m_body_am2)

@@ -98,9 +98,9 @@ def test_without_knowledge_nothing_is_asked_for(bench, missing):
         lqr_averaged(inputs, (), bench.setpoint(), bench.scheduled(body, 1.0, "lqr_averaged")).m_body_am2
     )
     if missing == "attitude":
-        inputs = inputs._replace(attitude=UNKNOWN)
+        inputs = inputs.replace(attitude=UNKNOWN)
     if missing == "reference":
-        inputs = inputs._replace(reference=None)
+        inputs = inputs.replace(reference=None)
     assert lqr_averaged(inputs, (), bench.setpoint(), settings).m_body_am2 == (0.0, 0.0, 0.0)
 
 
@@ -111,7 +111,7 @@ def test_of_a_turned_body_under_a_torque_the_dipole_is_that_of_the_equation(benc
     c_orbit, relative = orbit.c_orbit_from_eci(900.0), np.array([1e-4, -2e-4, 3e-4])
     omega = relative + orbit.rate_radps * c[:, 2]
     inputs = bench.inputs_at(orbit, 900, 1.0, c @ c_orbit, omega, None)
-    asked = lqr_averaged(inputs._replace(torque_body_nm=tuple(torque)), (), bench.setpoint(), settings)
+    asked = lqr_averaged(inputs.replace(torque_body_nm=tuple(torque)), (), bench.setpoint(), settings)
     table = settings.schedules["lqr_averaged"]
     problem, both = table.problem, table.costs[0]
     known = c.T @ (torque + problem.resting_nm)

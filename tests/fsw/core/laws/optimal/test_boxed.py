@@ -101,7 +101,7 @@ def test_without_an_attitude_nothing_is_asked_for(bench, law):
     inputs = bench.inputs_at(orbit, 9, 1.0, np.eye(3), np.array([1e-3, 2e-3, 1e-3]), None)
     point = bench.setpoint(k_a=1600.0)
     assert any(law(inputs, (), point, settings).m_body_am2)
-    assert law(inputs._replace(attitude=UNKNOWN), (), point, settings).m_body_am2 == (0.0, 0.0, 0.0)
+    assert law(inputs.replace(attitude=UNKNOWN), (), point, settings).m_body_am2 == (0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize(("law", "angle_deg"), [(boxed, 60.0), (boxed_far, 60.0), (boxed_far, 170.0)])
@@ -112,9 +112,9 @@ def test_the_torque_is_against_the_turn(bench, turned, law, angle_deg):
     for tick in range(0, 6000, 700):
         omega = orbit.rate_radps * c[:, 2]
         inputs = bench.inputs_at(orbit, tick, 1.0, c @ orbit.c_orbit_from_eci(float(tick)), omega, None)
-        other = inputs.attitude._replace(
+        other = inputs.attitude.replace(
             q_body_from_orbit=tuple(-x for x in inputs.attitude.q_body_from_orbit)
         )
         for attitude in (inputs.attitude, other):
-            demand = law(inputs._replace(attitude=attitude), (), bench.setpoint(k_a=1600.0), settings)
+            demand = law(inputs.replace(attitude=attitude), (), bench.setpoint(k_a=1600.0), settings)
             assert np.cross(demand.m_body_am2, inputs.b_body_t) @ np.array([1.0, -2.0, 3.0]) < 0.0

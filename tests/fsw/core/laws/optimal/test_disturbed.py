@@ -92,7 +92,7 @@ def asked(bench, turned):
         c_body_from_eci = c @ orbit.c_orbit_from_eci(tick * 10.0)
         inputs = bench.inputs_at(orbit, tick, 10.0, c_body_from_eci, np.array([1e-4, 2e-4, 1.3e-3]), None)
         settings = bench.scheduled(bench.Body(INERTIA, most_am2=2.0), 10.0, "lqr_disturbed")
-        return lqr_disturbed(inputs._replace(**changed), memory, bench.setpoint(), settings)
+        return lqr_disturbed(inputs.replace(**changed), memory, bench.setpoint(), settings)
 
     return ask
 

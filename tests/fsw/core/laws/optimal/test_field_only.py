@@ -114,7 +114,7 @@ def asked(bench, turned):
         before = bench.inputs_at(orbit, 3, 1.0, c, np.zeros(3), None).sample
         inputs = bench.inputs_at(orbit, tick, 1.0, c, np.array([1e-3, 0.0, 1e-3]), before, sampled=sampled)
         settings = bench.scheduled(body, 1.0, "lqg_field")
-        return lqg_field(inputs._replace(**changed), memory, bench.setpoint(), settings)
+        return lqg_field(inputs.replace(**changed), memory, bench.setpoint(), settings)
 
     return ask
 

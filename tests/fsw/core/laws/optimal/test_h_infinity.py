@@ -78,9 +78,9 @@ def test_without_knowledge_nothing_is_asked_for(bench, missing):
     full = bench.scheduled(body, 1.0, "h_infinity")
     assert any(h_infinity(inputs, (), bench.setpoint(), full).m_body_am2)
     if missing == "attitude":
-        inputs = inputs._replace(attitude=UNKNOWN)
+        inputs = inputs.replace(attitude=UNKNOWN)
     if missing == "reference":
-        inputs = inputs._replace(reference=None)
+        inputs = inputs.replace(reference=None)
     assert h_infinity(inputs, (), bench.setpoint(), settings).m_body_am2 == (0.0, 0.0, 0.0)
 
 

@@ -59,7 +59,7 @@ def flight(bench, settings, turned):
             c_body_from_orbit=turned((1, 2, 3), angle_deg),
             orbits=orbits,
             step_s=10.0,
-            look=lambda inputs: inputs._replace(torque_body_nm=torque if known else (0.0, 0.0, 0.0)),
+            look=lambda inputs: inputs.replace(torque_body_nm=torque if known else (0.0, 0.0, 0.0)),
             settings=settings,
         )
 
@@ -84,7 +84,7 @@ def test_of_a_turned_body_the_gain_is_that_of_orbital_axes(bench, inputs, turned
     theta = 2.0 * np.sin(np.radians(7.5)) * np.array([1.0, -2.0, 3.0]) / np.sqrt(14.0)
     state = np.concatenate([c.T @ relative, theta, c.T @ (torque + table.problem.resting_nm)])
     step = int(orbit.rate_radps * 2000.0 * STEPS / (2.0 * np.pi))
-    m = lqr(inputs._replace(torque_body_nm=tuple(torque)), (), bench.setpoint(), ready).m_body_am2
+    m = lqr(inputs.replace(torque_body_nm=tuple(torque)), (), bench.setpoint(), ready).m_body_am2
     assert m == pytest.approx(c @ table.gains[step] @ state, rel=1e-9)
 
 
@@ -132,7 +132,7 @@ def test_what_rests_on_an_oblique_body_is_reckoned_with(bench, settings, inputs)
     table = schedule(oblique, (0.0, 0.0, 0.0), 1.04e-3, radians(98.6), 2.1e-5, WEIGHTS)
     given = replace(settings, schedules={"lqr": table})
     rest = table.problem.resting_nm
-    cancelled = inputs._replace(torque_body_nm=tuple(-part for part in rest))
+    cancelled = inputs.replace(torque_body_nm=tuple(-part for part in rest))
     flat = replace(table, problem=replace(table.problem, resting_nm=(0.0, 0.0, 0.0)))
     without = replace(settings, schedules={"lqr": flat})
     point = bench.setpoint()
@@ -148,12 +148,12 @@ def test_the_torque_of_a_driven_wheel_at_rest_is_what_turns_its_momentum_about_t
     axis, momentum_nms = (0.48, -0.6, 0.64), -0.03
     wheel = Wheel(axis, 2e-4, 2e-3, 0.12, 0.0, 0.0, tick_s=10.0, stale_ticks=10)
     driven, table = replace(settings, wheel=wheel), settings.schedules["lqr"]
-    turned = inputs._replace(wheel_nms=momentum_nms, torque_body_nm=(3e-6, -2e-6, 5e-6))
+    turned = inputs.replace(wheel_nms=momentum_nms, torque_body_nm=(3e-6, -2e-6, 5e-6))
     rate = np.array([0.0, 0.0, bench.Orbit().rate_radps])
     known = np.array(expected_torque(turned, table))
     seen = exact_torque(turned, turned.reference, table, driven)
     assert seen - known == pytest.approx(-np.cross(rate, momentum_nms * np.array(axis)), rel=1e-9, abs=1e-15)
-    assert exact_torque(turned._replace(wheel_nms=None), turned.reference, table, driven) == tuple(known)
+    assert exact_torque(turned.replace(wheel_nms=None), turned.reference, table, driven) == tuple(known)
 
 
 @pytest.mark.parametrize("t_s", [0.0, 700.0, 2500.0, 4000.0, 5900.0])
@@ -188,9 +188,9 @@ def test_the_bound_of_the_coils_holds(bench, settings, inputs):
 def test_without_knowledge_nothing_is_asked_for(bench, settings, inputs, missing):
     given = settings if missing != "schedule" else replace(settings, schedules={})
     if missing == "attitude":
-        inputs = inputs._replace(attitude=UNKNOWN)
+        inputs = inputs.replace(attitude=UNKNOWN)
     if missing == "reference":
-        inputs = inputs._replace(reference=None)
+        inputs = inputs.replace(reference=None)
     assert lqr(inputs, (), bench.setpoint(), given).m_body_am2 == (0.0, 0.0, 0.0)
 
 

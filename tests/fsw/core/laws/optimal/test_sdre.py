@@ -51,7 +51,7 @@ def flight(bench, turned):
             c_body_from_orbit=turned((1, 2, 3), angle_deg),
             orbits=orbits,
             step_s=20.0,
-            look=lambda inputs: inputs._replace(ephemeris=model, tick=20 * inputs.tick),
+            look=lambda inputs: inputs.replace(ephemeris=model, tick=20 * inputs.tick),
             settings=bench.scheduled(body, 1.0, "sdre", also=("lqr",)),
         )
 
@@ -73,10 +73,10 @@ def test_without_knowledge_nothing_is_asked_for(bench, missing):
     body, orbit = bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=2.0), bench.Orbit()
     full, none = bench.scheduled(body, 1.0, "sdre"), bench.scheduled(body, 1.0, "lqr")
     inputs = bench.inputs_at(orbit, 9, 1.0, np.eye(3), np.array([1e-3, 2e-3, 1e-3]), None)
-    inputs = inputs._replace(ephemeris=bench.model_of(orbit))
+    inputs = inputs.replace(ephemeris=bench.model_of(orbit))
     assert any(sdre(inputs, (), bench.setpoint(), full).m_body_am2)
     if missing != "schedule":
-        inputs = inputs._replace(**{missing: UNKNOWN if missing == "attitude" else None})
+        inputs = inputs.replace(**{missing: UNKNOWN if missing == "attitude" else None})
     settings = none if missing == "schedule" else full
     assert sdre(inputs, (), bench.setpoint(), settings).m_body_am2 == (0.0, 0.0, 0.0)
 
@@ -85,11 +85,11 @@ def test_a_solution_is_flown_for_its_steps_and_then_made_anew(bench):
     body, orbit = bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=2.0), bench.Orbit()
     settings = bench.scheduled(body, 1.0, "sdre")
     inputs = bench.inputs_at(orbit, 9, 1.0, np.eye(3), np.array([1e-3, 2e-3, 1e-3]), None)
-    inputs = inputs._replace(ephemeris=bench.model_of(orbit))
+    inputs = inputs.replace(ephemeris=bench.model_of(orbit))
     memory = sdre(inputs, (), bench.setpoint(), settings).memory
     last = int(2.0 * settings.schedules["sdre"].problem.step_s)
-    assert sdre(inputs._replace(tick=9 + last), memory, bench.setpoint(), settings).memory == memory
-    assert sdre(inputs._replace(tick=10 + last), memory, bench.setpoint(), settings).memory[0] == 10 + last
+    assert sdre(inputs.replace(tick=9 + last), memory, bench.setpoint(), settings).memory == memory
+    assert sdre(inputs.replace(tick=10 + last), memory, bench.setpoint(), settings).memory[0] == 10 + last
 
 
 TUMBLING = np.array([-0.022, 0.0051, -0.0021])
@@ -100,7 +100,7 @@ def test_where_the_course_leaves_all_bounds_nothing_is_asked_for(bench, times, i
     """Two minutes, the step of the regulator, are many turns of a body that tumbles fast."""
     settings = bench.scheduled(bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=6.4), 1.0, "sdre")
     inputs = bench.inputs_at(bench.Orbit(), 9, 1.0, np.eye(3), times * TUMBLING, None)
-    found = sdre(inputs._replace(ephemeris=bench.model_of(bench.Orbit())), (), bench.setpoint(), settings)
+    found = sdre(inputs.replace(ephemeris=bench.model_of(bench.Orbit())), (), bench.setpoint(), settings)
     assert any(found.m_body_am2) is is_solved
     assert bool(found.memory) is is_solved
     assert np.isfinite(found.m_body_am2).all()
@@ -162,7 +162,7 @@ def test_the_fields_looked_at_are_those_in_the_middle_of_the_steps_ahead(bench, 
     orbit = bench.Orbit()
     settings = bench.scheduled(bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=2.0), 1.0, "sdre")
     inputs = bench.inputs_at(orbit, 700, 1.0, np.eye(3), np.array([1e-3, 2e-3, 1e-3]), None)
-    sdre(inputs._replace(ephemeris=bench.model_of(orbit)), (), bench.setpoint(), settings)
+    sdre(inputs.replace(ephemeris=bench.model_of(orbit)), (), bench.setpoint(), settings)
     ((b_orbit_t, end_node),) = seen
     step_s = settings.schedules["sdre"].problem.step_s
     t_s = 700.0 + step_s * (np.arange(len(b_orbit_t)) + 0.5)

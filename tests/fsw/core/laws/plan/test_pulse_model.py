@@ -22,7 +22,9 @@ def model_of(axes=AXES):
 def test_there_are_eighteen_and_none():
     pulses = model_of().pulses
     assert pulses[0] == NO_PULSE
-    assert sorted(pulses[1:]) == [Pulse(coil, level) for coil in range(3) for level in (-3, -2, -1, 1, 2, 3)]
+    assert sorted(pulses[1:], key=Pulse.values) == [
+        Pulse(coil, level) for coil in range(3) for level in (-3, -2, -1, 1, 2, 3)
+    ]
     assert [pulse.coil for pulse in pulses[1:]] == [0] * 6 + [1] * 6 + [2] * 6, "coil by coil"
 
 

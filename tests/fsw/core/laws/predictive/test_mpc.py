@@ -49,7 +49,7 @@ def inputs(bench, turned):
     orbit = bench.Orbit()
     c_body_from_eci = turned((1, -2, 3), 15.0) @ orbit.c_orbit_from_eci(30.0)
     given = bench.inputs_at(orbit, 3, STEP_S, c_body_from_eci, np.array([1e-4, 2e-4, 1.3e-3]), None)
-    return given._replace(ephemeris=model_of(FieldKind.DIRECT_DIPOLE, orbit))
+    return given.replace(ephemeris=model_of(FieldKind.DIRECT_DIPOLE, orbit))
 
 
 @pytest.mark.parametrize("steps", [APPLIED_STEPS, STEPS // 3, STEPS, 2 * STEPS])
@@ -111,7 +111,7 @@ def test_on_a_tilted_field_with_a_constant_torque_the_plan_points_better(bench, 
             omega_body=(0.0, 0.0, orbit.rate_radps),
             seconds=6.0 * orbit.period_s,
             step_s=STEP_S,
-            look=lambda inputs: inputs._replace(torque_body_nm=TORQUE, ephemeris=model),
+            look=lambda inputs: inputs.replace(torque_body_nm=TORQUE, ephemeris=model),
             settings=settings,
         )
         return float(np.sqrt(np.mean(run.angle_deg[-len(run.t_s) // 2 :] ** 2)))
@@ -178,7 +178,7 @@ def test_a_residual_dipole_that_is_known_costs_nothing_and_one_that_is_not_drive
             omega_body=(0.0, 0.0, orbit.rate_radps),
             seconds=3.0 * orbit.period_s,
             step_s=STEP_S,
-            look=lambda inputs: inputs._replace(
+            look=lambda inputs: inputs.replace(
                 ephemeris=model, dipole_body_am2=dipole_am2 if known else (0.0, 0.0, 0.0)
             ),
             settings=flown,
@@ -194,8 +194,8 @@ def test_a_plan_is_flown_for_its_steps_and_then_made_anew(bench, settings, input
     step_ticks = settings.schedules["mpc"].problem.step_s / STEP_S
     memory = mpc(inputs, (), bench.setpoint(), settings).memory
     last, first = int(APPLIED_STEPS * step_ticks), int(APPLIED_STEPS * step_ticks) + 1
-    still = mpc(inputs._replace(tick=3 + last), memory, bench.setpoint(), settings).memory
-    anew = mpc(inputs._replace(tick=3 + first), memory, bench.setpoint(), settings).memory
+    still = mpc(inputs.replace(tick=3 + last), memory, bench.setpoint(), settings).memory
+    anew = mpc(inputs.replace(tick=3 + first), memory, bench.setpoint(), settings).memory
     assert still == memory
     assert anew[0] == 3 + first
     assert anew[1:] != memory[1:]
@@ -205,7 +205,7 @@ def test_each_step_of_a_plan_has_its_gain(bench, settings, inputs):
     step_ticks = settings.schedules["mpc"].problem.step_s / STEP_S
     memory = mpc(inputs, (), bench.setpoint(), settings).memory
     ticks = [3 + int(step * step_ticks) + 1 for step in range(APPLIED_STEPS)]
-    asked = [mpc(inputs._replace(tick=tick), memory, bench.setpoint(), settings) for tick in ticks]
+    asked = [mpc(inputs.replace(tick=tick), memory, bench.setpoint(), settings) for tick in ticks]
     assert len({demand.m_body_am2 for demand in asked}) == APPLIED_STEPS
     assert {demand.memory for demand in asked} == {memory}
 
@@ -213,7 +213,7 @@ def test_each_step_of_a_plan_has_its_gain(bench, settings, inputs):
 @pytest.mark.parametrize("foreign", [(1.0, 2.0, 3.0), (900.0,) + (7.0,) * 135, (0.0,) * 136])
 def test_what_is_not_a_plan_of_now_is_replaced(bench, settings, inputs, foreign):
     """Another law's memory, a plan of the future, and one long gone."""
-    late = inputs._replace(tick=500)
+    late = inputs.replace(tick=500)
     assert mpc(late, foreign, bench.setpoint(), settings) == mpc(late, (), bench.setpoint(), settings)
 
 
@@ -234,10 +234,10 @@ def test_without_a_bound_in_reach_it_changes_nothing(bench, settings, inputs):
 def test_without_knowledge_nothing_is_asked_for(bench, settings, inputs, missing):
     given = settings if missing != "schedule" else replace(settings, schedules={})
     if missing != "schedule":
-        inputs = inputs._replace(**{missing: UNKNOWN if missing == "attitude" else None})
+        inputs = inputs.replace(**{missing: UNKNOWN if missing == "attitude" else None})
     assert mpc(inputs, (), bench.setpoint(), given).m_body_am2 == (0.0, 0.0, 0.0)
 
 
 def test_a_gap_in_the_attitude_keeps_the_plan(bench, settings, inputs):
     memory = mpc(inputs, (), bench.setpoint(), settings).memory
-    assert mpc(inputs._replace(attitude=UNKNOWN), memory, bench.setpoint(), settings).memory == memory
+    assert mpc(inputs.replace(attitude=UNKNOWN), memory, bench.setpoint(), settings).memory == memory

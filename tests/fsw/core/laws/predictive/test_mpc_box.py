@@ -64,7 +64,7 @@ def flight(bench, turned):
             c_body_from_orbit=turned((1, 2, 3), 20.0),
             orbits=1.5,
             step_s=20.0,
-            look=lambda inputs: inputs._replace(ephemeris=model, tick=20 * inputs.tick),
+            look=lambda inputs: inputs.replace(ephemeris=model, tick=20 * inputs.tick),
             settings=bench.scheduled(body, 1.0, "mpc_box", also=("mpc",)),
         )
 
@@ -85,9 +85,9 @@ def asked(bench, turned):
         orbit, body = bench.Orbit(), bench.Body(INERTIA, most_am2=2.0)
         c = turned((1, -2, 3), 15.0) @ orbit.c_orbit_from_eci(float(tick))
         inputs = bench.inputs_at(orbit, tick, 1.0, c, np.array([1e-3, 0.0, 1e-3]), None)
-        inputs = inputs._replace(ephemeris=bench.model_of(orbit))
+        inputs = inputs.replace(ephemeris=bench.model_of(orbit))
         ready = settings or bench.scheduled(body, 1.0, "mpc_box")
-        return mpc_box(inputs._replace(**changed), memory, bench.setpoint(), ready)
+        return mpc_box(inputs.replace(**changed), memory, bench.setpoint(), ready)
 
     return ask
 
@@ -146,6 +146,6 @@ def test_the_programme_ends_in_the_cost_of_its_last_node(bench, monkeypatch):
     orbit, body = bench.Orbit(), bench.Body(INERTIA, most_am2=2.0)
     settings = bench.scheduled(body, 1.0, "mpc_box", {"horizon_orbits": 0.25})
     inputs = bench.inputs_at(orbit, 700, 1.0, np.eye(3), np.array([1e-3, 2e-3, 1e-3]), None)
-    mpc_box(inputs._replace(ephemeris=bench.model_of(orbit)), (), bench.setpoint(), settings)
+    mpc_box(inputs.replace(ephemeris=bench.model_of(orbit)), (), bench.setpoint(), settings)
     at = orbit.rate_radps * 700.0 / (2.0 * np.pi) * STEPS
     assert ends == [(STEPS // 4, (int(at) + STEPS // 4) % STEPS)]

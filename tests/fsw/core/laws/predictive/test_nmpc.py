@@ -74,7 +74,7 @@ def asked(bench, turned):
         settings = replace(bench.config(body, 1.0, {name: kind(iterations=1.0)}), mean_dipole_am2=MOST_AM2)
         c = turned((1, -2, 3), 15.0) @ orbit.c_orbit_from_eci(9.0)
         inputs = bench.inputs_at(orbit, tick, 1.0, c, np.array(RATE), None)
-        return law(inputs._replace(**changed), memory, bench.setpoint(), settings)
+        return law(inputs.replace(**changed), memory, bench.setpoint(), settings)
 
     return ask
 
@@ -157,7 +157,7 @@ def test_what_is_planned_for_is_what_is_known(bench, turned):
     orbit, c = bench.Orbit(), turned((1, -2, 3), 15.0)
     settings = bench.config(bench.Body(np.diag([1.02, 1.85, 1.95]), (0.01, -0.02, 0.03)), 1.0)
     inputs = bench.inputs_at(orbit, 9, 1.0, c, np.array(RATE), None)
-    reference = replace(inputs.reference, b_rate_eci_tps=(1e-8, -2e-8, 3e-8))
+    reference = inputs.reference.replace(b_rate_eci_tps=(1e-8, -2e-8, 3e-8))
     moving = motion(inputs, settings)
     case = nmpc.case_of(moving, reference, NmpcGains(), None, settings)
     assert case.wheel_body_nms.tolist() == [0.01, -0.02, 0.03]

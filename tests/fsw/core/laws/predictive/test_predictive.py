@@ -1,5 +1,6 @@
 """The predictive law against an integration of the rigid body, and its impulse against a minimiser."""
 
+from dataclasses import replace
 from math import sqrt
 
 import numpy as np
@@ -195,12 +196,12 @@ class TestLaw:
         expected = J @ (np.array([0.02, 0.0, 0.0]) - omega - PULSE_S * change(c, omega))
         demand = predictive(inputs(KNOWN), (), SETPOINT, CONFIG)
         assert demand.impulse_body_nms == pytest.approx(vec(expected), rel=1e-9)
-        assert demand._replace(impulse_body_nms=None) == Demand(), "no dipole besides, and no memory"
+        assert demand.replace(impulse_body_nms=None) == Demand(), "no dipole besides, and no memory"
 
     def test_what_the_known_disturbances_do_over_a_pulse_is_missing_besides(self):
         """The impulses of the torque and of the residual dipole in the field, taken off."""
         torque, dipole, b = np.array([2e-7, -3e-7, 5e-7]), np.array([0.03, 0.01, -0.02]), (1e-5, -2e-5, 3e-5)
-        given = inputs(KNOWN)._replace(torque_body_nm=vec(torque), dipole_body_am2=vec(dipole))
+        given = inputs(KNOWN).replace(torque_body_nm=vec(torque), dipole_body_am2=vec(dipole))
         without, known = (
             np.array(predictive(case, (), SETPOINT, CONFIG).impulse_body_nms)
             for case in (inputs(KNOWN), given)
@@ -210,11 +211,11 @@ class TestLaw:
 
     @pytest.mark.parametrize(
         ("attitude", "reference"),
-        [(UNKNOWN, REFERENCE), (KNOWN._replace(valid=False), REFERENCE), (KNOWN, None)],
+        [(UNKNOWN, REFERENCE), (KNOWN.replace(valid=False), REFERENCE), (KNOWN, None)],
     )
     def test_without_attitude_or_orbit_it_asks_for_nothing(self, attitude, reference):
         assert predictive(inputs(attitude, reference), (), SETPOINT, CONFIG) == Demand()
 
     def test_the_gains_do_not_matter(self):
-        other = SETPOINT._replace(k_w=9.0, k_a=9.0, k_i=9.0)
+        other = replace(SETPOINT, k_w=9.0, k_a=9.0, k_i=9.0)
         assert predictive(inputs(KNOWN), (), other, CONFIG) == predictive(inputs(KNOWN), (), SETPOINT, CONFIG)

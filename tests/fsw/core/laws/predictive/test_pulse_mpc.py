@@ -133,7 +133,7 @@ def test_without_knowledge_nothing_is_asked_for(missing):
     elif missing == "pulses":
         control = replace(control, pulse_model=None)
     else:
-        inputs = inputs._replace(**{missing: UNKNOWN if missing == "attitude" else None})
+        inputs = inputs.replace(**{missing: UNKNOWN if missing == "attitude" else None})
     asked = pulse_mpc(inputs, (7.0,), control.setpoint, control)
     assert (asked.pulse, asked.m_body_am2, asked.memory) == (None, ZERO, (7.0,))
 

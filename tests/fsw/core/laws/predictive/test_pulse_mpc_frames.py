@@ -30,7 +30,7 @@ def told(monkeypatch):
         b_body_t = rotate(Q, rotate(reference.q_orbit_from_eci, reference.b_eci_t))
         sample = FieldSample(b_body_t, tick)
         inputs = LawInput(Attitude(Q, (1e-4, -2e-4, 3e-4), 1e-3, 1e-6, True), b_body_t, sample, sample)
-        inputs = inputs._replace(reference=reference, tick=tick, ephemeris=model, wait_ticks=(0, 0, 0))
+        inputs = inputs.replace(reference=reference, tick=tick, ephemeris=model, wait_ticks=(0, 0, 0))
         monkeypatch.setattr(
             "fsw.core.laws.predictive.pulse_mpc.first_pulse",
             lambda state, ahead, *rest: seen.extend(ahead) or NO_PULSE,
@@ -44,7 +44,8 @@ def told(monkeypatch):
 def test_of_each_pulse_fired_now_it_is_the_change_of_rate_turned_back_from_the_body(told):
     """J^-1 (T_p m x b) in body axes, by numpy."""
     control, inputs, seen = told(TICK, SECTIONS)
-    for (coil, level), kick in zip(control.pulse_model.pulses, seen[0].kicks, strict=True):
+    for pulse, kick in zip(control.pulse_model.pulses, seen[0].kicks, strict=True):
+        coil, level = pulse.values()
         m = np.eye(3)[coil] * np.sign(level) * (0.0, *LEVELS_AM2)[abs(level)]
         expected = np.linalg.solve(INERTIA, control.horizon_s * np.cross(m, inputs.b_body_t))
         assert rotate(Q, tuple(kick.tolist())) == pytest.approx(expected, rel=1e-6, abs=1e-14)

@@ -76,7 +76,7 @@ class TestChoices:
 
     @pytest.mark.parametrize("place", range(19))
     def test_turn_the_body_as_pulse_and_field_do(self, place):
-        (coil, level), b_t = SHARED.pulses[place], np.array([1.7e-5, -2.3e-5, 3.1e-5])
+        (coil, level), b_t = SHARED.pulses[place].values(), np.array([1.7e-5, -2.3e-5, 3.1e-5])
         m = np.zeros(3)
         m[coil] = np.sign(level) * (0.0, *LEVELS)[abs(level)]
         expected = np.linalg.solve(INERTIA, PULSE_S * np.cross(m, b_t))

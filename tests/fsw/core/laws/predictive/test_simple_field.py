@@ -40,7 +40,7 @@ def flight(bench, turned):
             c_body_from_orbit=turned((1, 2, 3), 20.0),
             orbits=orbits,
             step_s=20.0,
-            look=lambda inputs: inputs._replace(ephemeris=model, tick=20 * inputs.tick),
+            look=lambda inputs: inputs.replace(ephemeris=model, tick=20 * inputs.tick),
             settings=bench.scheduled(body, 1.0, name, gains),
         )
 
@@ -68,9 +68,9 @@ def asked(bench, turned):
         orbit, body = bench.Orbit(), bench.Body(DIAGONAL, most_am2=2.0)
         c = turned((1, -2, 3), 15.0) @ orbit.c_orbit_from_eci(float(tick))
         inputs = bench.inputs_at(orbit, tick, 1.0, c, np.array([1e-3, 0.0, 1e-3]), None)
-        inputs = inputs._replace(ephemeris=bench.model_of(orbit, FieldKind.DIRECT_DIPOLE))
+        inputs = inputs.replace(ephemeris=bench.model_of(orbit, FieldKind.DIRECT_DIPOLE))
         settings = bench.scheduled(body, 1.0, name)
-        return law(inputs._replace(**changed), memory, bench.setpoint(), settings)
+        return law(inputs.replace(**changed), memory, bench.setpoint(), settings)
 
     return ask
 

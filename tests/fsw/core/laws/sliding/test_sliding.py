@@ -172,7 +172,7 @@ def test_integrals_are_limited_to_what_the_coils_can_hold(inputs, asked, lost):
 @pytest.mark.parametrize("missing", ["attitude", "reference"])
 def test_without_knowledge_nothing_is_asked_for_and_integrals_stay(inputs, asked, name, missing):
     held = (1e-6, 2e-6, 3e-6, -1e-6, -2e-6, -3e-6) if name == "sliding_integral" else ()
-    less = inputs._replace(**{missing: UNKNOWN if missing == "attitude" else None})
+    less = inputs.replace(**{missing: UNKNOWN if missing == "attitude" else None})
     demand = asked(name, less, held)
     assert demand.m_body_am2 == (0.0, 0.0, 0.0)
     assert demand.memory == held
@@ -180,7 +180,7 @@ def test_without_knowledge_nothing_is_asked_for_and_integrals_stay(inputs, asked
 
 @pytest.mark.parametrize("name", OWN)
 def test_without_a_field_nothing_is_asked_for(inputs, asked, name):
-    demand = asked(name, inputs._replace(b_body_t=(0.0, 0.0, 0.0)))
+    demand = asked(name, inputs.replace(b_body_t=(0.0, 0.0, 0.0)))
     assert demand.m_body_am2 == (0.0, 0.0, 0.0)
     assert all(map(isfinite, demand.memory))
 

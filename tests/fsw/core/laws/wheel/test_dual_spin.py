@@ -109,7 +109,7 @@ def test_at_a_quarter_turn_of_pitch_the_wheel_is_turned_to_the_normal_too(bench,
     c = turned((0, 0, 1), 90.0) @ turned((1, 0, 0), 5.0)
     c_body_from_eci = c @ orbit.c_orbit_from_eci(700.0)
     inputs = bench.inputs_at(orbit, 700, 1.0, c_body_from_eci, orbit.rate_radps * c[:, 2], None)
-    m = law(inputs._replace(wheel_nms=0.05), (), bench.setpoint(k_a=k_a), settings).m_body_am2
+    m = law(inputs.replace(wheel_nms=0.05), (), bench.setpoint(k_a=k_a), settings).m_body_am2
     assert m[2] == pytest.approx(-2.0 * k_a * inputs.b_body_t[1] * c[0, 2], rel=1e-9)
     assert abs(c[0, 2]) > 0.08
 

@@ -50,7 +50,7 @@ def test_the_wheel_turns_the_body_against_its_moment_about_axis_3(bench, turned)
     settings = bench.config(bench.Body(inertia, driven=WHEEL), 4.0, {"pitch_wheel": gains})
     c = turned((0, 0, 1), 20.0) @ orbit.c_orbit_from_eci(400.0)
     inputs = bench.inputs_at(orbit, 100, 4.0, c, (0.0, 0.0, orbit.rate_radps + 1e-3), FieldSample())
-    demand = pitch_wheel(inputs._replace(wheel_nms=0.05), (), bench.setpoint(), settings)
+    demand = pitch_wheel(inputs.replace(wheel_nms=0.05), (), bench.setpoint(), settings)
     on_body_nm = 1.95 * (0.02**2 * np.sin(0.1 - np.radians(20.0)) - 2.0 * 0.8 * 0.02 * 1e-3)
     assert demand.wheel_torque_nm == pytest.approx(-on_body_nm, rel=1e-9)
 

@@ -81,14 +81,14 @@ def test_what_acts_at_the_goal_is_answered_at_once(bench, turned):
     omega = orbit.rate_radps * (c @ orbit.c_orbit_from_eci(tick).T)[:, 2]
     settings = bench.config(bench.Body(driven=WHEEL), 1.0)
     inputs = bench.inputs_at(orbit, tick, 1.0, c, omega, FieldSample())
-    inputs = inputs._replace(wheel_nms=0.07, torque_body_nm=disturbance)
+    inputs = inputs.replace(wheel_nms=0.07, torque_body_nm=disturbance)
     spring = wanted_torque(inputs.attitude, settings.inertia_kgm2, 0.02, 0.7)
     added = np.cross(omega, (0.0, 0.0, 0.07)) - disturbance
     assert np.abs(added).min() > 1e-7
     assert compensated_torque(inputs, settings, 0.02, 0.7) == pytest.approx(
         np.array(spring) + added, rel=1e-9
     )
-    assert compensated_torque(inputs._replace(reference=None), settings, 0.02, 0.7) == pytest.approx(
+    assert compensated_torque(inputs.replace(reference=None), settings, 0.02, 0.7) == pytest.approx(
         np.array(spring) - disturbance, rel=1e-9
     )
 
@@ -141,7 +141,7 @@ def test_beyond_what_motor_or_coils_give_the_torque_keeps_its_direction(bench, t
     settings = bench.config(
         bench.Body(np.array(J), most_am2=most_am2, driven=wheel), 1.0, {"two_coils": TwoCoilsGains()}
     )
-    inputs = bench.inputs_at(orbit, 100, 1.0, c, np.zeros(3), FieldSample())._replace(wheel_nms=0.05)
+    inputs = bench.inputs_at(orbit, 100, 1.0, c, np.zeros(3), FieldSample()).replace(wheel_nms=0.05)
     wanted = compensated_torque(inputs, settings, 0.01, 1.0)
     demand = two_coils(inputs, (), bench.setpoint(), settings)
     m, wheel_nm = np.array(demand.m_body_am2), demand.wheel_torque_nm
