@@ -1,13 +1,14 @@
 """Run one board on a named bus: ``python -m hil_stub coil|dipole|magnetometer|sun|cells --bus BUS``."""
 
 import sys
+from typing import Final
 
 import click
 
 from fsw.input.error_text import error_text
 from hil_stub.process.command import board
 
-EXIT_BAD_INPUT = 2
+EXIT_BAD_INPUT: Final = 2
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -1,7 +1,7 @@
 """A board on a bench: follows the ticks of a bus by itself, with a stimulus of its own instead of a plant."""
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Final, Protocol
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot, Sync, TickDone, intact
@@ -13,10 +13,10 @@ from hil_stub.sensors.stimulus import Stimulus, Values, three
 from hil_stub.sensors.sun_cells import SunCellBoard
 from hil_stub.sensors.sun_sensor import SunSensor
 
-DEADMAN_MS = 5000
+DEADMAN_MS: Final = 5000
 """Time without ``SYNC`` after which a board on a bench switches off, by default."""
 
-LEVEL_A = (0.1, 0.2, 0.3)
+LEVEL_A: Final = (0.1, 0.2, 0.3)
 """Current at levels 1, 2, 3 [A], by default."""
 
 

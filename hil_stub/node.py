@@ -1,5 +1,7 @@
 """What all boards share: the count of ticks, the boot message and the heartbeat."""
 
+from typing import Final
+
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
     CoilBoot,
@@ -12,11 +14,11 @@ from fsw.wire.messages import (
     WheelHeartbeat,
 )
 
-CONTRACT_VERSION = 1
+CONTRACT_VERSION: Final = 1
 """Version of the bus contract, as in the first line of the DBC."""
 
-HEARTBEAT_S = 60
-_MOST = 0xFFFF
+HEARTBEAT_S: Final = 60
+_MOST: Final = 0xFFFF
 
 BootMessage = type[CoilBoot] | type[MagBoot] | type[SunBoot] | type[WheelBoot]
 HeartbeatMessage = type[CoilHeartbeat] | type[MagHeartbeat] | type[SunHeartbeat] | type[WheelHeartbeat]

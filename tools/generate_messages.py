@@ -56,7 +56,7 @@ NAMES: dict[int, str] = {{{names}}}
 SENDERS: dict[int, str] = {{{senders}}}
 """Node that sends each message."""
 
-_SHAPES: dict[int, tuple[int, int]] = {{{shapes}}}
+_SHAPES: Final[dict[int, tuple[int, int]]] = {{{shapes}}}
 """Length of each message, and the CRC register after its identifier; -1: it has no CRC."""
 
 

@@ -1,12 +1,12 @@
 """A CAN frame as plain data, and the CRC-8 that seals it."""
 
-from typing import final
+from typing import Final, final
 
 from fsw.wire.value import Value
 
-EXTENDED_FLAG = 0x8000_0000
-REMOTE_FLAG = 0x4000_0000
-ERROR_FLAG = 0x2000_0000
+EXTENDED_FLAG: Final = 0x8000_0000
+REMOTE_FLAG: Final = 0x4000_0000
+ERROR_FLAG: Final = 0x2000_0000
 """Flags above the identifier, as in SocketCAN's ``can_id``. A frame that carries one is never ours."""
 
 
@@ -39,7 +39,10 @@ def _crc8_table(polynomial: int) -> tuple[int, ...]:
     return tuple(table)  # read faster than bytes
 
 
-_TABLE = _crc8_table(0x1D)
+_TABLE: Final = _crc8_table(0x1D)
+_BYTE: Final = tuple([bytes((value,)) for value in range(256)])
+_TO_EVEN: Final = 1.5 * 2.0**52
+"""Beside this the doubles are whole numbers: added and taken away again it rounds."""
 
 
 def crc8(data: bytes, register: int = 0xFF) -> int:
@@ -63,12 +66,15 @@ def id_register(can_id: int) -> int:
 def seal(can_id: int, word: int, length: int, register: int) -> Frame:
     """A frame of ``length`` bytes: ``word`` little-endian, its last byte replaced by the CRC."""
     payload = word.to_bytes(length - 1, "little")
-    return Frame(can_id, payload + bytes((crc8(payload, register),)))
+    return Frame(can_id, payload + _BYTE[crc8(payload, register)])
 
 
 def raw(value: float, scale: float, low: int, high: int) -> int:
-    """``value / scale`` as the nearest integer in ``[low, high]``; what is not a number becomes ``low``."""
+    """``value / scale`` as the nearest integer in ``[low, high]``; what is not a number becomes ``low``.
+
+    The range is within 32 bits; a half is rounded to the even neighbour.
+    """
     units = value / scale
     if units >= high:
         return high
-    return round(units) if units > low else low
+    return int(units + _TO_EVEN - _TO_EVEN) if units > low else low

@@ -1771,7 +1771,7 @@ SENDERS: dict[int, str] = {
 }
 """Node that sends each message."""
 
-_SHAPES: dict[int, tuple[int, int]] = {
+_SHAPES: Final[dict[int, tuple[int, int]]] = {
     0x080: (7, 0x67),
     0x088: (8, 0x8F),
     0x090: (6, 0xAA),

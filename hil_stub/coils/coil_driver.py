@@ -1,7 +1,7 @@
 """The coil driver board: frames in, frames and a drive out, guarded by its own interlock."""
 
 from enum import IntEnum
-from typing import final
+from typing import Final, final
 
 from fsw.wire.frame import Frame, raw
 from fsw.wire.messages import (
@@ -22,7 +22,7 @@ from hil_stub.node import Node
 
 __all__ = ["MAX_REFUSALS", "OFF", "BoardState", "CoilDriver", "CoilLimits", "Drive", "Pin"]
 
-NAMED_BYTES = 3
+NAMED_BYTES: Final = 3
 """Bytes that a ``COIL_FIRE`` must have for its ``coil`` and ``seq`` to be read."""
 
 
@@ -48,7 +48,7 @@ class Drive(Value):
         self.fraction = fraction
 
 
-OFF = Drive(0, 0, 0.0)
+OFF: Final = Drive(0, 0, 0.0)
 
 
 @final

@@ -1,7 +1,7 @@
 """The continuous driver board: drives all three coils at once, for one tick at a time."""
 
 from enum import IntEnum
-from typing import final
+from typing import Final, final
 
 from fsw.wire.frame import Frame, raw
 from fsw.wire.messages import (
@@ -20,7 +20,7 @@ from hil_stub.node import Node
 
 Vec3 = tuple[float, float, float]
 
-_READABLE_BYTES = {CoilFire.ID: 3, CoilDipole.ID: 1}
+_READABLE_BYTES: Final = {CoilFire.ID: 3, CoilDipole.ID: 1}
 """Requests, and the bytes that hold their coil and number."""
 
 
@@ -46,7 +46,7 @@ class DipoleDrive(Value):
         self.fraction = fraction
 
 
-_NONE: Vec3 = (0.0, 0.0, 0.0)
+_NONE: Final[Vec3] = (0.0, 0.0, 0.0)
 
 
 class DipoleDriver:

@@ -1,6 +1,7 @@
 """The events of a coil driver board."""
 
 from enum import IntEnum
+from typing import Final
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilEvent, Severity
@@ -17,7 +18,7 @@ class CoilEventCode(IntEnum):
     CURRENT_WRONG = 6
 
 
-SEVERITY = {
+SEVERITY: Final = {
     CoilEventCode.SELF_TEST_FAILED: Severity.FATAL,
     CoilEventCode.DEAD_MAN: Severity.ERROR,
     CoilEventCode.CURRENT_WHILE_OFF: Severity.FATAL,

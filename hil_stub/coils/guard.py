@@ -14,6 +14,7 @@ the clock ends it.
 """
 
 from dataclasses import replace
+from typing import Final
 
 from fsw.wire.messages import CoilFire, CoilRefusedReason
 from hil_stub.coils.interlock import (
@@ -27,8 +28,9 @@ from hil_stub.coils.interlock import (
     silence,
 )
 
-CLOCK_HZ = 1000
+CLOCK_HZ: Final = 1000
 """The board's own clock counts milliseconds."""
+_FREE: Final = (0, 0, 0)
 
 
 class Guard:
@@ -151,5 +153,5 @@ class Guard:
     def locked_out(self) -> bool:
         """Whether the back-off of any coil runs, or the dead-man holds all."""
         by_clock = self._by_clock
-        runs = max(self._by_ticks.lockout) > 0 or (by_clock is not None and max(by_clock.lockout) > 0)
+        runs = self._by_ticks.lockout != _FREE or (by_clock is not None and by_clock.lockout != _FREE)
         return self._silent or runs

@@ -11,13 +11,13 @@ but ``boot``, ``silence`` and ``accept``.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 from fsw.wire.messages import CoilFire, CoilRefusedReason
 
-UNITS_PER_TICK = 1000
-COILS = 3
-MAX_LEVEL = 3
+UNITS_PER_TICK: Final = 1000
+COILS: Final = 3
+MAX_LEVEL: Final = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +114,7 @@ def elapse(state: Interlock, ticks: int) -> None:
 
 _Rule = Callable[[Interlock, CoilFire, int, CoilLimits], bool]
 
-_REFUSED_IF: tuple[tuple[CoilRefusedReason, _Rule], ...] = (
+_REFUSED_IF: Final[tuple[tuple[CoilRefusedReason, _Rule], ...]] = (
     (CoilRefusedReason.WRONG_TICK, lambda state, request, tick, limits: request.tick != tick & 0xFF),
     (CoilRefusedReason.REPEATED_SEQ, lambda state, request, tick, limits: request.seq == state.seq),
     (CoilRefusedReason.BAD_COIL, lambda state, request, tick, limits: not 0 <= request.coil < COILS),
@@ -131,7 +131,7 @@ _REFUSED_IF: tuple[tuple[CoilRefusedReason, _Rule], ...] = (
 )
 """The rules in the order in which they are applied; the first that applies is the reason."""
 
-REFUSAL_ORDER = tuple(reason for reason, _ in _REFUSED_IF)
+REFUSAL_ORDER: Final = tuple(reason for reason, _ in _REFUSED_IF)
 """The reasons in that order, for the specification of the board."""
 
 

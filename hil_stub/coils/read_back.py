@@ -2,11 +2,12 @@
 
 from dataclasses import dataclass
 from math import copysign
+from typing import Final
 
 from fsw.wire.coil_current import OFF_PART
 from hil_stub.coils.events import CoilEventCode
 
-_NONE = 0.1
+_NONE: Final = 0.1
 """A current of a driven coil below this fraction of the nominal one counts as none."""
 
 

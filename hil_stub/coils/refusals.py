@@ -1,9 +1,11 @@
 """The requests that a coil driver board has refused since its last tick."""
 
+from typing import Final
+
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilRefused, CoilRefusedReason
 
-MAX_REFUSALS = 64
+MAX_REFUSALS: Final = 64
 """Refusals reported in one tick. A flood of requests is not answered by a flood of frames."""
 
 

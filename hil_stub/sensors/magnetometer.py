@@ -1,11 +1,14 @@
 """The magnetometer board: the sensor's reading as frames."""
 
+from typing import Final
+
 from fsw.wire.frame import Frame
 from fsw.wire.messages import MagBoot, MagField, MagHeartbeat
 from hil_stub.node import Node
 
-_NT_PER_T = 1e9
-_LOW_NT, _HIGH_NT = -65536.0, 65534.0
+_NT_PER_T: Final = 1e9
+_LOW_NT: Final = -65536.0
+_HIGH_NT: Final = 65534.0
 """Range of the signals ``b_x``, ``b_y``, ``b_z``."""
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from math import ceil, hypot, inf, isfinite
-from typing import final
+from typing import Final, final
 
 from fsw.wire.candump_line import LineReader
 from fsw.wire.messages import MagField, SunCells, SunVector, Sync, intact
@@ -10,9 +10,9 @@ from fsw.wire.value import Value
 
 Values = tuple[float, ...]
 """Three components of a vector, or the currents of six cells."""
-COUNTS = {3: "three", 6: "six"}
+COUNTS: Final = {3: "three", 6: "six"}
 """Numbers of a reading, in words."""
-STEP_KEYS = ("t_s", "field_nt", "sun", "cells")
+STEP_KEYS: Final = ("t_s", "field_nt", "sun", "cells")
 """Keys of a step of a script, which may hold readings of several sensors."""
 
 
@@ -28,7 +28,7 @@ class Reading(Value):
         self.valid = valid
 
 
-NOTHING = Reading((0.0, 0.0, 0.0), False)
+NOTHING: Final = Reading((0.0, 0.0, 0.0), False)
 """Of cells too: the board then sends no current."""
 
 SensorMessage = type[MagField] | type[SunVector] | type[SunCells]

@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 from math import isnan
+from typing import Final
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import SunBoot, SunCells, SunHeartbeat
 from hil_stub.node import Node
 
-CELLS = 6
-_MOST = 255.0 / 128.0
+CELLS: Final = 6
+_MOST: Final = 255.0 / 128.0
 """Range of the signals ``cell_1`` to ``cell_6``."""
 
 

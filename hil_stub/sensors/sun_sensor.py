@@ -1,13 +1,16 @@
 """The Sun sensor board: the sensor's reading as frames."""
 
+from typing import Final
+
 from fsw.wire.frame import Frame
 from fsw.wire.messages import SunBoot, SunHeartbeat, SunVector
 from hil_stub.node import Node
 
-_LOW, _HIGH = -2.0, 2.0 - 2.0**-14
+_LOW: Final = -2.0
+_HIGH: Final = 2.0 - 2.0**-14
 """Range of the signals ``s_x``, ``s_y``, ``s_z``."""
 
-_DARK = (0.0, 0.0, 0.0)
+_DARK: Final = (0.0, 0.0, 0.0)
 
 
 class SunSensor:

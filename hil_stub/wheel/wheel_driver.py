@@ -1,6 +1,7 @@
 """The board of a reaction wheel: frames in, frames and a motor torque out, guarded by its own rules."""
 
 from enum import IntEnum
+from typing import Final
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
@@ -33,7 +34,7 @@ class WheelBoardState(IntEnum):
     FAULT = 2
 
 
-SEVERITY = {
+SEVERITY: Final = {
     WheelEventCode.OVER_SPEED: Severity.WARNING,
     WheelEventCode.NO_SPEED: Severity.ERROR,
     WheelEventCode.DEAD_MAN: Severity.ERROR,

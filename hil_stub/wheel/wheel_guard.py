@@ -7,12 +7,13 @@ that turns at ``max_speed_radps`` or faster, and lasts one tick. Without a torqu
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite
-from typing import final
+from typing import Final, final
 
 from fsw.wire.messages import WheelStatusResult
 from fsw.wire.value import Value
 
-LARGEST_NM, LARGEST_RADPS = 0.5, 2048.0
+LARGEST_NM: Final = 0.5
+LARGEST_RADPS: Final = 2048.0
 """Ranges of the signals ``torque`` and ``speed``."""
 
 
@@ -78,7 +79,7 @@ def _speeds_up(asked: Asked, limits: WheelLimits) -> bool:
     return abs(speed_radps) >= limits.max_speed_radps and asked.torque_nm * speed_radps > 0.0
 
 
-_REFUSED_IF: tuple[tuple[WheelStatusResult, Callable[[Asked, WheelLimits], bool]], ...] = (
+_REFUSED_IF: Final[tuple[tuple[WheelStatusResult, Callable[[Asked, WheelLimits], bool]], ...]] = (
     (WheelStatusResult.WRONG_TICK, _stale),
     (WheelStatusResult.SECOND_TORQUE, lambda asked, limits: asked.taken),
     (WheelStatusResult.BAD_TORQUE, lambda asked, limits: not abs(asked.torque_nm) <= limits.max_torque_nm),
@@ -87,7 +88,7 @@ _REFUSED_IF: tuple[tuple[WheelStatusResult, Callable[[Asked, WheelLimits], bool]
 )
 """The rules in the order in which they are applied; the first that applies is the result."""
 
-REFUSAL_ORDER = tuple(result for result, _ in _REFUSED_IF)
+REFUSAL_ORDER: Final = tuple(result for result, _ in _REFUSED_IF)
 """The results in that order, for the specification of the board."""
 
 

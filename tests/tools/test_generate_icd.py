@@ -63,14 +63,14 @@ CHANGES = {
         "NO_CURRENT: Severity.ERROR",
         "NO_CURRENT: Severity.FATAL",
     ),
-    "the dead-man": ("hil_stub/bench.py", "DEADMAN_MS = 5000", "DEADMAN_MS = 4000"),
+    "the dead-man": ("hil_stub/bench.py", "DEADMAN_MS: Final = 5000", "DEADMAN_MS: Final = 4000"),
     "what an argument is": ("fsw/core/events.py", "# the new mode", "# the old mode"),
     "a monitor": ("fsw/core/monitors.py", "ORBIT_KNOWN = 8", "ORBIT_KNOWN = 18"),
     "the CRC": ("fsw/wire/frame.py", "_crc8_table(0x1D)", "_crc8_table(0x1F)"),
     "the order of refusals": (
         "hil_stub/coils/interlock.py",
-        "REFUSAL_ORDER = tuple(reason for reason, _ in _REFUSED_IF)",
-        "REFUSAL_ORDER = tuple(reason for reason, _ in _REFUSED_IF[::-1])",
+        "REFUSAL_ORDER: Final = tuple(reason for reason, _ in _REFUSED_IF)",
+        "REFUSAL_ORDER: Final = tuple(reason for reason, _ in _REFUSED_IF[::-1])",
     ),
 }
 

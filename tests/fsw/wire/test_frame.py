@@ -1,6 +1,6 @@
 """The CRC that seals a frame, and the rounding of quantities, against definitions written out bit by bit."""
 
-from math import inf, nan
+from math import inf, nan, nextafter
 
 import pytest
 from hypothesis import given, settings
@@ -88,6 +88,15 @@ class TestRaw:
     @given(st.floats(allow_nan=True, allow_infinity=True), st.sampled_from([1, 2, 10, 2.0**-16, 2.0**-22]))
     def test_never_leaves_the_range(self, value, scale):
         assert -0x8000 <= raw(value, scale, -0x8000, 0x7FFF) <= 0x7FFF
+
+    @given(st.integers(-(2**31), 2**31 - 1))
+    def test_a_half_goes_to_the_even_neighbour(self, units):
+        for value in (units + 0.5, nextafter(units + 0.5, inf), nextafter(units + 0.5, -inf)):
+            assert raw(value, 1.0, -(2**32), 2**32) == round(value)
+
+    @given(st.floats(-(2.0**31), 2.0**31))
+    def test_rounds_as_python_does(self, value):
+        assert raw(value, 1.0, -(2**32), 2**32) == round(value)
 
     @given(st.integers(-0x8000, 0x7FFF), st.floats(-0.499, 0.499))
     def test_is_the_nearest(self, units, off):
