@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import is_dataclass
 from enum import Enum
 from functools import cache
-from operator import attrgetter
+from operator import attrgetter, is_
 from types import UnionType
 from typing import Any, Final, TypeVar, Union, final, get_args, get_origin, get_type_hints
 from zlib import crc32
@@ -35,9 +35,9 @@ def pack(state: object) -> bytes:
         TypeError: a field holds something else; names it.
     """
     try:
-        return marshal.dumps(_take_apart(state, checked=False), _MARSHAL_VERSION)
-    except ValueError:  # a field does not hold what it is declared to hold
-        return marshal.dumps(_take_apart(state, checked=True), _MARSHAL_VERSION)
+        return marshal.dumps(_take_apart(state), _MARSHAL_VERSION)
+    except (TypeError, ValueError):  # a field does not hold what it is declared to hold
+        return marshal.dumps(_take_all_apart(state), _MARSHAL_VERSION)
 
 
 def checksum(state: object) -> int:
@@ -68,25 +68,42 @@ class _Plan:
         self.in_place = in_place
 
 
-def _take_apart(value: Any, checked: bool) -> Any:  # noqa: ANN401  (any part of a state)
-    """The value as tuples of numbers and texts, every declaration of a field ``checked`` or believed."""
+def _take_apart(value: Any) -> Any:  # noqa: ANN401  (any part of a state)
+    """The value as tuples of numbers and texts, where its fields hold what they are declared to hold."""
+    kind: Any = type(value)
+    if kind is tuple or kind is list:
+        return tuple([part if type(part) in _LEAVES else _take_apart(part) for part in value])
+    plan = _plan(kind)
+    if not plan.nested:
+        return plan.parts(value)
+    parts = list(plan.parts(value))
+    for index in plan.nested:
+        part = parts[index]
+        if type(part) not in _LEAVES:
+            parts[index] = _take_apart(part)
+    return tuple(parts)
+
+
+def _take_all_apart(value: Any) -> Any:  # noqa: ANN401  (any part of a state)
+    """The same whatever the fields hold.
+
+    Raises:
+        TypeError: it cannot be packed; names the fields that lead to it.
+    """
     kind: Any = type(value)
     if kind in _LEAVES:
         return value
     if kind is tuple or kind is list:
-        return tuple([_take_apart(part, checked) for part in value])
+        return tuple([_take_all_apart(part) for part in value])
     plan = _plan(kind)
-    found = plan.parts(value)
-    if not plan.names or not (plan.nested or checked):
-        return found
-    parts, index = list(found), 0
-    try:
-        for index in range(len(parts)) if checked else plan.nested:
-            part = parts[index]
-            if type(part) not in _LEAVES:
-                parts[index] = _take_apart(part, checked)
-    except TypeError as error:
-        raise TypeError(f"{kind.__name__}.{plan.names[index]}: {error}") from None
+    if not plan.names:
+        return plan.parts(value)
+    parts = []
+    for name, part in zip(plan.names, plan.parts(value), strict=True):
+        try:
+            parts.append(_take_all_apart(part))
+        except TypeError as error:
+            raise TypeError(f"{kind.__name__}.{name}: {error}") from None
     return tuple(parts)
 
 
@@ -138,7 +155,10 @@ def _array(array: Any) -> object:  # noqa: ANN401  (of any shape and type)
 
 
 def copy_state(state: State) -> State:
-    """An independent copy of a state: what is changed in place anew, what never changes shared."""
+    """An independent copy of a state.
+
+    What is changed in place is made anew, the arrays among it too; what never changes is shared.
+    """
     copied: State = _copy(state)
     return copied
 
@@ -147,14 +167,17 @@ def _copy(value: Any) -> Any:  # noqa: ANN401  (any part of a state)
     kind: Any = type(value)
     if kind in _LEAVES:
         return value
-    if kind is tuple or kind is list:
-        return kind([_copy(part) for part in value])
-    if kind is np.ndarray:
-        return value.copy()
+    if kind is list:
+        return [_copy(part) for part in value]
+    if kind is tuple:
+        copies = [_copy(part) for part in value]
+        return value if all(map(is_, copies, value)) else tuple(copies)
     plan = _plan(kind)
-    if not plan.in_place:
+    if not plan.names:
         return value
-    parts = list(plan.parts(value))
+    parts, anew = list(plan.parts(value)), plan.in_place
     for index in plan.nested:
-        parts[index] = _copy(parts[index])
-    return kind(**dict(zip(plan.names, parts, strict=True)))
+        part = parts[index]
+        parts[index] = part.copy() if plan.in_place and type(part) is np.ndarray else _copy(part)
+        anew = anew or parts[index] is not part
+    return kind(**dict(zip(plan.names, parts, strict=True))) if anew else value

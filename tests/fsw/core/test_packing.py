@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from fsw.core.packing import checksum, pack
+from fsw.core.packing import checksum, copy_state, pack
 
 
 class Colour(Enum):
@@ -149,3 +149,32 @@ def test_an_unknown_in_a_field_declared_otherwise_is_named_too():
 
 def test_the_checksum_has_32_bits_and_is_the_same_on_every_machine():
     assert checksum(whole(anything=("law", 7, -0.5, True, Number.ONE))) == 551747733
+
+
+class TestCopies:
+    @pytest.mark.parametrize("name", DIFFERENT)
+    def test_are_packed_as_the_original(self, name):
+        assert pack(copy_state(DIFFERENT[name])) == pack(DIFFERENT[name])
+
+    def test_share_nothing_that_is_changed_in_place(self):
+        array = np.zeros(3)
+        one = whole(other=Part(1), anything=[Part(2), (Named(0.0, Part(3)),), array])
+        before, other = pack(one), copy_state(one)
+        other.part.count = other.other.count = other.anything[0].count = other.anything[1][0].second.count = 9
+        other.anything.append(7)
+        other.place = None
+        assert pack(one) == before
+        assert other.anything[1] is not one.anything[1]
+
+    def test_have_arrays_of_their_own_where_these_may_be_changed(self):
+        one = whole(anything=np.zeros(3))
+        other = copy_state(one)
+        other.anything[1] = 5.0
+        assert one.anything[1] == 0.0
+
+    def test_share_what_never_changes(self):
+        named = Named(1.0, (Point(1.0, 2.0), np.ones(2)))
+        one = whole(anything=(named, named))
+        other = copy_state(one)
+        assert other.place is one.place
+        assert other.anything is one.anything
