@@ -69,14 +69,14 @@ GUARDS = {
     "coil health: current": Off(
         "coil-stuck-on-1",
         "stuck",
-        ("fsw.core.fdir.coils.currents.judge_current", lambda health, *seen: health),
+        ("fsw.core.fdir.coils.currents.judge_current", lambda *seen: None),
     ),
     "coil health: rate": Off(
         "coil-reversed-1",
         "named",
         (
             "fsw.core.fdir.coils.torques.judge_effect",
-            lambda health, view, field, state, *seen: (health, state),
+            lambda *seen: None,
         ),
         watch_s=2000.0,
     ),

@@ -11,7 +11,7 @@ from fsw.core.algebra.vector import ZERO, add, scale, sub, transform, unit
 from fsw.core.estimation import mekf
 from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.coils.effects import solve, trace_pulse
-from fsw.core.fdir.coils.explanations import of_pulses
+from fsw.core.fdir.coils.explanations import explain_pulses
 from fsw.core.fdir.coils.weak_test import WeakTest
 from fsw.core.laws.plan.pulse_model import AXES, Pulse
 from fsw.core.orbit.earth import MU_M3PS2
@@ -76,8 +76,8 @@ def judged(estimate):
     estimate, solution = solve(estimate, CONFIG)
     if solution is None:
         return estimate, None
-    likeliest = of_pulses(solution)[0]
-    nothing = next(one for one in of_pulses(solution) if one.coil == -1)
+    likeliest = explain_pulses(solution)[0]
+    nothing = next(one for one in explain_pulses(solution) if one.coil == -1)
     sure = nothing.distance - likeliest.distance > 2.0 * WEAK.threshold
     return estimate, (likeliest.coil, likeliest.part) if sure else None
 

@@ -48,10 +48,6 @@ class Health:
     sensors: SensorHealth = field(default_factory=SensorHealth)
     coils: CoilHealth = field(default_factory=CoilHealth)
 
-    def copy(self) -> "Health":
-        """A health of its own."""
-        return Health(self.sensors.copy(), self.coils)
-
 
 @final
 class Evidence:
@@ -86,7 +82,7 @@ def judge_current(
 ) -> None:
     """Compare what the coil driver reports with what was requested of it."""
     unasked = unexpected(view, tick, config.coils.pulses)
-    health.coils = currents.judge_current(health.coils, view, measurements, unasked, tick, config.coils)
+    currents.judge_current(health.coils, view, measurements, unasked, tick, config.coils)
 
 
 def driven_am2(health: Health, view: CoilView, config: FdirConfig) -> Vec3:
@@ -135,7 +131,7 @@ def judge(
         The attitude, which is not valid while a fault may have falsified it. The estimator is corrected or
         restarted where a fault was found.
     """
-    sensors, used, weights = health.sensors, evidence.used, config.sensors.weights
+    sensors, coils, used, weights = health.sensors, health.coils, evidence.used, config.sensors.weights
     if not evidence.settled:
         pair.skip_judgement(sensors.pair, used, estimator.estimate, weights)
         valid = attitude.valid and not _is_inconclusive(health, used, config)
@@ -154,22 +150,12 @@ def judge(
         discard_trace(estimator)  # what a faulty sensor has shown proves nothing about a coil
     elif not sensor_health.is_suspected(sensors):
         proven = pair.is_proven(both, weights)
-        health.coils = retest.retest(health.coils, estimator, proven and not isolated, config.coils)
+        retest.retest(coils, estimator, proven and not isolated, config.coils)
         believed = _believed(estimator.estimate, both, proven or isolated, config)
-        health.coils = torques.judge_effect(
-            health.coils,
-            evidence.view,
-            reference,
-            estimator,
-            evidence.tick,
-            believed,
-            both.doubt > 1.0,
-            config.coils,
-        )
+        doubt, tick, view = both.doubt > 1.0, evidence.tick, evidence.view
+        torques.judge_effect(coils, view, reference, estimator, tick, believed, doubt, config.coils)
     if changed or both.ended:
-        health.coils = health.coils._replace(
-            older=coil_health.NONE_OLDER
-        )  # a faulty sensor may have shown it
+        coils.older = coil_health.NONE_OLDER  # a faulty sensor may have shown it
     if both.ended:
         discard_estimate(estimator)
         attitude = UNKNOWN
@@ -182,7 +168,7 @@ def _is_inconclusive(health: Health, used: Used, config: FdirConfig) -> bool:
     """Whether a fault may have falsified the attitude."""
     sensors, coils = health.sensors, health.coils
     return (
-        coil_health.unattributed_torque(coils)
+        coil_health.has_unassigned_torque(coils)
         or _has_unobservable_torque(coils, used, config)
         or _has_suspected_coil(coils, sensors.pair, config)
         or is_doubtful(sensors.cells, config.sensors.weights)

@@ -14,6 +14,7 @@ from fsw.core.fdir.sensors.cells import CellWatch
 from fsw.core.fdir.sensors.watch import Watch
 from fsw.core.modes import ModeState
 from fsw.core.orbit.elements import RANGES
+from fsw.core.packing import copy_state
 from fsw.core.state import Inbox
 from fsw.core.step import boot
 from fsw.table.config import flight_config
@@ -138,7 +139,7 @@ def test_every_law(name, mode):
 @pytest.mark.parametrize("mode", Mode)
 def test_clearing_reports_isolated_cells_as_readmitted(mode):
     config, state, inboxes = flown("cubesat-cells")
-    health = state.health.copy()
+    health = copy_state(state.health)
     health.sensors.cells = [CellWatch(Watch(fault)) for fault in (0, 4, 0, 2, 0, 0)]
     said = obey((config, altered(state, health=health), inboxes), mode, TcClear())
     readmitted = [e.argument for e in of(FswEvent, said) if e.event == Event.SENSOR_READMITTED]

@@ -180,9 +180,10 @@ class TestRepeated:
 
 class TestWhatStays:
     def test_what_the_ground_has_set_and_what_was_found(self, world, snapshot):
-        health = world.state.health.copy()
+        health = copy_state(world.state.health)
         health.sensors.sun = Watch(SensorFault.FROZEN)
-        health.coils = coils = health.coils._replace(faults=(0, CoilFault.OPEN, 0))
+        health.coils.faults = (0, CoilFault.OPEN, 0)
+        coils = copy_state(health.coils)
         modes = ModeState(Mode.POINT, trips=2)
         request_mode(modes, Mode.SAFE, LATEST)
         state = altered(

@@ -22,7 +22,7 @@ ELEMENTS = Elements(
 
 def with_motion(health, motion):
     """The health with this motion behind readings that stand still, None: of continuous sensors."""
-    health = health.copy()
+    health = copy_state(health)
     health.sensors.memory.motion = motion
     return health
 

@@ -75,7 +75,7 @@ def test_an_impulse_that_is_no_number_trips(world, supervised):
 
 
 def test_a_coil_that_was_not_requested_trips(supervised):
-    stuck, strange = CoilHealth(stuck=True), CoilHealth(faults=(4, 1, 2), strange_ticks=1)
+    stuck, strange = CoilHealth(stuck=True), CoilHealth(faults=(4, 1, 2), unrequested_ticks=1)
     assert supervised(health=Health(coils=stuck)).violated is Monitor.COIL_AS_COMMANDED
     assert supervised(health=Health(coils=strange)).violated is None
 

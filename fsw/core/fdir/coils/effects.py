@@ -31,7 +31,7 @@ from fsw.core.estimation import mekf
 from fsw.core.estimation.kalman import Cause, Matrix, Trace, unexplained
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.fdir.coils.explanations import PULSES, STRAY, Solution, explained, indices_of, most_by_chance
+from fsw.core.fdir.coils.explanations import PULSES, STRAY, Solution, indices_of, most_by_chance
 from fsw.core.fdir.coils.weak_test import MODEL_ERROR
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.laws.plan.pulse_model import Pulse
@@ -67,7 +67,7 @@ def trace_pulse(
     trace, coil = _of_coils_alone(estimate.trace) or empty_trace(estimate), pulse.coil
     own = indices_of(coil, trace.numbers)
     if len(own) == PULSES:
-        trace = without(trace, own[-1])
+        trace = remove(trace, own[-1])
     impulse_nms = impulse(pulse, rotate(estimate.q_body_from_eci, b_eci_t), pulses)
     kick_radps = transform(tuning.rotor.inertia_inverse, impulse_nms)
     effect = np.array((*scale(0.5 * pulses.pulse_s, kick_radps), *kick_radps))
@@ -79,7 +79,7 @@ def trace_pulse(
         assumed=1.0 + estimate.parameters.coil_error[4 * coil],
         uncertain=hypot(MODEL_ERROR, drift_nms / (max(drift_nms, norm(impulse_nms)) or 1.0)),
     )
-    return estimate._replace(trace=extended(trace, (cause,), effect[:, np.newaxis]))
+    return estimate._replace(trace=extend(trace, (cause,), effect[:, np.newaxis]))
 
 
 def _inertia_beyond_kgm2(estimate: Estimate, tuning: MekfConfig) -> float:
@@ -109,7 +109,7 @@ def empty_trace(estimate: Estimate) -> Trace:
     return Trace((), np.zeros((len(estimate.covariance), 1)), np.zeros((1, 1)), 0)
 
 
-def extended(trace: Trace, causes: tuple[Cause, ...], effects: Matrix) -> Trace:
+def extend(trace: Trace, causes: tuple[Cause, ...], effects: Matrix) -> Trace:
     """The trace with more causes, by columns of effects on attitude and rate; the unexplained counts anew."""
     new, size = len(causes), len(causes) + len(trace.sums)
     effect, sums = np.zeros((len(trace.effect), size)), np.zeros((size, size))
@@ -119,14 +119,14 @@ def extended(trace: Trace, causes: tuple[Cause, ...], effects: Matrix) -> Trace:
     return Trace((*causes, *trace.causes), effect, sums, 0)
 
 
-def without(trace: Trace, index: int) -> Trace:
+def remove(trace: Trace, index: int) -> Trace:
     """The trace without one of its causes, whose deviation is marginalised out."""
     row = trace.sums[index]
     sums = trace.sums - np.outer(row, row) / (row[index] + 1.0)
-    return only(trace, [place for place in range(len(trace.causes)) if place != index], sums)
+    return select(trace, [place for place in range(len(trace.causes)) if place != index], sums)
 
 
-def only(trace: Trace, kept: list[int], sums: Matrix) -> Trace:
+def select(trace: Trace, kept: list[int], sums: Matrix) -> Trace:
     """The trace with only some of its causes, and with these sums."""
     places = [*kept, -1]
     causes = tuple(trace.causes[place] for place in kept)
@@ -168,7 +168,7 @@ def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estima
         np.array([cause.assumed for cause in trace.causes]),
         np.array([cause.uncertain for cause in trace.causes]),
     )
-    solution = explained(Solution(trace.numbers, assumed + deviation, deviation, covariance, uncertain))
+    solution = Solution(trace.numbers, assumed + deviation, deviation, covariance, uncertain)
     pulses = [index for index, number in enumerate(trace.numbers) if number < STRAY]
     if not solution.explanations[0].fits:
         by_chance = solution.explanations[0].distance <= most_by_chance(len(pulses))
@@ -179,5 +179,5 @@ def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estima
         estimate = mekf.corrected(estimate, effect @ deviation, effect @ covariance @ effect.T, tuning)
         left = trace.effect.copy()
         left[:, pulses] = 0.0
-        estimate = estimate._replace(trace=trace._replace(effect=left))
+        estimate = estimate._replace(trace=Trace(trace.causes, left, trace.sums, trace.measured))
     return estimate, solution

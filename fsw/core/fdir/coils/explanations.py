@@ -5,7 +5,7 @@ one is less likely by the threshold of the evidence.
 """
 
 from math import inf, sqrt
-from typing import NamedTuple
+from typing import final
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from fsw.core.fdir.coils.weak_test import (
     Older,
     PartSum,
     WeakTest,
-    pulse,
+    weigh_pulse,
 )
 from fsw.core.fdir.evidence import SIGMAS
 
@@ -31,20 +31,31 @@ STRAY = 3
 """STRAY + j is the number, as a cause, of a stray current in coil j; j itself that of a pulse."""
 
 
-class Solution(NamedTuple):
+@final
+class Solution:
     """What each cause did.
 
     ``part``: its fraction of the nominal effect, ``deviation``: that less what the filter assumed, (k), and
     their covariance, (k, k); ``uncertain``: standard deviations of the parts beyond it, (k).
-    ``explanations``: what may be wrong with the pulses, once ``explained``; the likeliest first.
+    ``explanations``: what may be wrong with the pulses, the likeliest first.
     """
 
-    causes: tuple[int, ...]
-    part: Matrix
-    deviation: Matrix
-    covariance: Matrix
-    uncertain: Matrix
-    explanations: "tuple[Explanation, ...]" = ()
+    __slots__ = ("causes", "covariance", "deviation", "explanations", "part", "uncertain")
+
+    def __init__(
+        self,
+        causes: tuple[int, ...],
+        part: Matrix,
+        deviation: Matrix,
+        covariance: Matrix,
+        uncertain: Matrix,
+    ) -> None:
+        self.causes = causes
+        self.part = part
+        self.deviation = deviation
+        self.covariance = covariance
+        self.uncertain = uncertain
+        self.explanations = explain_pulses(self)
 
     def noise(self, indices: list[int]) -> Matrix:
         """Covariance of some causes: that of the solution, plus what is uncertain in any case."""
@@ -57,7 +68,8 @@ def indices_of(cause: int, causes: tuple[int, ...]) -> list[int]:
     return [index for index, other in enumerate(causes) if other == cause]
 
 
-class Explanation(NamedTuple):
+@final
+class Explanation:
     """What may be wrong: a coil whose latest pulses all had the same fraction of their effect.
 
     ``coil`` is ``NONE`` where nothing is wrong, and ``ALL`` where every pulse of any coil had that fraction,
@@ -65,10 +77,13 @@ class Explanation(NamedTuple):
     what is left: minus twice the log-likelihood.
     """
 
-    coil: int
-    pulses: int
-    part: float
-    distance: float
+    __slots__ = ("coil", "distance", "part", "pulses")
+
+    def __init__(self, coil: int, pulses: int, part: float, distance: float) -> None:
+        self.coil = coil
+        self.pulses = pulses
+        self.part = part
+        self.distance = distance
 
     @property
     def fits(self) -> bool:
@@ -85,13 +100,8 @@ def most_by_chance(numbers: int) -> float:
     return float(numbers * (1.0 - width + SIGMAS * sqrt(width)) ** 3)
 
 
-def explained(solution: Solution) -> Solution:
-    """The solution with its explanations."""
-    return solution._replace(explanations=tuple(of_pulses(solution)))
-
-
-def of_pulses(solution: Solution) -> list[Explanation]:
-    """What may be wrong with the pulses, the likeliest first.
+def explain_pulses(solution: Solution) -> list[Explanation]:
+    """Find what may be wrong with the pulses, the likeliest first.
 
     A faulty coil is so from some pulse on, and each of its later pulses has the same fraction of its effect;
     those of the others are sound. It may have failed during the pulse before: that one may then have any
@@ -100,32 +110,31 @@ def of_pulses(solution: Solution) -> list[Explanation]:
     pulses = [index for index, cause in enumerate(solution.causes) if cause < STRAY]
     if not pulses:
         return [Explanation(NONE, 0, 1.0, 0.0)]
-    whole = _Among.of(solution, pulses)
-    found = [whole.explained(NONE, []), whole.explained(ALL, pulses)]
+    whole = _Among(solution, pulses)
+    found = [whole.explain(NONE, []), whole.explain(ALL, pulses)]
     for coil in sorted({solution.causes[index] for index in pulses}):
         own = indices_of(coil, solution.causes)
         for count in range(1, len(own) + 1):
-            found.append(whole.explained(coil, own[:count]))
+            found.append(whole.explain(coil, own[:count]))
             if count < len(own):
-                others = _Among.of(solution, [index for index in pulses if index != own[count]])
-                found.append(others.explained(coil, own[:count]))
+                others = _Among(solution, [index for index in pulses if index != own[count]])
+                found.append(others.explain(coil, own[:count]))
     return sorted(found, key=lambda explanation: explanation.distance)
 
 
-class _Among(NamedTuple):
+@final
+class _Among:
     """The pulses that are to be explained, and their weights."""
 
-    solution: Solution
-    pulses: list[int]
-    weights: Matrix
+    __slots__ = ("pulses", "solution", "weights")
 
-    @classmethod
-    def of(cls, solution: Solution, pulses: list[int]) -> "_Among":
-        """Of these pulses."""
-        return cls(solution, pulses, np.asarray(np.linalg.inv(solution.noise(pulses)), float))
+    def __init__(self, solution: Solution, pulses: list[int]) -> None:
+        self.solution = solution
+        self.pulses = pulses
+        self.weights: Matrix = np.asarray(np.linalg.inv(solution.noise(pulses)), float)
 
-    def explained(self, coil: int, alike: list[int]) -> Explanation:
-        """If those ``alike`` had one fraction of their effect and the others what was assumed."""
+    def explain(self, coil: int, alike: list[int]) -> Explanation:
+        """Explain them if those ``alike`` did one fraction of their effect and the others as assumed."""
         part, deviation = self.solution.part, self.solution.deviation
         off = np.array([part[index] if index in alike else deviation[index] for index in self.pulses])
         weighted = self.weights @ off
@@ -139,19 +148,19 @@ class _Among(NamedTuple):
         return Explanation(coil, len(alike), part_of_all, distance)
 
 
-def shown(solution: Solution, indices: list[int], test: WeakTest) -> PartSum:
-    """What some pulses of a coil show of it, each by itself."""
+def sum_pulses(solution: Solution, indices: list[int], test: WeakTest) -> PartSum:
+    """Sum up what some pulses of a coil show of it, each by itself."""
     variances = solution.covariance.diagonal()[indices] + solution.uncertain[indices] ** 2
     found = NO_PULSES
     for part, variance in zip(solution.part[indices].tolist(), variances.tolist(), strict=True):
-        found = found.plus(pulse(part, variance, test))
+        found = found.add(weigh_pulse(part, variance, test))
     return found
 
 
-def of_oldest(solution: Solution, coil: int, test: WeakTest) -> PartSum:
+def oldest_pulse(solution: Solution, coil: int, test: WeakTest) -> PartSum:
     """What the oldest pulse of a coil shows, if another takes its place; otherwise nothing."""
     own = indices_of(coil, solution.causes)
-    return shown(solution, own[-1:] if len(own) == PULSES else [], test)
+    return sum_pulses(solution, own[-1:] if len(own) == PULSES else [], test)
 
 
 def weak_by_pulses(
@@ -160,7 +169,7 @@ def weak_by_pulses(
     """The coil that is certainly weak, not sound, and its fraction; None while it may be another.
 
     Args:
-        solution: of the latest pulses, explained.
+        solution: of the latest pulses.
         earlier: by coil, what those before show.
         test: the evidence has to exceed its threshold, and that of every other coil by as much.
     """
@@ -170,10 +179,10 @@ def weak_by_pulses(
     for one in likely:
         own = indices_of(one.coil, solution.causes)
         older = earlier[one.coil] if one.pulses == len(own) else NOTHING_OLDER
-        nats = older.with_pulses(shown(solution, own[: one.pulses], test)).nats(test)
+        nats = older.add(sum_pulses(solution, own[: one.pulses], test)).nats(test)
         rivals = [other.distance for other in likely if other.coil != one.coil]
-        told = min(rivals, default=inf) - one.distance >= 2.0 * test.threshold
-        if nats >= test.threshold and told and alike - one.distance > SIGMAS**2:
+        alone = min(rivals, default=inf) - one.distance >= 2.0 * test.threshold
+        if nats >= test.threshold and alone and alike - one.distance > SIGMAS**2:
             return one.coil, one.part
     return None
 
@@ -191,14 +200,14 @@ def weak_by_gain(estimate: Estimate, each: list[float], test: WeakTest) -> tuple
     return None
 
 
-def by_gain(estimate: Estimate, tuning: MekfConfig, test: WeakTest) -> list[float]:
+def weigh_gains(estimate: Estimate, tuning: MekfConfig, test: WeakTest) -> list[float]:
     """By coil what its gain, as the filter estimates it, weighs against it, nats; 0 where it is exact."""
     place = tuning.layout.coils
     if place is None:
         return [0.0, 0.0, 0.0]
-    parts = [1.0 + error for error in estimate.parameters.coil_error[::4]]
-    variances = estimate.covariance.diagonal()[place][::4].tolist()
-    return [
-        test.nats(part, variance) if variance > 0.0 else 0.0
-        for part, variance in zip(parts, variances, strict=True)
-    ]
+    errors, variances = estimate.parameters.coil_error, estimate.covariance.diagonal()[place].tolist()
+    nats = [0.0, 0.0, 0.0]
+    for coil in range(3):
+        if variances[4 * coil] > 0.0:
+            nats[coil] = test.nats(1.0 + errors[4 * coil], variances[4 * coil])
+    return nats

@@ -1,7 +1,7 @@
 """What has been found of the coils so far, and what follows from it for the dipole of a tick."""
 
 from dataclasses import dataclass
-from typing import NamedTuple, TypeVar
+from typing import TypeVar, final
 
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.actuation.pulses import PulseConfig
@@ -33,22 +33,24 @@ class CoilHealthConfig:
 NONE_OLDER = (NOTHING_OLDER, NOTHING_OLDER, NOTHING_OLDER)
 
 
-class CoilHealth(NamedTuple):
+@final
+@dataclass(slots=True)
+class CoilHealth:
     """By coil: its fault (0: none), what its currents show against it, nats, and its ``older`` pulses.
 
-    ``strange_ticks``: ticks in a row with a level or a current without a request, ``stray_ma``: a current
-    without a level; ``stuck``: there is such a level, or such a current for too long; ``conducts``: by coil,
-    which fraction of it the filter takes into account. ``until_retest``: ticks until an isolated coil
+    ``unrequested_ticks``: ticks in a row with a level or a current without a request, ``stray_ma``: a current
+    without a level; ``stuck``: there is such a level, or such a current for too long; ``stray_parts``: by
+    coil, which fraction of it the filter takes into account. ``until_retest``: ticks until an isolated coil
     is tried again.
     """
 
     faults: tuple[int, int, int] = (0, 0, 0)
     nats: Vec3 = ZERO
     older: tuple[Older, Older, Older] = NONE_OLDER
-    strange_ticks: int = 0
+    unrequested_ticks: int = 0
     stray_ma: int = 0
     stuck: bool = False
-    conducts: Vec3 = ZERO
+    stray_parts: Vec3 = ZERO
     until_retest: tuple[int, int, int] = (0, 0, 0)
 
 
@@ -60,19 +62,21 @@ def driven_am2(health: CoilHealth, view: CoilView, config: CoilHealthConfig) -> 
         view: after what was received in this tick.
         config: limits.
     """
-    stuck = CoilFault.STUCK in health.faults
-    conducts = AXES[health.faults.index(CoilFault.STUCK)] if stuck else health.conducts
-    if not health.stray_ma or conducts == ZERO:
+    if not health.stray_ma:
         return view.driven_am2
-    return transform(transpose(config.stray_axes), scale(stray_am2(health, config), conducts))
+    stuck = CoilFault.STUCK in health.faults
+    parts = AXES[health.faults.index(CoilFault.STUCK)] if stuck else health.stray_parts
+    if parts == ZERO:
+        return view.driven_am2
+    return transform(transpose(config.stray_axes), scale(stray_am2(health, config), parts))
 
 
-def unattributed_torque(health: CoilHealth) -> bool:
+def has_unassigned_torque(health: CoilHealth) -> bool:
     """Whether a stray current turns the satellite, and the coil in which it flows is not isolated yet."""
-    return health.stuck and flows_somewhere(health)
+    return health.stuck and has_unassigned_current(health)
 
 
-def flows_somewhere(health: CoilHealth) -> bool:
+def has_unassigned_current(health: CoilHealth) -> bool:
     """Whether there is a stray current, and no coil is isolated for it."""
     return health.stray_ma != 0 and CoilFault.STUCK not in health.faults
 
@@ -82,14 +86,12 @@ def stray_am2(health: CoilHealth, config: CoilHealthConfig) -> float:
     return health.stray_ma / config.current_ma[-1] * config.pulses.levels_am2[-1]
 
 
-def with_fault(health: CoilHealth, coil: int, kind: int, config: CoilHealthConfig) -> CoilHealth:
-    """A coil keeps its first fault until it is tried again or cleared, unless it is found stuck."""
+def isolate_coil(health: CoilHealth, coil: int, kind: int, config: CoilHealthConfig) -> None:
+    """Isolate a coil, which keeps its first fault until it is tried again or cleared, or found stuck."""
     if health.faults[coil] and kind != CoilFault.STUCK:
-        return health
-    return health._replace(
-        faults=with_item(health.faults, coil, kind),
-        until_retest=with_item(health.until_retest, coil, config.retest_ticks),
-    )
+        return
+    health.faults = with_item(health.faults, coil, int(kind))
+    health.until_retest = with_item(health.until_retest, coil, config.retest_ticks)
 
 
 T = TypeVar("T")

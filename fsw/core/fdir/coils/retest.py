@@ -19,7 +19,7 @@ TRIED = (CoilFault.OPEN, CoilFault.WEAK, CoilFault.REVERSED)
 GAINS = tuple(COMPONENTS.index(("coil_error", 4 * coil)) for coil in range(3))
 
 
-def retest(health: CoilHealth, estimator: EstimatorState, sure: bool, config: CoilHealthConfig) -> CoilHealth:
+def retest(health: CoilHealth, estimator: EstimatorState, sure: bool, config: CoilHealthConfig) -> None:
     """Readmit a coil whose time has come.
 
     Args:
@@ -28,21 +28,19 @@ def retest(health: CoilHealth, estimator: EstimatorState, sure: bool, config: Co
         sure: the estimate is proven by both sensors, and will show what the coil does.
         config: limits.
     """
-    if not any(health.faults):
-        return health
-    first, second, third = (max(0, ticks - 1) for ticks in health.until_retest)
-    health = health._replace(until_retest=(first, second, third))
+    first, second, third = health.faults
+    if not (first or second or third):
+        return
+    first, second, third = health.until_retest
+    health.until_retest = (max(0, first - 1), max(0, second - 1), max(0, third - 1))
     half = 0.5 * config.weak.threshold
-    for coil, fault in enumerate(health.faults):
-        if sure and fault in TRIED and not health.until_retest[coil]:
-            health = health._replace(
-                faults=with_item(health.faults, coil, 0),
-                nats=with_item(health.nats, coil, half),
-                older=with_item(health.older, coil, Older(kept=half)),
-            )
+    for coil in range(3):
+        if sure and health.faults[coil] in TRIED and not health.until_retest[coil]:
+            health.faults = with_item(health.faults, coil, 0)
+            health.nats = with_item(health.nats, coil, half)
+            health.older = with_item(health.older, coil, Older(kept=half))
             discard_trace(estimator)
             forget_gain(estimator, coil, config.mekf)
-    return health
 
 
 def forget_gain(state: EstimatorState, coil: int, mekf: MekfConfig) -> None:

@@ -40,12 +40,14 @@ def kicks_radps(m_am2: float, axes: Mat3, estimate: Estimate, b_eci_t: Vec3, tun
     return first, second, third
 
 
-def trace(estimate: Estimate, conducts: Vec3, kicks_radps: Mat3, tick_s: float, begins: bool) -> Estimate:
+def trace_current(
+    estimate: Estimate, parts: Vec3, kicks_radps: Mat3, tick_s: float, begins: bool
+) -> Estimate:
     """Trace a stray current in any of the coils over one more tick.
 
     Args:
         estimate: before.
-        conducts: by coil, the fraction of the current that the filter took into account.
+        parts: by coil, the fraction of the current that the filter took into account.
         kicks_radps: by coil, the change of rate that the current would make in this tick, body axes.
         tick_s: length of a tick.
         begins: whether the current began in this tick; an earlier one is then forgotten.
@@ -54,14 +56,14 @@ def trace(estimate: Estimate, conducts: Vec3, kicks_radps: Mat3, tick_s: float, 
     if begins or STRAY not in traced.numbers:
         for number in CAUSES:
             if number in traced.numbers:
-                traced = effects.without(traced, traced.numbers.index(number))
-        causes = [Cause(number, part, MODEL_ERROR) for number, part in zip(CAUSES, conducts, strict=True)]
-        traced = effects.extended(traced, tuple(causes), np.zeros((6, 3)))
+                traced = effects.remove(traced, traced.numbers.index(number))
+        causes = [Cause(number, part, MODEL_ERROR) for number, part in zip(CAUSES, parts, strict=True)]
+        traced = effects.extend(traced, tuple(causes), np.zeros((6, 3)))
     effect, flows = traced.effect.copy(), _places(traced)
     kicks = np.array(kicks_radps).T
     effect[0:3, flows] += 0.5 * tick_s * kicks
     effect[3:6, flows] += kicks
-    return estimate._replace(trace=traced._replace(effect=effect))
+    return estimate._replace(trace=Trace(traced.causes, effect, traced.sums, traced.measured))
 
 
 def _places(traced: Trace) -> slice:
@@ -117,19 +119,19 @@ def _shifted(estimate: Estimate, parts: Matrix, uncertainty: Matrix, tuning: Mek
     shift[flows, -1] = -parts  # the innovations less what these parts have done to them
     causes = list(traced.causes)
     causes[flows] = [
-        cause._replace(assumed=cause.assumed + part)
+        Cause(cause.number, cause.assumed + part, cause.uncertain)
         for cause, part in zip(causes[flows], parts.tolist(), strict=True)
     ]
     sums = shift.T @ traced.sums @ shift
-    return estimate._replace(trace=traced._replace(causes=tuple(causes), sums=sums))
+    return estimate._replace(trace=Trace(tuple(causes), traced.effect, sums, traced.measured))
 
 
 def _without_stray(traced: Trace) -> Trace:
     others = [index for index, number in enumerate(traced.numbers) if number < STRAY]
-    return effects.only(traced, others, traced.sums)
+    return effects.select(traced, others, traced.sums)
 
 
-def conducting(solution: Solution) -> int | None:
+def conducting_coil(solution: Solution) -> int | None:
     """The coil in which a current flows without a request; None while it may be another, or none.
 
     The likeliest of the four explanations (p = 0, or 1 for one of the coils), if it fits and every other is

@@ -1,6 +1,6 @@
 """Each coil by its torque: what pulses and currents did, as the filter sees it, against what they should."""
 
-from typing import NamedTuple
+from typing import final
 
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.estimation.estimator import EstimatorState
@@ -11,10 +11,10 @@ from fsw.core.fdir.coils.health import (
     NONE_OLDER,
     CoilHealth,
     CoilHealthConfig,
-    flows_somewhere,
+    has_unassigned_current,
+    has_unassigned_torque,
+    isolate_coil,
     stray_am2,
-    unattributed_torque,
-    with_fault,
     with_item,
 )
 from fsw.core.fdir.coils.weak_test import Older
@@ -23,15 +23,19 @@ from fsw.core.orbit.earth import MU_M3PS2
 from fsw.core.orbit.ephemeris import Reference
 
 
-class BelievedParts(NamedTuple):
+@final
+class BelievedParts:
     """How small the fraction of its effect has to be to count as a coil's own fault.
 
     ``by_pulses``: for the fraction that its latest pulses show, each by itself; ``by_gain``: for the one that
     the filter has estimated from all of them, together with whatever else they may show.
     """
 
-    by_pulses: float
-    by_gain: float
+    __slots__ = ("by_gain", "by_pulses")
+
+    def __init__(self, by_pulses: float, by_gain: float) -> None:
+        self.by_pulses = by_pulses
+        self.by_gain = by_gain
 
 
 def judge_effect(
@@ -43,8 +47,10 @@ def judge_effect(
     believed: BelievedParts,
     unexplained: bool,
     config: CoilHealthConfig,
-) -> CoilHealth:
+) -> None:
     """Compare what the filter had to correct with what pulses, and a stray current, should have done.
+
+    The estimate is corrected where a coil certainly did other than assumed.
 
     Args:
         health: of the tick before.
@@ -55,30 +61,26 @@ def judge_effect(
         believed: the fractions of its effect below which the fault counts as a coil's own.
         unexplained: whether both sensors are in doubt.
         config: limits.
-
-    Returns:
-        The health; the estimate is corrected where a coil certainly did other than assumed.
     """
     estimate, age, b_eci_t = state.estimate, tick - view.fired_tick, reference.b_eci_t
     as_asked = view.driven_level != 0 and view.as_fired
     ended = as_asked and age == config.pulses.pulse_ticks
-    flows = flows_somewhere(health)
+    flows = has_unassigned_current(health)
     hurry = age % EARLY_TICKS == 0 and (unexplained or state.rejected_in_a_row > 0 or flows)
     due = ended or hurry or age == config.pulses.backoff_ticks
     if estimate is None or not (due or flows):
-        return health
+        return
     if flows:
         m_am2 = stray_am2(health, config)
         kicks_radps = stray.kicks_radps(m_am2, config.stray_axes, estimate, b_eci_t, config.mekf)
-        begins = health.strange_ticks == 1
-        estimate = stray.trace(estimate, health.conducts, kicks_radps, config.mekf.tick_s, begins)
+        begins = health.unrequested_ticks == 1
+        estimate = stray.trace_current(estimate, health.stray_parts, kicks_radps, config.mekf.tick_s, begins)
     if due:
-        health, estimate = _isolate(health, estimate, view.fired.coil if ended else None, believed, config)
+        estimate = _isolate(health, estimate, view.fired.coil if ended else None, believed, config)
     if ended:
         gravity_ps2 = 3.0 * MU_M3PS2 / reference.radius_m**3
         estimate = effects.trace_pulse(estimate, view.fired, b_eci_t, gravity_ps2, config.pulses, config.mekf)
     state.estimate = estimate
-    return health
 
 
 EARLY_TICKS = 5
@@ -91,50 +93,50 @@ def _isolate(
     ended: int | None,
     believed: BelievedParts,
     config: CoilHealthConfig,
-) -> tuple[CoilHealth, Estimate]:
-    """With the coil isolated that did something other than assumed, if any, and the estimate corrected.
+) -> Estimate:
+    """Isolate the coil that did something other than assumed, if any; return the estimate corrected.
 
     A pulse of the coil ``ended`` takes the place of its oldest one, whose evidence is kept.
     """
-    gain_nats, earlier = explanations.by_gain(estimate, config.mekf, config.weak), health.older
+    weak = config.weak
+    gain_nats, earlier = explanations.weigh_gains(estimate, config.mekf, weak), health.older
     if estimate.trace is None:  # as after a retest, whose evidence waits for the first pulse
-        one, two, three = (Older(kept=older.kept) for older in earlier)
-        return health._replace(older=(one, two, three)), estimate
+        first, second, third = earlier
+        health.older = (Older(kept=first.kept), Older(kept=second.kept), Older(kept=third.kept))
+        return estimate
     estimate, solution = effects.solve(estimate, config.mekf)
     if solution is None:
-        return (health if estimate.trace else health._replace(older=NONE_OLDER)), estimate
-    suspected = (
-        (explanations.weak_by_pulses(solution, earlier, config.weak), believed.by_pulses),
-        (explanations.weak_by_gain(estimate, gain_nats, config.weak), believed.by_gain),
-    )
+        if estimate.trace is None:
+            health.older = NONE_OLDER
+        return estimate
     if ended is not None:
-        oldest = explanations.of_oldest(solution, ended, config.weak)
-        older = earlier[ended].with_pulses(oldest).bounded(config.weak)
-        health = health._replace(older=with_item(earlier, ended, older))
-    for found, most in suspected:
-        if found is not None and found[1] < most and _others_are_sound(health, found[0], gain_nats):
-            health = with_fault(health, found[0], coil_fault(found[1], config.weak.weak_part), config)
+        oldest = explanations.oldest_pulse(solution, ended, weak)
+        health.older = with_item(earlier, ended, earlier[ended].add(oldest).bound(weak))
+    by_pulses = explanations.weak_by_pulses(solution, earlier, weak)
+    by_gain = explanations.weak_by_gain(estimate, gain_nats, weak)
+    for found, most in ((by_pulses, believed.by_pulses), (by_gain, believed.by_gain)):
+        if found is not None and found[1] < most and _are_others_sound(health, found[0], gain_nats):
+            isolate_coil(health, found[0], coil_fault(found[1], weak.weak_part), config)
             break
-    return (
-        _attribute(health, estimate, solution, config) if unattributed_torque(health) else (health, estimate)
-    )
+    return _assign_torque(health, estimate, solution, config) if has_unassigned_torque(health) else estimate
 
 
-def _attribute(
+def _assign_torque(
     health: CoilHealth, estimate: Estimate, solution: Solution, config: CoilHealthConfig
-) -> tuple[CoilHealth, Estimate]:
-    """With the coil isolated in which a stray current certainly flows, or with what is known of it."""
-    coil = stray.conducting(solution)
+) -> Estimate:
+    """Isolate the coil in which a stray current certainly flows, or take into account what is known of it."""
+    coil = stray.conducting_coil(solution)
     if coil is not None:
-        return with_fault(health, coil, CoilFault.STUCK, config), stray.settle(estimate, coil, config.mekf)
+        isolate_coil(health, coil, CoilFault.STUCK, config)
+        return stray.settle(estimate, coil, config.mekf)
     followed = stray.follow(estimate, solution, config.mekf)
     if followed is None:
-        return health, estimate
-    estimate, conducts = followed
-    return health._replace(conducts=conducts), estimate
+        return estimate
+    estimate, health.stray_parts = followed
+    return estimate
 
 
-def _others_are_sound(health: CoilHealth, coil: int, gain_nats: list[float]) -> bool:
+def _are_others_sound(health: CoilHealth, coil: int, gain_nats: list[float]) -> bool:
     """Whether another coil is left, and none seems weak too: a wrong inertia makes all of them seem so."""
     left = [other for other, fault in enumerate(health.faults) if other != coil and not fault]
     return bool(left) and all(gain_nats[other] <= 0.0 for other in left)

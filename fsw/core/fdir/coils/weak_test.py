@@ -4,8 +4,9 @@ A weak coil has the same fraction of its effect at every pulse. So its pulses co
 they agree, not each by its own: pulses that contradict each other prove little.
 """
 
+from dataclasses import dataclass
 from math import sqrt
-from typing import NamedTuple
+from typing import final
 
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.evidence import SIGMAS
@@ -18,7 +19,9 @@ REVERSED = -1.0
 """Least fraction of its effect that a coil can have."""
 
 
-class WeakTest(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class WeakTest:
     """The test that decides whether a coil is weak or sound.
 
     ``weak_part`` of the nominal current or effect is the most that is weak, ``sound_part`` the least that the
@@ -53,7 +56,9 @@ def weak_test(weak_part: float, threshold: float, mekf: MekfConfig) -> WeakTest:
     return WeakTest(weak_part, max(weak_part, 1.0 - deviation), threshold)
 
 
-class PartSum(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class PartSum:
     """Pulses of a coil: how many, and the sums of w, w p and w p^2, w being the weight of a part p."""
 
     pulses: int = 0
@@ -73,7 +78,7 @@ class PartSum(NamedTuple):
         scatter = max(0.0, self.squares - mean * self.weighted - self.pulses)
         return max(0.0, nats - 0.5 * scatter) if nats > 0.0 else nats
 
-    def plus(self, more: "PartSum") -> "PartSum":
+    def add(self, more: "PartSum") -> "PartSum":
         """The sum with more pulses."""
         return PartSum(
             self.pulses + more.pulses,
@@ -82,7 +87,7 @@ class PartSum(NamedTuple):
             self.squares + more.squares,
         )
 
-    def scaled(self, part: float) -> "PartSum":
+    def scale(self, part: float) -> "PartSum":
         """As if there had been only this fraction of them."""
         return PartSum(
             round(part * self.pulses), part * self.weight, part * self.weighted, part * self.squares
@@ -92,14 +97,16 @@ class PartSum(NamedTuple):
 NO_PULSES = PartSum()
 
 
-def pulse(part: float, variance: float, test: WeakTest) -> PartSum:
-    """One pulse, by its variance; but no pulse weighs more than ``MOST`` by itself."""
+def weigh_pulse(part: float, variance: float, test: WeakTest) -> PartSum:
+    """Weigh a pulse by its variance; but no pulse weighs more than ``MOST`` by itself."""
     nats, most = abs(test.nats(part, variance)), MOST * test.threshold
     weight = (most / nats if nats > most else 1.0) / variance
     return PartSum(1, weight, weight * part, weight * part**2)
 
 
-class Older(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class Older:
     """What is left of pulses no longer traced: what they show, and ``kept`` from an earlier fault."""
 
     parts: PartSum = NO_PULSES
@@ -109,17 +116,17 @@ class Older(NamedTuple):
         """What all of it weighs against the coil."""
         return self.kept + self.parts.nats(test)
 
-    def with_pulses(self, more: PartSum) -> "Older":
+    def add(self, more: PartSum) -> "Older":
         """What is left with more pulses."""
-        return Older(self.parts.plus(more), self.kept)
+        return Older(self.parts.add(more), self.kept)
 
-    def bounded(self, test: WeakTest) -> "Older":
+    def bound(self, test: WeakTest) -> "Older":
         """Nothing, once nothing speaks against the coil; at most the threshold, so that good pulses count."""
         nats = self.nats(test)
         if nats <= 0.0:
             return NOTHING_OLDER
         part = min(1.0, test.threshold / nats)
-        return Older(self.parts.scaled(part), part * self.kept) if part < 1.0 else self
+        return Older(self.parts.scale(part), part * self.kept) if part < 1.0 else self
 
 
 NOTHING_OLDER = Older()

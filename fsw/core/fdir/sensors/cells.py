@@ -61,10 +61,6 @@ class CellWatch:
     still: bool = False
     by_this: bool = False
 
-    def copy(self) -> "CellWatch":
-        """A watch of its own with the same evidence."""
-        return replace(self, watch=self.watch.copy())
-
 
 CellsHealth = list[CellWatch]
 """By cell; empty before the first evidence, and without cells."""

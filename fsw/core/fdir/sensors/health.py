@@ -51,16 +51,6 @@ class SensorHealth:
     memory: Memory = dataclasses.field(default_factory=Memory)
     cells: CellsHealth = dataclasses.field(default_factory=list)
 
-    def copy(self) -> "SensorHealth":
-        """A health of its own."""
-        return SensorHealth(
-            self.field.copy(),
-            self.sun.copy(),
-            self.pair.copy(),
-            self.memory.copy(),
-            [one.copy() for one in self.cells],
-        )
-
 
 @dataclass(frozen=True, slots=True)
 class SensorConfig:

@@ -1,6 +1,6 @@
 """The last samples of field and Sun, and for how long each has been repeated."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import final
 
 from fsw.core.algebra.vector import ZERO, Vec3
@@ -24,10 +24,6 @@ class Memory:
     field_still: int = 0
     sun_still: int = 0
     motion: Motion | None = None
-
-    def copy(self) -> "Memory":
-        """A memory of its own."""
-        return replace(self, motion=None if self.motion is None else self.motion.copy())
 
 
 def remember(memory: Memory, measurements: Measurements) -> None:

@@ -13,7 +13,7 @@ have agreed for long. No attitude is valid before its estimate is proven, nor af
 taken.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import final
 
@@ -69,10 +69,6 @@ class Pair:
     blind_ticks: int = 0
     proof_required: float = 0.0
     false_convergence: float = 0.0
-
-    def copy(self) -> "Pair":
-        """A pair of its own with the same evidence."""
-        return replace(self)
 
 
 def is_proven(pair: Pair, weights: EvidenceWeights) -> bool:

@@ -13,7 +13,7 @@ more is frozen:
     |sum dv| > sqrt 3 q + ``SIGMAS`` sum sigma |v| dt.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import sqrt
 from typing import final
 
@@ -53,10 +53,6 @@ class Motion:
 
     of_field: Displacement = field(default_factory=Displacement)
     of_sun: Displacement = field(default_factory=Displacement)
-
-    def copy(self) -> "Motion":
-        """A motion of its own."""
-        return Motion(replace(self.of_field), replace(self.of_sun))
 
 
 def update_motion(

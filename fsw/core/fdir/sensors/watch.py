@@ -1,6 +1,6 @@
 """The watch over one unit: evidence against it while it is in use, and for it while it is isolated."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import final
 
 from fsw.core.fdir.evidence import EvidenceWeights, weigh
@@ -17,10 +17,6 @@ class Watch:
 
     fault: int = 0
     nats: float = 0.0
-
-    def copy(self) -> "Watch":
-        """A watch of its own with the same evidence."""
-        return replace(self)
 
 
 def accuse(watch: Watch, cause: int, unclear: bool, weights: EvidenceWeights) -> None:

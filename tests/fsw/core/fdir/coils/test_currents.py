@@ -27,7 +27,8 @@ def judged_at(make_world):
         for after in range(1, pulse_ticks + 3):
             left_ms = remaining(duration_ms - round(1000.0 * after * tick_s))
             readings = measured(coil=CoilStatus(-3, 1, left_ms, 0, 0, 1))
-            health = judge_current(CoilHealth(), FIRED, readings, False, TICK + after, config)
+            health = CoilHealth()
+            judge_current(health, FIRED, readings, False, TICK + after, config)
             if health.nats != CoilHealth().nats:
                 assert health.nats == (0.0, 0.5 * limits.weak.threshold, 0.0)
                 found.append(after)
@@ -75,6 +76,6 @@ def test_it_is_judged_by_the_current_of_its_level_and_its_sign(make_world, level
     nominal_ma = copysign(limits.current_ma[abs(level) - 1], level)
     view = CoilView(fired_tick=TICK, fired=Pulse(1, level))
     said = measured(coil=CoilStatus(level, 1, 1000, round(part * nominal_ma), 0, 1))
-    before = CoilHealth(nats=(0.0, 1.0, 0.0))
-    after = judge_current(before, view, said, False, TICK + limits.pulses.pulse_ticks - 1, limits)
-    assert after.nats[1] == (1.0 + 0.5 * limits.weak.threshold if speaks_against else 0.0)
+    health = CoilHealth(nats=(0.0, 1.0, 0.0))
+    judge_current(health, view, said, False, TICK + limits.pulses.pulse_ticks - 1, limits)
+    assert health.nats[1] == (1.0 + 0.5 * limits.weak.threshold if speaks_against else 0.0)

@@ -1,6 +1,6 @@
 """Which coil a solution isolates: by how much, how surely, and never one of two that look alike."""
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
@@ -12,14 +12,13 @@ from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.coils.explanations import (
     STRAY,
     Solution,
-    by_gain,
-    explained,
+    explain_pulses,
     most_by_chance,
-    of_oldest,
-    of_pulses,
-    shown,
+    oldest_pulse,
+    sum_pulses,
     weak_by_gain,
     weak_by_pulses,
+    weigh_gains,
 )
 from fsw.core.fdir.coils.health import NONE_OLDER
 from fsw.core.fdir.coils.weak_test import (
@@ -40,7 +39,7 @@ def solution(causes, deviation, sigma, correlation=0.0, uncertain=MODEL_ERROR):
     shape = np.eye(len(sigma)) + correlation * (1.0 - np.eye(len(sigma)))
     deviation = np.array(deviation)
     covariance, uncertain = shape * np.outer(sigma, sigma), np.broadcast_to(uncertain, sigma.shape)
-    return explained(Solution(tuple(causes), 1.0 + deviation, deviation, covariance, uncertain))
+    return Solution(tuple(causes), 1.0 + deviation, deviation, covariance, uncertain)
 
 
 def weak(*arguments, earlier=NONE_OLDER):
@@ -99,15 +98,17 @@ class TestPulsesTracedNoLonger:
         return tuple(Older(parts) if coil == other else NOTHING_OLDER for other in range(3))
 
     def test_what_pulses_show_is_their_part_by_its_variance_and_what_is_uncertain(self):
-        found = shown(solution((2, 0, 1, 2), (-0.6, 0.1, -1.0, -0.5), (0.12, 0.2, 0.01, 0.12)), [0, 3], WEAK)
+        found = sum_pulses(
+            solution((2, 0, 1, 2), (-0.6, 0.1, -1.0, -0.5), (0.12, 0.2, 0.01, 0.12)), [0, 3], WEAK
+        )
         first = second = 1.0 / (0.12**2 + 0.05**2)
         squares = 0.4**2 * first + 0.5**2 * second
-        assert found == pytest.approx((2, first + second, 0.4 * first + 0.5 * second, squares))
+        assert astuple(found) == pytest.approx((2, first + second, 0.4 * first + 0.5 * second, squares))
 
     def test_the_oldest_gives_its_place_once_so_many_are_traced(self):
         traced = solution(*self.UNSURE)
-        assert of_oldest(traced, 1, WEAK) == pytest.approx((1, *self.sums(0.3)))
-        assert of_oldest(traced, 2, WEAK) == of_oldest(traced, 0, WEAK) == NO_PULSES
+        assert astuple(oldest_pulse(traced, 1, WEAK)) == pytest.approx((1, *self.sums(0.3)))
+        assert oldest_pulse(traced, 2, WEAK) == oldest_pulse(traced, 0, WEAK) == NO_PULSES
 
     def test_they_count_with_those_that_are(self):
         assert weak(*self.UNSURE) is None
@@ -151,7 +152,7 @@ def test_what_the_filter_knew_of_a_gain_counts_with_what_it_did_not():
     knowing = Solution(
         (1, 1, 0), np.array((0.6, 0.6, 1.0)) + deviation, deviation, covariance, np.full(3, MODEL_ERROR)
     )
-    assert weak_by_pulses(explained(knowing), NONE_OLDER, WEAK) == (1, pytest.approx(0.375, abs=0.03))
+    assert weak_by_pulses(knowing, NONE_OLDER, WEAK) == (1, pytest.approx(0.375, abs=0.03))
     assert weak((1, 1, 0), deviation, (0.04, 0.05, 0.03)) is None
 
 
@@ -173,16 +174,16 @@ def test_no_coil_does_more_the_other_way_than_a_reversed_one():
 def test_the_distance_is_that_of_what_is_left(lack):
     """By numpy, from the part that the coil is taken to have."""
     pulses = solution((1, 1, 0), (lack, lack + 0.1, 0.05), (0.4, 0.3, 0.1), 0.3)
-    one = next(found for found in of_pulses(pulses) if (found.coil, found.pulses) == (1, 2))
+    one = next(found for found in explain_pulses(pulses) if (found.coil, found.pulses) == (1, 2))
     off = np.array([*(pulses.part[:2] - one.part), pulses.deviation[2]])
     assert one.distance == pytest.approx(off @ np.linalg.solve(pulses.noise([0, 1, 2]), off))
     assert (one.part == -1.0) is (lack < -2.0)
 
 
 def test_sound_pulses_are_best_explained_by_nothing_and_that_fits():
-    likeliest = of_pulses(solution((0, 1, 2), (0.02, -0.03, 0.01), (0.05, 0.06, 0.04)))[-1]
+    likeliest = explain_pulses(solution((0, 1, 2), (0.02, -0.03, 0.01), (0.05, 0.06, 0.04)))[-1]
     assert (likeliest.coil, likeliest.fits) == (-1, True)
-    wild = of_pulses(solution((0, 1, 2), (0.9, -1.3, 1.4), (0.05, 0.06, 0.04)))
+    wild = explain_pulses(solution((0, 1, 2), (0.9, -1.3, 1.4), (0.05, 0.06, 0.04)))
     assert not any(one.fits for one in wild)
 
 
@@ -191,7 +192,7 @@ def test_a_stray_current_without_effect_is_no_weak_coil():
 
 
 def accused(estimate, config):
-    return weak_by_gain(estimate, by_gain(estimate, config, WEAK), WEAK)
+    return weak_by_gain(estimate, weigh_gains(estimate, config, WEAK), WEAK)
 
 
 class TestGain:
@@ -200,7 +201,7 @@ class TestGain:
     def test_a_gain_that_is_exact_says_nothing(self):
         config = tuned(coil_error=Prior((0.0, 0.1, 0.1, 0.1, 0.05, 0.1, 0.1, 0.1, 0.0), (0.0,) * 9))
         estimate = mekf.start((1.0, 0.0, 0.0, 0.0), (0.0,) * 3, config)
-        first, second, third = by_gain(estimate, config, WEAK)
+        first, second, third = weigh_gains(estimate, config, WEAK)
         assert first == third == 0.0
         assert second < 0.0
 

@@ -5,7 +5,7 @@ import pytest
 from pulse_samples import CONFIG, PULSES, WEAK
 
 from fsw.core.actuation.actuator import CoilView
-from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig, driven_am2, with_fault
+from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig, driven_am2, isolate_coil
 from fsw.core.fdir.faults import CoilFault
 
 AXES = ((-0.9, 0.03, 0.01), (0.02, 1.1, -0.04), (0.05, 0.0, 1.2))
@@ -17,7 +17,7 @@ REPORTED = CoilView(driven_am2=(0.1, 0.2, 0.3))
 @pytest.mark.parametrize("stray_ma", [200, -50])
 def test_a_stray_current_gives_each_coils_part_of_its_true_dipole(stray_ma):
     parts = (0.5, 0.3, -0.1)
-    health = CoilHealth(stray_ma=stray_ma, conducts=parts)
+    health = CoilHealth(stray_ma=stray_ma, stray_parts=parts)
     expected = 8.0 * stray_ma / 400.0 * (np.array(parts) @ AXES)
     assert driven_am2(health, REPORTED, LIMITS) == pytest.approx(expected)
 
@@ -25,19 +25,21 @@ def test_a_stray_current_gives_each_coils_part_of_its_true_dipole(stray_ma):
 @pytest.mark.parametrize("coil", [0, 1, 2])
 def test_once_its_coil_is_isolated_it_flows_there_alone(coil):
     faults = tuple(int(CoilFault.STUCK) if number == coil else 0 for number in range(3))
-    health = CoilHealth(faults=faults, stray_ma=-50, conducts=(0.5, 0.3, -0.1))
+    health = CoilHealth(faults=faults, stray_ma=-50, stray_parts=(0.5, 0.3, -0.1))
     assert driven_am2(health, REPORTED, LIMITS) == pytest.approx(-np.array(AXES[coil]))
 
 
 def test_without_a_current_or_while_nothing_is_known_of_it_what_is_reported_counts():
-    for health in (CoilHealth(conducts=(1.0, 0.0, 0.0)), CoilHealth(stray_ma=200)):
+    for health in (CoilHealth(stray_parts=(1.0, 0.0, 0.0)), CoilHealth(stray_ma=200)):
         assert driven_am2(health, REPORTED, LIMITS) == REPORTED.driven_am2
 
 
 def test_a_coil_keeps_its_first_fault_unless_it_is_found_stuck():
-    weak = with_fault(CoilHealth(), 1, CoilFault.WEAK, LIMITS)
-    assert (weak.faults, weak.until_retest) == ((0, CoilFault.WEAK, 0), (0, 3000, 0))
-    waiting = weak._replace(until_retest=(0, 7, 0))
-    assert with_fault(waiting, 1, CoilFault.OPEN, LIMITS) == waiting
-    stuck = with_fault(waiting, 1, CoilFault.STUCK, LIMITS)
-    assert (stuck.faults, stuck.until_retest) == ((0, CoilFault.STUCK, 0), (0, 3000, 0))
+    health = CoilHealth()
+    isolate_coil(health, 1, CoilFault.WEAK, LIMITS)
+    assert (health.faults, health.until_retest) == ((0, CoilFault.WEAK, 0), (0, 3000, 0))
+    health.until_retest = (0, 7, 0)
+    isolate_coil(health, 1, CoilFault.OPEN, LIMITS)
+    assert (health.faults, health.until_retest) == ((0, CoilFault.WEAK, 0), (0, 7, 0))
+    isolate_coil(health, 1, CoilFault.STUCK, LIMITS)
+    assert (health.faults, health.until_retest) == ((0, CoilFault.STUCK, 0), (0, 3000, 0))

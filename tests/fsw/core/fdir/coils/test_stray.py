@@ -28,7 +28,7 @@ from fsw.core.fdir.coils import stray
 from fsw.core.fdir.coils.effects import solve
 from fsw.core.fdir.coils.explanations import STRAY, Solution, weak_by_pulses
 from fsw.core.fdir.coils.health import NONE_OLDER
-from fsw.core.fdir.coils.stray import conducting
+from fsw.core.fdir.coils.stray import conducting_coil
 from fsw.core.laws.plan.pulse_model import AXES, Pulse
 
 
@@ -43,7 +43,7 @@ def fly_stray(flows, tuning=CONFIG, ticks=30, start=START, actual=START):
         s = add(s, tuple(radians(0.5) * random.normal(size=3)))
         estimate = mekf.update_sun(estimate, s, S_ECI, tuning) or estimate
         kicks = stray.kicks_radps(LEVEL_AM2, AXES, estimate, B_ECI_T, tuning)
-        estimate = stray.trace(estimate, ZERO, kicks, 1.0, begins=tick == 0)
+        estimate = stray.trace_current(estimate, ZERO, kicks, 1.0, begins=tick == 0)
     return estimate, truth
 
 
@@ -52,7 +52,7 @@ def fly_stray(flows, tuning=CONFIG, ticks=30, start=START, actual=START):
 def test_the_coil_that_conducts_is_told_from_the_sun_alone(coil, sign):
     estimate, _ = fly_stray(scale(sign, AXES[coil]))
     _, solution = solve(estimate, CONFIG)
-    assert conducting(solution) == (coil if sign > 0.0 else None), "the sign of the current is estimate"
+    assert conducting_coil(solution) == (coil if sign > 0.0 else None), "the sign of the current is estimate"
     assert weak_by_pulses(solution, NONE_OLDER, WEAK) is None
 
 
@@ -62,7 +62,7 @@ def test_the_coil_that_conducts_is_told_from_the_sun_alone(coil, sign):
 def test_what_one_coil_with_that_current_cannot_have_done_names_nobody(flows):
     estimate, _ = fly_stray(flows)
     _, solution = solve(estimate, CONFIG)
-    assert conducting(solution) is None
+    assert conducting_coil(solution) is None
 
 
 def test_the_gate_lets_through_what_a_deviation_explains_and_nothing_else():
@@ -79,11 +79,14 @@ def test_the_gate_lets_through_what_a_deviation_explains_and_nothing_else():
 def test_a_new_current_is_not_taken_for_the_one_before():
     estimate, _ = fly_stray(AXES[1])
     pulse = traced(estimate, Pulse(2, 3))
-    again = stray.trace(pulse, ZERO, (ZERO, ZERO, ZERO), 1.0, begins=True)
+    again = stray.trace_current(pulse, ZERO, (ZERO, ZERO, ZERO), 1.0, begins=True)
     assert pulse.trace.numbers == (2, STRAY, STRAY + 1, STRAY + 2)
     assert again.trace.numbers == (STRAY, STRAY + 1, STRAY + 2, 2)
     assert deviation(again) == pytest.approx([0.0] * 4, abs=1e-12)
-    assert stray.trace(again, ZERO, (ZERO, ZERO, ZERO), 1.0, begins=False).trace.causes == again.trace.causes
+    assert (
+        stray.trace_current(again, ZERO, (ZERO, ZERO, ZERO), 1.0, begins=False).trace.causes
+        == again.trace.causes
+    )
 
 
 def test_a_current_that_is_known_at_last_sets_the_estimate_right_and_leaves_the_pulses_to_be_judged():
@@ -116,19 +119,19 @@ def fly_followed(coil, ticks=90):
     """The estimate that takes into account what it knows of the current, and what it knew, tick by tick."""
     random = np.random.default_rng(7)
     truth = estimate = START
-    conducts, known = ZERO, []
+    parts, known = ZERO, []
     for tick in range(ticks):
         truth = mekf.predict(truth, E1_ECI, B_ECI_T, 3e-6, scale(LEVEL_AM2, AXES[coil]), CONFIG)
-        estimate = mekf.predict(estimate, E1_ECI, B_ECI_T, 3e-6, scale(LEVEL_AM2, conducts), CONFIG)
+        estimate = mekf.predict(estimate, E1_ECI, B_ECI_T, 3e-6, scale(LEVEL_AM2, parts), CONFIG)
         s = add(rotate(truth.q_body_from_eci, S_ECI), tuple(radians(0.5) * random.normal(size=3)))
         estimate = mekf.update_sun(estimate, s, S_ECI, CONFIG) or estimate
         kicks = stray.kicks_radps(LEVEL_AM2, AXES, estimate, B_ECI_T, CONFIG)
-        estimate = stray.trace(estimate, conducts, kicks, 1.0, begins=tick == 0)
+        estimate = stray.trace_current(estimate, parts, kicks, 1.0, begins=tick == 0)
         _, solution = solve(estimate, CONFIG)
         followed = stray.follow(estimate, solution, CONFIG)
         if followed is not None:
-            estimate, conducts = followed
-        known.append(conducts)
+            estimate, parts = followed
+        known.append(parts)
     return estimate, truth, known
 
 
@@ -140,7 +143,7 @@ def test_what_is_known_of_the_parts_keeps_the_estimate_near_long_before_the_coil
     off = np.linalg.norm(error_state(estimate, truth)[:3])
     left_alone, other = fly_stray(AXES[coil], ticks=len(known))
     assert off < 0.1 * np.linalg.norm(error_state(left_alone, other)[:3])
-    assert conducting(solve(estimate, CONFIG)[1]) == coil
+    assert conducting_coil(solve(estimate, CONFIG)[1]) == coil
 
 
 def test_of_a_current_that_was_followed_only_what_is_lacking_is_added_at_last():
@@ -158,7 +161,7 @@ def test_the_effect_of_a_tick_is_what_a_second_filter_shows_that_knew_of_it(coil
     unknowing = mekf.predict(START, E1_ECI, B_ECI_T, 3e-6, ZERO, CONFIG)
     knowing = mekf.predict(START, E1_ECI, B_ECI_T, 3e-6, scale(LEVEL_AM2, AXES[coil]), CONFIG)
     kicks = stray.kicks_radps(LEVEL_AM2, AXES, START, B_ECI_T, CONFIG)
-    effect = stray.trace(unknowing, ZERO, kicks, CONFIG.tick_s, begins=True).trace.effect[:6, coil]
+    effect = stray.trace_current(unknowing, ZERO, kicks, CONFIG.tick_s, begins=True).trace.effect[:6, coil]
     shown, largest = error_state(unknowing, knowing), np.abs(effect).max()
     assert shown == pytest.approx(effect, rel=1e-2, abs=1e-2 * largest)
 
@@ -167,9 +170,9 @@ def test_to_follow_takes_nothing_from_what_the_trace_can_tell():
     """The parts and their covariance are those of before; only what the filter lacks of them is less."""
     estimate, _ = fly_stray(AXES[2], ticks=20)
     _, before = solve(estimate, CONFIG)
-    followed, conducts = stray.follow(estimate, before, CONFIG)
+    followed, parts = stray.follow(estimate, before, CONFIG)
     _, after = solve(followed, CONFIG)
-    assert conducts == pytest.approx(tuple(before.part))
+    assert parts == pytest.approx(tuple(before.part))
     assert after.covariance == pytest.approx(before.covariance)
     assert np.abs(before.deviation).max() > 0.2
     assert np.abs(after.deviation).max() < 0.2 * np.abs(before.deviation).max()
@@ -189,7 +192,7 @@ SURE = np.full(3, 0.05)
 def named(deviation, sigma, correlation=0.0):
     """The coil that a solution names whose parts were not known beforehand."""
     deviation, shape = np.array(deviation), np.eye(3) + correlation * (1.0 - np.eye(3))
-    return conducting(Solution(stray.CAUSES, deviation, deviation, shape * np.outer(sigma, sigma), SURE))
+    return conducting_coil(Solution(stray.CAUSES, deviation, deviation, shape * np.outer(sigma, sigma), SURE))
 
 
 @pytest.mark.parametrize("coil", [0, 1, 2])
@@ -235,11 +238,11 @@ def test_each_explanation_is_weighed_by_its_likelihood_alone():
         certain = distances[first] <= 16.0 <= distances[second] - distances[first]
         expected = int(first) if certain and first < 3 else None
         found = Solution(stray.CAUSES, assumed + deviation, deviation, covariance, np.zeros(3))
-        assert conducting(found) == expected
+        assert conducting_coil(found) == expected
         named_coils.append(expected)
     assert {0, 1, 2, None} == set(named_coils)
 
 
 def test_pulses_before_it_do_not_name_a_coil():
     parts = np.array((1.0, 0.0))
-    assert conducting(Solution((0, 1), parts, parts, 0.03**2 * np.eye(2), SURE[:2])) is None
+    assert conducting_coil(Solution((0, 1), parts, parts, 0.03**2 * np.eye(2), SURE[:2])) is None

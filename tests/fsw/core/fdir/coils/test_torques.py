@@ -14,6 +14,7 @@ from fsw.core.fdir.coils.torques import BelievedParts, judge_effect
 from fsw.core.fdir.coils.weak_test import Older, PartSum
 from fsw.core.fdir.faults import CoilFault
 from fsw.core.laws.plan.pulse_model import Pulse
+from fsw.core.packing import copy_state
 
 WEAK_COIL = BelievedParts(0.7, 0.7)
 HEALTH = CoilHealth(older=(Older(PartSum(2, 30.0, 9.0, 2.7)), Older(kept=1.0), Older()))
@@ -21,9 +22,10 @@ LIMITS = CoilHealthConfig((40.0, 120.0, 400.0), WEAK, 1.0, 5, PULSES, CONFIG, 30
 
 
 def judged(estimate, believed=WEAK_COIL, health=HEALTH):
-    """The health when the next pulse is due."""
-    view, state = CoilView(fired_tick=1000 - EVERY), EstimatorState(estimate)
-    return judge_effect(health, view, REFERENCE, state, 1000, believed, False, LIMITS), state
+    """A copy of the health when the next pulse is due, and the state of the estimator."""
+    view, state, health = CoilView(fired_tick=1000 - EVERY), EstimatorState(estimate), copy_state(health)
+    judge_effect(health, view, REFERENCE, state, 1000, believed, False, LIMITS)
+    return health, state
 
 
 @pytest.mark.parametrize(
@@ -52,7 +54,7 @@ def test_pulses_that_no_fault_of_a_coil_explains_take_what_was_known_before_with
     contradictory, _ = fly([0, 1, 0, 1], [0.2, 0.2, 1.6, 1.6])
     health, state = judged(contradictory)
     assert state.estimate.trace is None
-    assert health == HEALTH._replace(older=NONE_OLDER)
+    assert health == replace(HEALTH, older=NONE_OLDER)
 
 
 def test_what_a_retest_keeps_waits_for_the_first_pulse():
@@ -98,9 +100,10 @@ ENDED = CoilView(fired_tick=1000 - PULSE_S, fired=Pulse(2, -3), driven_coil=2, d
 
 
 def ended(view=ENDED, estimate=START, health=HEALTH):
-    """Health and state of the estimator at the end of a pulse."""
-    state = EstimatorState(estimate)
-    return judge_effect(health, view, REFERENCE, state, 1000, WEAK_COIL, False, LIMITS), state
+    """A copy of the health, and the state of the estimator, at the end of a pulse."""
+    state, health = EstimatorState(estimate), copy_state(health)
+    judge_effect(health, view, REFERENCE, state, 1000, WEAK_COIL, False, LIMITS)
+    return health, state
 
 
 def test_a_pulse_that_ends_is_traced_with_the_gravity_of_its_orbit(monkeypatch):
@@ -130,7 +133,7 @@ def test_a_pulse_that_was_not_driven_as_requested_is_not_traced(changes):
 def test_nor_does_it_take_the_place_of_one_that_is():
     """The oldest of its coil is still traced: added up with the older ones it would count twice."""
     full, _ = fly([2, 0, 2, 1, 2], [0.5, 1.0, 0.5, 1.0, 0.5])
-    before = HEALTH._replace(older=NONE_OLDER)
+    before = replace(HEALTH, older=NONE_OLDER)
     health, state = ended(replace(ENDED, driven_level=3), full, before)
     assert state.estimate.trace.numbers.count(2) == 3
     assert health == before
@@ -139,7 +142,7 @@ def test_nor_does_it_take_the_place_of_one_that_is():
 def test_what_the_oldest_pulse_of_a_coil_has_shown_is_kept_with_that_coil():
     """Coil 2 has three pulses, too weak ones; a fourth takes the place of the first."""
     full, _ = fly([2, 0, 2, 1, 2], [0.5, 1.0, 0.5, 1.0, 0.5])
-    before = HEALTH._replace(older=NONE_OLDER)
+    before = replace(HEALTH, older=NONE_OLDER)
     health, state = ended(estimate=full, health=before)
     assert state.estimate.trace.numbers.count(2) == 3
     assert [older.parts.pulses for older in health.older] == [0, 0, 1]
@@ -162,20 +165,21 @@ def test_a_coil_is_named_only_while_the_others_that_are_left_seem_sound(
 ):
     """A wrong inertia makes all of them seem weak; and one coil is never isolated as the last."""
     monkeypatch.setattr(torques.explanations, "weak_by_pulses", lambda *of_this_tick: (1, 0.1))
-    monkeypatch.setattr(torques.explanations, "by_gain", lambda *of_this_tick: gain_nats)
+    monkeypatch.setattr(torques.explanations, "weigh_gains", lambda *of_this_tick: gain_nats)
     estimate, _ = fly([0, 1, 2, 0], [1.0] * 4)
-    health, _ = judged(estimate, health=HEALTH._replace(faults=faults))
+    health, _ = judged(estimate, health=replace(HEALTH, faults=faults))
     assert health.faults == ((faults[0], CoilFault.OPEN, faults[2]) if named else faults)
 
 
 def test_a_stray_current_is_traced_from_its_first_tick_on_through_all_that_follow():
     """A trace that began anew in each tick would only ever know the last one's kick."""
-    health, estimate = HEALTH._replace(stray_ma=400, strange_ticks=1), START
+    health, estimate = replace(HEALTH, stray_ma=400, unrequested_ticks=1), START
     lengths = []
     for tick in range(1000, 1004):
         view, state = CoilView(fired_tick=tick - PULSE_S - 1), EstimatorState(estimate)
         judge_effect(health, view, REFERENCE, state, tick, WEAK_COIL, False, LIMITS)
-        estimate, health = state.estimate, health._replace(strange_ticks=health.strange_ticks + 1)
+        estimate = state.estimate
+        health.unrequested_ticks += 1
         first = torques.stray.kicks_radps(LEVEL_AM2, LIMITS.stray_axes, estimate, B_ECI_T, CONFIG)[0]
         lengths.append(float(estimate.trace.effect[3, 0] / first[0]))
     assert lengths == pytest.approx([1.0, 2.0, 3.0, 4.0], rel=1e-6)

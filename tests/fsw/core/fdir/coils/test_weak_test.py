@@ -6,7 +6,15 @@ import pytest
 from estimator_samples import tuned
 
 from fsw.core.estimation.parameters import Prior
-from fsw.core.fdir.coils.weak_test import MOST, NO_PULSES, NOTHING_OLDER, Older, WeakTest, pulse, weak_test
+from fsw.core.fdir.coils.weak_test import (
+    MOST,
+    NO_PULSES,
+    NOTHING_OLDER,
+    Older,
+    WeakTest,
+    weak_test,
+    weigh_pulse,
+)
 
 WEAK = WeakTest(0.7, 0.8, 14.0)
 
@@ -14,7 +22,7 @@ WEAK = WeakTest(0.7, 0.8, 14.0)
 def pulses(*parts, sigma=0.1):
     found = NO_PULSES
     for part in parts:
-        found = found.plus(pulse(part, sigma**2, WEAK))
+        found = found.add(weigh_pulse(part, sigma**2, WEAK))
     return found
 
 
@@ -59,13 +67,13 @@ class TestPulses:
         assert pulses(0.2, 0.4, 0.3, sigma=0.2).nats(WEAK) == pytest.approx(agreed)
 
     def test_a_certain_one_counts_more_than_an_uncertain_one(self):
-        assert pulses(0.95, sigma=0.05).plus(pulses(0.1, sigma=0.3)).nats(WEAK) < 0.0
+        assert pulses(0.95, sigma=0.05).add(pulses(0.1, sigma=0.3)).nats(WEAK) < 0.0
 
     @pytest.mark.parametrize("part", [-1.3, 0.0, 0.5, 1.1])
     def test_one_by_itself_isolates_no_coil_and_two_that_agree_do(self, part):
         alone = pulses(part, sigma=0.001)
         assert abs(alone.nats(WEAK)) == pytest.approx(MOST * WEAK.threshold)
-        assert abs(alone.plus(alone).nats(WEAK)) > WEAK.threshold
+        assert abs(alone.add(alone).nats(WEAK)) > WEAK.threshold
         about = pulses(part - 0.05, part + 0.05, sigma=0.03).nats(WEAK)
         assert about > WEAK.threshold or part == 1.1
 
@@ -74,18 +82,18 @@ class TestOlderOnes:
     """What is left of pulses that are traced no longer."""
 
     def test_they_are_forgotten_once_the_coil_seems_sound(self):
-        assert Older(pulses(0.9, 0.7)).bounded(WEAK) is NOTHING_OLDER
-        assert Older(pulses(1.0), kept=1.0).bounded(WEAK) is NOTHING_OLDER
-        assert Older(pulses(0.1, 1.0, 0.1, 1.0, sigma=0.2)).bounded(WEAK) is NOTHING_OLDER
-        assert Older(pulses(0.5)).bounded(WEAK) == Older(pulses(0.5))
+        assert Older(pulses(0.9, 0.7)).bound(WEAK) is NOTHING_OLDER
+        assert Older(pulses(1.0), kept=1.0).bound(WEAK) is NOTHING_OLDER
+        assert Older(pulses(0.1, 1.0, 0.1, 1.0, sigma=0.2)).bound(WEAK) is NOTHING_OLDER
+        assert Older(pulses(0.5)).bound(WEAK) == Older(pulses(0.5))
 
     def test_they_weigh_no_more_than_the_threshold_so_that_good_ones_count(self):
-        many = Older(pulses(*[0.3] * 50)).bounded(WEAK)
+        many = Older(pulses(*[0.3] * 50)).bound(WEAK)
         assert many.nats(WEAK) == pytest.approx(WEAK.threshold)
         assert many.parts.weighted / many.parts.weight == pytest.approx(0.3)
-        assert many.with_pulses(pulses(1.0)).bounded(WEAK) is NOTHING_OLDER
+        assert many.add(pulses(1.0)).bound(WEAK) is NOTHING_OLDER
 
     def test_a_coil_that_is_tried_again_is_isolated_by_one_that_shows_nothing_else(self):
         tried = Older(kept=0.5 * WEAK.threshold)
-        assert tried.with_pulses(pulses(0.0)).nats(WEAK) > WEAK.threshold
-        assert tried.with_pulses(pulses(1.0, 1.0)).bounded(WEAK) is NOTHING_OLDER
+        assert tried.add(pulses(0.0)).nats(WEAK) > WEAK.threshold
+        assert tried.add(pulses(1.0, 1.0)).bound(WEAK) is NOTHING_OLDER

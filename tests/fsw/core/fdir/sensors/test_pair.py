@@ -21,6 +21,7 @@ from fsw.core.fdir.sensors.pair import (
     skip_judgement,
 )
 from fsw.core.fdir.sensors.plausibility import Findings
+from fsw.core.packing import copy_state
 
 NINE = (0.0,) * 9
 CONFIG = tuned(
@@ -52,7 +53,7 @@ TRUSTED = Pair(Standing.TRUSTED, proof=WEIGHTS.threshold)
 
 def after(pair, observed, ticks=1):
     """A copy of the pair after these ticks."""
-    pair = pair.copy()
+    pair = copy_state(pair)
     for _ in range(ticks):
         judge_pair(pair, observed, WEIGHTS, LIMITS)
     return pair
@@ -250,7 +251,7 @@ class TestSkippedJudgement:
     """While the time is in doubt: nothing is shown, but what ends or lags is not trusted."""
 
     def after(self, pair, estimate=ESTIMATE, used=TAKEN.used, ticks=1):
-        pair = pair.copy()
+        pair = copy_state(pair)
         for _ in range(ticks):
             skip_judgement(pair, used, estimate, WEIGHTS)
         return pair

@@ -111,12 +111,6 @@ def test_what_is_not_known_counts_as_rest():
     assert motion == after(5)
 
 
-def test_a_copy_moves_by_itself():
-    motion = after(5)
-    update_motion(motion.copy(), *BOTH, estimated(), Models, STEPS)
-    assert motion == after(5)
-
-
 @pytest.mark.parametrize("step", [0.1, 3e-7])
 def test_a_step_hides_its_length_on_each_axis_and_the_rate_s_error_some_more(step):
     limit = sqrt(3.0) * step + SIGMAS * 0.2 * step
