@@ -1,1 +1,1 @@
-"""The flight loop as a pure step: no I/O, no clock, no randomness."""
+"""The flight loop as a step from state and inbox: no I/O, no clock, no randomness."""
