@@ -70,7 +70,7 @@ class EstimateRecorder:
         if estimate is not None:
             into.omega_body_radps[tick] = estimate.omega_body_radps
             into.covariance[tick] = estimate.covariance[0:6, 0:6]
-            self._last = estimate
+            self._last = estimate.copy()
 
     def estimates(self) -> Estimates:
         """The histories."""

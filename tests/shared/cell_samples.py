@@ -9,7 +9,7 @@ from fsw.core.algebra.quaternion import normalise, rotate
 from fsw.core.algebra.vector import norm, unit
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import CellSet, Shade, light
-from fsw.core.estimation.cells.relinearise import linear_about, relinearised
+from fsw.core.estimation.cells.relinearise import linear_about, relinearise
 from fsw.core.estimation.cells.update import update_cells
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.parameters import Prior
@@ -94,7 +94,7 @@ def begun(q=Q_BODY_FROM_ECI):
         cell_gain=GAIN,
         earth_light=(LIGHT,),
     )
-    return estimate._replace(parameters=known)
+    return replace(estimate, parameters=known)
 
 
 def shown(q_body_from_eci=Q_BODY_FROM_ECI, gain=(0.0,) * 6, light=0.0):
@@ -111,6 +111,8 @@ def shown(q_body_from_eci=Q_BODY_FROM_ECI, gain=(0.0,) * 6, light=0.0):
 def cells_taken(estimate, currents, seen, config):
     """The estimate after these currents, by the equations about what it was, and which cells were taken."""
     cells = config.cells
+    after = estimate.copy()
     known = linear_about(estimate, REFERENCE.b_eci_t, seen, config, cells)
-    after, used = update_cells(estimate, currents, known, config, cells)
-    return relinearised(after, known, config, cells), used
+    used = update_cells(after, currents, known, config, cells)
+    relinearise(after, known, config, cells)
+    return after, used

@@ -2,7 +2,9 @@
 
 from math import inf, radians
 
+import filter_steps
 import numpy as np
+from changed import changed
 from estimator_samples import tuned
 
 from fsw.core.actuation.pulses import PulseConfig, impulse
@@ -37,7 +39,7 @@ WEAK = WeakTest(0.7, 0.8, 14.0)
 
 
 def step(estimate, dipole_am2):
-    return mekf.predict(estimate, E1_ECI, B_ECI_T, 3e-6, dipole_am2, CONFIG)
+    return filter_steps.predict(estimate, E1_ECI, B_ECI_T, 3e-6, dipole_am2, CONFIG)
 
 
 def b_body_t(estimate):
@@ -50,7 +52,7 @@ def kick_radps(estimate, coil):
 
 
 def traced(estimate, pulse, b_eci_t=B_ECI_T, tuning=CONFIG):
-    return trace_pulse(estimate, pulse, b_eci_t, GRAVITY_PS2, PULSES, tuning)
+    return changed(estimate, trace_pulse, pulse, b_eci_t, GRAVITY_PS2, PULSES, tuning)
 
 
 def fly(coils, parts, ticks=EVERY, noise=1.0, alter=lambda estimate: estimate, level=3):
@@ -65,7 +67,7 @@ def fly(coils, parts, ticks=EVERY, noise=1.0, alter=lambda estimate: estimate, l
                 b, s = (rotate(truth.q_body_from_eci, r) for r in (B_ECI_T, S_ECI))
                 b = add(b, tuple(noise * 2e-7 * random.normal(size=3)))
                 s = add(s, tuple(noise * radians(0.5) * random.normal(size=3)))
-                estimate = mekf.update_both(estimate, b, B_ECI_T, s, S_ECI, CONFIG)
+                estimate = filter_steps.update_both(estimate, b, B_ECI_T, s, S_ECI, CONFIG)
             elif tick == PULSE_S - 1:
                 estimate = traced(alter(estimate), Pulse(coil, level))
     return estimate, truth
@@ -73,7 +75,8 @@ def fly(coils, parts, ticks=EVERY, noise=1.0, alter=lambda estimate: estimate, l
 
 def judged(estimate):
     """The estimate after the solution, and its likeliest explanation: a coil, and the part of its effect."""
-    estimate, solution = solve(estimate, CONFIG)
+    estimate = estimate.copy()
+    solution = solve(estimate, CONFIG)
     if solution is None:
         return estimate, None
     likeliest = explain_pulses(solution)[0]

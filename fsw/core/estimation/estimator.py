@@ -8,12 +8,12 @@ from typing import ClassVar, final
 from fsw.core.algebra.vector import Vec3, dot, norm
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import light
-from fsw.core.estimation.cells.relinearise import linear_about, relinearised
-from fsw.core.estimation.cells.update import NO_CELLS, CellsUsed, faded, update_cells
+from fsw.core.estimation.cells.relinearise import Linear, linear_about, relinearise
+from fsw.core.estimation.cells.update import NO_CELLS, CellsUsed, fade, update_cells
 from fsw.core.estimation.dynamics.error_dynamics import FAST_RADPS, KNOWN_RADPS, SLOW_RADPS, Driven
 from fsw.core.estimation.measurement import field_sampled
 from fsw.core.estimation.mekf import Estimate
-from fsw.core.estimation.mekf_config import MekfConfig, with_frozen_parameters, with_open_direction
+from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import Parameters
 from fsw.core.estimation.samples import saturated_field, sensed_sun, usable_cells, usable_field, usable_sun
 from fsw.core.estimation.start.batch import SampleBatch, discard_samples, pass_tick
@@ -21,7 +21,7 @@ from fsw.core.estimation.start.first import (
     StartLimits,
     estimate_from_batch,
     first_estimate,
-    with_given,
+    give_parameters,
 )
 from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.earth import MU_M3PS2
@@ -86,7 +86,7 @@ class EstimatorState:
     def copy(self) -> "EstimatorState":
         """A state that goes on by itself from here."""
         return EstimatorState(
-            self.estimate,
+            None if self.estimate is None else self.estimate.copy(),
             self.rejected_in_a_row,
             self.rejected_total,
             self.restarts,
@@ -136,20 +136,17 @@ def predict(
     if len(driven) * config.mekf.tick_s > MAX_ELAPSED_S + 1e-6:
         restart(state)
         return
-    state.estimate = _predicted(state.estimate, reference, driven, config.mekf)
+    _predict(state.estimate, reference, driven, config.mekf)
     if not mekf.healthy(state.estimate):
         restart(state)
 
 
-def _predicted(
-    estimate: Estimate, reference: Reference, driven: Sequence[Driven], config: MekfConfig
-) -> Estimate:
+def _predict(estimate: Estimate, reference: Reference, driven: Sequence[Driven], config: MekfConfig) -> None:
     gravity = 3.0 * MU_M3PS2 / reference.radius_m**3
     for left, one in enumerate(driven, 1 - len(driven)):
         e1_eci, b_eci_t = earlier(reference, -left * config.tick_s)
-        estimate = mekf.predict(estimate, e1_eci, b_eci_t, gravity, one.m_body_am2, config, one.doubted_am2)
-        estimate = faded(estimate, config)
-    return estimate
+        mekf.predict(estimate, e1_eci, b_eci_t, gravity, one.m_body_am2, config, one.doubted_am2)
+        fade(estimate, config)
 
 
 def update(
@@ -167,36 +164,38 @@ def update(
     currents = usable_cells(measurements, cells)
     blanked = field is None and measurements.field is not None and measurements.field_trusted
     if state.estimate is None:
-        if cells is None:
-            started = first_estimate(field, sun, reference, config.start, config.mekf)
-        else:
-            started = estimate_from_batch(state.batch, field, currents, reference, config.start, config.mekf)
-        if started is None:
-            return Used(False, False, blanked)
-        slow = norm(started.omega_body_radps) > 0.0 and norm(started.omega_body_radps) < SLOW_RADPS
-        state.turning = Turning.NO if slow else Turning.FAST  # one tick shows no rate
-        state.estimate = with_given(started, state.first, state.loaded, config.mekf)
-        discard_samples(state.batch)
-        return Used(True, True, blanked)
+        started = _start(state, field, sun, currents, reference, config)
+        return Used(started, started, blanked)
 
-    tuning = with_frozen_parameters(config.mekf) if state.frozen else config.mekf
+    estimate, frozen = state.estimate, state.frozen
     limited = saturated_field(measurements)
+    open_body: Vec3 | None = None
     if limited is not None:
-        field, blanked, tuning = limited[0], False, with_open_direction(tuning, limited[1])
-    before = state.estimate
-    b = field_sampled(before.parameters, reference.b_eci_t, reference.b_rate_eci_tps)
-    estimate, took_field, took_sun = _updated(before, field, sun, b, reference.sun_eci, tuning)
-    rejected = (field is not None and not took_field) + (sun is not None and not took_sun)
-    by_cell = NO_CELLS
+        field, open_body = limited
+        blanked = False
+    b = field_sampled(estimate.parameters, reference.b_eci_t, reference.b_rate_eci_tps)
+    known: Linear | None = None
     if cells is not None:
         seen = light(reference.r_eci_m, reference.sun_eci, cells.albedo) if currents else None
-        known = linear_about(before, b, seen, tuning, cells)
-        estimate, by_cell = update_cells(estimate, currents, known, tuning, cells)
-        estimate = relinearised(estimate, known, tuning, cells)
+        known = linear_about(estimate, b, seen, config.mekf, cells)
+    took_field = took_sun = False
+    if field is not None and sun is not None:
+        took_field = took_sun = mekf.update_both(
+            estimate, field, b, sun, reference.sun_eci, config.mekf, open_body, frozen
+        )
+    if field is not None and not took_field:
+        took_field = mekf.update_field(estimate, field, b, config.mekf, open_body, frozen)
+    if sun is not None and not took_sun:
+        took_sun = mekf.update_sun(estimate, sun, reference.sun_eci, config.mekf, frozen)
+    rejected = (field is not None and not took_field) + (sun is not None and not took_sun)
+    by_cell = NO_CELLS
+    if cells is not None and known is not None:
+        by_cell = update_cells(estimate, currents, known, config.mekf, cells, frozen)
+        relinearise(estimate, known, config.mekf, cells, frozen)
         took_sun = bool(by_cell.taken)
         rejected += len(by_cell.refused) > 1 and not took_sun  # one alone may be faulty
     in_a_row = 0 if not rejected and (took_field or took_sun) else state.rejected_in_a_row + rejected
-    state.estimate, state.rejected_in_a_row = estimate, in_a_row
+    state.rejected_in_a_row = in_a_row
     state.rejected_total += rejected
     if not state.frozen:
         both = took_field and took_sun and (cells is None or sensed_sun(measurements, cells) is not None)
@@ -204,6 +203,29 @@ def update(
     if in_a_row >= config.restart_after_rejections or not mekf.healthy(estimate):
         restart(state)
     return Used(took_field, took_sun, blanked, by_cell)
+
+
+def _start(
+    state: EstimatorState,
+    field: Vec3 | None,
+    sun: Vec3 | None,
+    currents: tuple[float | None, ...],
+    reference: Reference,
+    config: EstimatorConfig,
+) -> bool:
+    """Start from the samples of this tick, or of a batch, if they allow it."""
+    if config.mekf.cells is None:
+        estimate = first_estimate(field, sun, reference, config.start, config.mekf)
+    else:
+        estimate = estimate_from_batch(state.batch, field, currents, reference, config.start, config.mekf)
+    if estimate is None:
+        return False
+    slow = norm(estimate.omega_body_radps) > 0.0 and norm(estimate.omega_body_radps) < SLOW_RADPS
+    state.turning = Turning.NO if slow else Turning.FAST  # one tick shows no rate
+    give_parameters(estimate, state.first, state.loaded, config.mekf)
+    state.estimate = estimate
+    discard_samples(state.batch)
+    return True
 
 
 def _settle(state: EstimatorState, estimate: Estimate, seen: bool, config: MekfConfig) -> None:
@@ -227,28 +249,15 @@ def _settle(state: EstimatorState, estimate: Estimate, seen: bool, config: MekfC
     if config.cells is not None:  # with the attitude as uncertain as at a start, the filter would diverge
         covariance = again.covariance.copy()
         covariance[0:6, 0:6] = CELLS_ANEW**2 * estimate.covariance[0:6, 0:6]
-        again = again._replace(covariance=covariance)
-    state.estimate, state.turning = with_given(again, state.first, state.loaded, config), after
-
-
-def _updated(
-    current: Estimate, field: Vec3 | None, sun: Vec3 | None, b_eci_t: Vec3, s_eci: Vec3, config: MekfConfig
-) -> tuple[Estimate, bool, bool]:
-    """The estimate after what was measured, and whether field and Sun were taken."""
-    if field is not None and sun is not None:
-        after_both = mekf.update_both(current, field, b_eci_t, sun, s_eci, config)
-        if after_both is not None:
-            return after_both, True, True
-    after_field = mekf.update_field(current, field, b_eci_t, config) if field is not None else None
-    current = after_field or current
-    after_sun = mekf.update_sun(current, sun, s_eci, config) if sun is not None else None
-    return after_sun or current, after_field is not None, after_sun is not None
+        again.covariance = covariance
+    give_parameters(again, state.first, state.loaded, config)
+    state.estimate, state.turning = again, after
 
 
 def discard_trace(state: EstimatorState) -> None:
     """Forget the trace of deviations."""
     if state.estimate is not None:
-        state.estimate = state.estimate._replace(trace=None)
+        state.estimate.trace = None
 
 
 def discard_estimate(state: EstimatorState) -> None:

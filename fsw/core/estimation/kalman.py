@@ -12,9 +12,10 @@ No function changes an array in place, so arrays may be shared. P is symmetric a
 With them, a trace of what unmodelled deviations would do to errors and innovations (Friedland 1969).
 """
 
+from dataclasses import dataclass
 from enum import StrEnum
 from math import nan
-from typing import NamedTuple, final
+from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -130,7 +131,9 @@ def inverse(m: Matrix) -> Matrix:
     return np.full_like(m, nan) if found is None else found
 
 
-class Cause(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class Cause:
     """A deviation: its number, and the fraction of a unit that the filter took into account.
 
     ``uncertain``: relative standard deviation of a unit that no measurement reduces.
@@ -141,7 +144,9 @@ class Cause(NamedTuple):
     uncertain: float
 
 
-class Trace(NamedTuple):
+@final
+@dataclass(slots=True)
+class Trace:
     """What unmodelled deviations would do to the errors and innovations of the filter.
 
     ``causes``: the k deviations. ``effect`` (n, k + 1): what a unit of each leaves in the error state; the
@@ -154,17 +159,21 @@ class Trace(NamedTuple):
     sums: Matrix
     measured: int
 
+    def copy(self) -> "Trace":
+        """A trace that goes on by itself from here; the arrays are shared, since none is changed."""
+        return Trace(self.causes, self.effect, self.sums, self.measured)
+
     @property
     def numbers(self) -> tuple[int, ...]:
         """The numbers of the causes."""
         return tuple([cause.number for cause in self.causes])
 
 
-def carried(trace: Trace, transition: Matrix) -> Trace:
-    """The trace after a prediction with this transition, (6, n)."""
+def carry_trace(trace: Trace, transition: Matrix) -> None:
+    """Carry the trace over a prediction with this transition, (6, n)."""
     effect = trace.effect.copy()
     effect[0:6] = product(transition, trace.effect)
-    return trace._replace(effect=effect)
+    trace.effect = effect
 
 
 def unexplained(sums: Matrix) -> float:

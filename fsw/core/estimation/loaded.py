@@ -3,7 +3,7 @@
 from fsw.core.estimation.estimator import EstimatorState, discard_trace
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import with_component
-from fsw.core.estimation.start.first import with_given
+from fsw.core.estimation.start.first import give_parameters
 
 
 def load(state: EstimatorState, component: int, value: float, config: MekfConfig) -> None:
@@ -30,7 +30,7 @@ def forget(state: EstimatorState, component: int, config: MekfConfig) -> None:
     if state.estimate is None:
         return
     first = state.first or config.initial_parameters
-    state.estimate = with_given(state.estimate, first, (component,), config)
+    give_parameters(state.estimate, first, (component,), config)
     discard_trace(state)
 
 

@@ -18,8 +18,9 @@ Source: Lefferts, Markley, Shuster 1982; dynamics: Ovchinnikov, Roldugin, Ivanov
 Schmidt 1966.
 """
 
+from dataclasses import dataclass
 from math import inf, isfinite, sqrt
-from typing import NamedTuple
+from typing import final
 
 import numpy as np
 
@@ -34,12 +35,18 @@ from fsw.core.estimation.dynamics.error_dynamics import (
     with_age_along,
 )
 from fsw.core.estimation.dynamics.motion import Acting, advanced, middle, turn
-from fsw.core.estimation.kalman import Matrix, Trace, Update, carried, product, unexplained
+from fsw.core.estimation.kalman import Matrix, Trace, Update, carry_trace, product, unexplained
 from fsw.core.estimation.kalman import predict as predict_covariance
 from fsw.core.estimation.kalman import update as update_error
 from fsw.core.estimation.measurement import field_prediction, sun_prediction
-from fsw.core.estimation.mekf_config import MekfConfig, piece_of_tick, pieces_of_tick
-from fsw.core.estimation.parameters import Parameters, corrected_parameters, estimated_dipole, estimated_rotor
+from fsw.core.estimation.mekf_config import MekfConfig, Step, open_noise, pieces_of_tick
+from fsw.core.estimation.parameters import (
+    ATTITUDE_AND_RATE,
+    Parameters,
+    correct_parameters,
+    estimated_dipole,
+    estimated_rotor,
+)
 from fsw.core.estimation.unobservable import turned_along
 
 LAG_S = 60.0
@@ -49,7 +56,9 @@ MAX_VARIANCE = 1e6
 """Beyond it (1000 rad) an estimate is worthless, and the algebra nears overflow."""
 
 
-class Estimate(NamedTuple):
+@final
+@dataclass(slots=True)
+class Estimate:
     """Attitude, inertial rate, parameters, and the covariance of the error state.
 
     The covariance is (n, n), n being 6 and the parameters that are carried, laid out as in ``Layout``; units
@@ -67,6 +76,19 @@ class Estimate(NamedTuple):
     numbers: int = 0
     lag: tuple[float, ...] = NO_LAG
 
+    def copy(self) -> "Estimate":
+        """An estimate that goes on by itself from here; the arrays are shared, since none is changed."""
+        return Estimate(
+            self.q_body_from_eci,
+            self.omega_body_radps,
+            self.parameters.copy(),
+            self.covariance,
+            None if self.trace is None else self.trace.copy(),
+            self.nis,
+            self.numbers,
+            self.lag,
+        )
+
 
 def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfig) -> Estimate:
     """The estimate at start-up: a known attitude, everything else at its prior."""
@@ -74,16 +96,16 @@ def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfi
     return Estimate(q_body_from_eci, omega_body_radps, parameters, config.initial_covariance)
 
 
-def corrected(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: MekfConfig) -> Estimate:
-    """The estimate corrected by something other than a measurement.
+def correct(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: MekfConfig) -> None:
+    """Correct the estimate by something other than a measurement.
 
     Args:
-        estimate: before.
+        estimate: to be corrected.
         error: what is to be added, (n), laid out as the error state.
         uncertainty: covariance that this adds, (n, n).
         config: the filter.
     """
-    return Estimate(*_fold(estimate, error, estimate.covariance + uncertainty, config), *estimate[4:])
+    _fold(estimate, error, estimate.covariance + uncertainty, config)
 
 
 def healthy(estimate: Estimate) -> bool:
@@ -107,7 +129,7 @@ def predict(
     m_body_am2: Vec3,
     config: MekfConfig,
     doubted_am2: Vec3 = ZERO,
-) -> Estimate:
+) -> None:
     """Carry estimate and covariance over one tick.
 
     Args:
@@ -120,19 +142,23 @@ def predict(
         doubted_am2: standard deviation of that dipole's error, as in ``Driven``.
     """
     count = pieces_of_tick(estimate.omega_body_radps, config.tick_s)
-    step = config if count == 1 else piece_of_tick(config, count)
-    driven = Driven(m_body_am2, doubted_am2)
+    step, driven = Step(config, count), Driven(m_body_am2, doubted_am2)
     for _ in range(count):
-        estimate = _predicted(estimate, e1_eci, b_eci_t, gravity_per_s2, driven, step)
-    return estimate
+        predict_step(estimate, e1_eci, b_eci_t, gravity_per_s2, driven, config, step)
 
 
-def _predicted(
-    estimate: Estimate, e1_eci: Vec3, b_eci_t: Vec3, gravity_per_s2: float, driven: Driven, config: MekfConfig
-) -> Estimate:
-    """The estimate after a tick or a piece of one."""
-    h, parts = config.tick_s, config.layout
-    q, omega, parameters, covariance, trace = estimate[:5]
+def predict_step(
+    estimate: Estimate,
+    e1_eci: Vec3,
+    b_eci_t: Vec3,
+    gravity_per_s2: float,
+    driven: Driven,
+    config: MekfConfig,
+    step: Step,
+) -> None:
+    """Carry estimate and covariance over a tick, or a piece of one."""
+    h, parts = step.tick_s, config.layout
+    q, omega, parameters = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
     m, rotor = driven.m_body_am2, config.rotor
     if parts.dipole is not None or parts.coils is not None:
         m = estimated_dipole(m, parameters)
@@ -144,43 +170,80 @@ def _predicted(
     acting = Acting(e1_eci, b_eci_t, gravity_per_s2, m, torque, rotor)
     around_mid, motion = middle(q, omega, acting, h)
     rotation, omega_after = advanced(q, omega, motion, acting, h)
-    transition = transition_matrix(motion, around_mid, driven.m_body_am2, rotor, config)
+    transition = transition_matrix(motion, around_mid, driven.m_body_am2, rotor, config, step)
+    noise = process_noise(driven, around_mid.b_t, config, step)
+    estimate.q_body_from_eci = normalise(multiply(q, turn(rotation)))
+    estimate.omega_body_radps = omega_after
+    estimate.covariance = predict_covariance(estimate.covariance, transition, noise, config.algebra)
+    if estimate.trace is not None:
+        carry_trace(estimate.trace, transition)
+    estimate.nis, estimate.numbers = 0.0, 0
+    estimate.lag = tuple([(1.0 - h / LAG_S) * mean for mean in estimate.lag])
 
-    noise = process_noise(driven, around_mid.b_t, config)
-    return Estimate(
-        normalise(multiply(q, turn(rotation))),
-        omega_after,
-        parameters,
-        predict_covariance(covariance, transition, noise, config.algebra),
-        trace if trace is None else carried(trace, transition),
-        lag=tuple([(1.0 - h / LAG_S) * mean for mean in estimate.lag]),
+
+def update_field(
+    estimate: Estimate,
+    b_body_t: Vec3,
+    b_eci_t: Vec3,
+    config: MekfConfig,
+    open_body: Vec3 | None = None,
+    frozen: bool = False,
+) -> bool:
+    """Take a magnetometer sample; False when the gate rejects it.
+
+    Args:
+        estimate: predicted to this tick; unchanged where the sample is rejected.
+        b_body_t: sample.
+        b_eci_t: field as modelled.
+        config: the filter.
+        open_body: the direction along which the sample shows nothing, if there is one.
+        frozen: whether the parameters keep their values.
+    """
+    predicted, sensitivity = field_prediction(
+        estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters, b_eci_t, config
     )
+    noise = config.field_noise
+    if open_body is not None:
+        noise = noise + open_noise(open_body)
+    innovation = sub(b_body_t, predicted)
+    return take(estimate, innovation, sensitivity, noise, config, config.gate_nis, frozen=frozen)
 
 
-def update_field(estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, config: MekfConfig) -> Estimate | None:
-    """Take a magnetometer sample. None when the gate rejects it."""
-    predicted, sensitivity = field_prediction(*estimate[:3], b_eci_t, config)
-    return take(estimate, sub(b_body_t, predicted), sensitivity, config.field_noise, config, config.gate_nis)
-
-
-def update_sun(estimate: Estimate, s_body: Vec3, s_eci: Vec3, config: MekfConfig) -> Estimate | None:
-    """Take a Sun direction. None when the gate rejects it."""
-    predicted, sensitivity = sun_prediction(*estimate[:3], s_eci, config)
-    return take(estimate, sub(s_body, predicted), sensitivity, config.sun_noise, config, config.gate_nis, 3)
+def update_sun(
+    estimate: Estimate, s_body: Vec3, s_eci: Vec3, config: MekfConfig, frozen: bool = False
+) -> bool:
+    """Take a Sun direction; False when the gate rejects it."""
+    predicted, sensitivity = sun_prediction(
+        estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters, s_eci, config
+    )
+    innovation = sub(s_body, predicted)
+    return take(estimate, innovation, sensitivity, config.sun_noise, config, config.gate_nis, 3, frozen)
 
 
 def update_both(
-    estimate: Estimate, b_body_t: Vec3, b_eci_t: Vec3, s_body: Vec3, s_eci: Vec3, config: MekfConfig
-) -> Estimate | None:
-    """Take field and Sun in one update. None when it is uncertain that each would pass the gate by itself.
+    estimate: Estimate,
+    b_body_t: Vec3,
+    b_eci_t: Vec3,
+    s_body: Vec3,
+    s_eci: Vec3,
+    config: MekfConfig,
+    open_body: Vec3 | None = None,
+    frozen: bool = False,
+) -> bool:
+    """Take field and Sun in one update; False when it is uncertain that each would pass the gate by itself.
 
     The NIS of a part never exceeds that of the whole, so the gate for one, applied to both, is stricter.
     """
-    b_predicted, b_sensitivity = field_prediction(*estimate[:3], b_eci_t, config)
-    s_predicted, s_sensitivity = sun_prediction(*estimate[:3], s_eci, config)
+    q, omega, parameters = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
+    b_predicted, b_sensitivity = field_prediction(q, omega, parameters, b_eci_t, config)
+    s_predicted, s_sensitivity = sun_prediction(q, omega, parameters, s_eci, config)
     innovation = (*sub(b_body_t, b_predicted), *sub(s_body, s_predicted))
     sensitivity = np.concatenate((b_sensitivity, s_sensitivity))
-    return take(estimate, innovation, sensitivity, config.both_noise, config, config.gate_nis)
+    noise = config.both_noise
+    if open_body is not None:
+        noise = noise.copy()
+        noise[0:3, 0:3] += open_noise(open_body)
+    return take(estimate, innovation, sensitivity, noise, config, config.gate_nis, frozen=frozen)
 
 
 def take(
@@ -191,32 +254,39 @@ def take(
     config: MekfConfig,
     gate_nis: float,
     first: int = 0,
-) -> Estimate | None:
-    """The estimate after an update, gated by its NIS; None beyond the gate.
+    frozen: bool = False,
+) -> bool:
+    """Update the estimate, gated by its NIS; beyond the gate False, and nothing is changed.
 
-    ``first``: place of the innovation in the ``lag``; that of a single number is left out of it.
+    ``first``: place of the innovation in the ``lag``; that of a single number is left out of it. ``frozen``:
+    the parameters keep their values, and their errors count as they are.
     """
-    found = update_error(
-        estimate.covariance, innovation, noise, sensitivity, config.considered, config.algebra
-    )
+    considered = slice(ATTITUDE_AND_RATE, config.layout.size) if frozen else None
+    found = update_error(estimate.covariance, innovation, noise, sensitivity, considered, config.algebra)
     if found is None:
-        return None
+        return False
     y, trace = np.array([innovation]).T, estimate.trace
     nis = float(product(y.T, product(found.weight, y))[0, 0])
+    traced: Matrix | None = None
+    sums: Matrix | None = None
     if trace is not None:
         traced = product(sensitivity, trace.effect)
         traced[:, -1:] = y
         sums = trace.sums + product(traced.T, product(found.weight, traced))
         if nis > 2.0 * len(traced):  # otherwise nothing to explain
             nis = unexplained(sums) - unexplained(trace.sums)
-        effect, measured = trace.effect - product(found.gain, traced), trace.measured + len(traced)
-        trace = Trace(trace.causes, effect, sums, measured)
     if not 0.0 <= nis <= gate_nis:  # overflow can make it -inf
-        return None
-    nis, numbers, lag = estimate.nis + nis, estimate.numbers + len(innovation), estimate.lag
+        return False
+    if trace is not None and traced is not None and sums is not None:
+        trace.effect = trace.effect - product(found.gain, traced)
+        trace.sums = sums
+        trace.measured += len(traced)
+    estimate.nis += nis
+    estimate.numbers += len(innovation)
     if len(innovation) > 1:
-        lag = _lagging(lag, innovation, found, first, config.tick_s / LAG_S)
-    return Estimate(*_fold(estimate, found.error, found.covariance, config), trace, nis, numbers, lag)
+        estimate.lag = _lagging(estimate.lag, innovation, found, first, config.tick_s / LAG_S)
+    _fold(estimate, found.error, found.covariance, config)
+    return True
 
 
 def _lagging(
@@ -230,20 +300,22 @@ def _lagging(
     return tuple(means)
 
 
-def _fold(
-    estimate: Estimate, error: Matrix, covariance: Matrix, config: MekfConfig
-) -> tuple[Quaternion, Vec3, Parameters, Matrix]:
-    """Attitude, rate and parameters with the error state folded in, and the covariance of their errors."""
-    (q, omega, parameters), parts = estimate[:3], config.layout
+def _fold(estimate: Estimate, error: Matrix, covariance: Matrix, config: MekfConfig) -> None:
+    """Fold an error state into attitude, rate and parameters; the covariance of their errors follows them."""
+    parts, parameters = config.layout, estimate.parameters
     values: list[float] = error.tolist()
-    t1, t2, t3, w1, w2, w3, *_ = values
-    q_after = normalise(multiply(q, from_small_rotation((t1, t2, t3))))
-    omega_after = add(omega, (w1, w2, w3))
-    after = corrected_parameters(parameters, values, parts)
-    if parts.delay is not None and dot(omega_after, omega_after) >= FAST_RADPS**2:
-        shift = free_motion(omega_after, after, config.rotor) - free_motion(omega, parameters, config.rotor)
+    omega = add(estimate.omega_body_radps, (values[3], values[4], values[5]))
+    turning = parts.delay is not None and dot(omega, omega) >= FAST_RADPS**2
+    before = free_motion(estimate.omega_body_radps, parameters, config.rotor) if turning else None
+    inertia_error = parameters.inertia_error_kgm2
+    turned = from_small_rotation((values[0], values[1], values[2]))
+    estimate.q_body_from_eci = normalise(multiply(estimate.q_body_from_eci, turned))
+    estimate.omega_body_radps = omega
+    correct_parameters(parameters, values, parts)
+    if parts.delay is not None and before is not None:
+        shift = free_motion(omega, parameters, config.rotor) - before
         covariance = with_age_along(shift, covariance, parts.delay)
     if config.unobservable is not None:
-        covariance = turned_along(covariance, error, parameters, config.unobservable)
+        covariance = turned_along(covariance, error, inertia_error, config.unobservable)
         covariance = 0.5 * (covariance + covariance.T)
-    return q_after, omega_after, after, covariance
+    estimate.covariance = covariance

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import ceil, sqrt
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 
@@ -26,6 +26,7 @@ OPEN_T = 1e-3
 """Noise of an axis that shows nothing: many times the Earth's field."""
 
 
+@final
 @dataclass(frozen=True, slots=True)
 class MekfConfig:
     """The filter's tuning and what is derived from it once.
@@ -39,9 +40,8 @@ class MekfConfig:
 
     By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3, n),
     ``..._map`` what it gains, as in ``sensitivity_map``, and ``..._noise`` the covariance, (3, 3) or (6, 6).
-    ``considered``: the states that no update changes. ``cells``: Sun cells in place of a Sun sensor.
+    ``cells``: Sun cells in place of a Sun sensor.
     ``unobservable``: what no sample shows, if anything.
-    ``pieces``: how many equal pieces a tick is predicted in, ``tick_s`` being the length of one.
     ``reaction_body_nm``: torque of a driven wheel on the body over this tick, N m.
     ``algebra``: what computes predictions and updates.
     """
@@ -65,10 +65,8 @@ class MekfConfig:
     both_noise: Matrix
     dipole_sigma: float
     gate_nis: float
-    considered: slice | None = None
     cells: CellSet | None = None
     unobservable: Unobservable | None = None
-    pieces: int = 1
     reaction_body_nm: Vec3 = ZERO
     algebra: Algebra = Algebra.FILTERPY
 
@@ -88,39 +86,41 @@ def pieces_of_tick(omega_radps: Vec3, tick_s: float) -> int:
     return ceil(min(sqrt(square) * tick_s / PIECE_RAD, MOST_PIECES))
 
 
-def piece_of_tick(config: MekfConfig, pieces: int) -> MekfConfig:
-    """The filter that predicts one of so many equal pieces of a tick; together they add the tick's noise."""
-    part, size = 1.0 / pieces, config.layout.size
-    noise = part * config.process_noise
-    noise[0:3, 0:3] *= part * part
-    noise[0:3, 3:6] *= part
-    noise[3:6, 0:3] *= part
-    identity = np.eye(6, size)
-    return replace(
-        config,
-        tick_s=part * config.tick_s,
-        process_noise=noise,
-        constant=identity + part * (config.constant - identity),
-        moving=part * config.moving,
-        driven=part * config.driven,
-        pieces=pieces,
-    )
+@final
+class Step:
+    """What the filter predicts by: a tick, or one of so many equal ``pieces`` of it.
+
+    As in ``MekfConfig``, for a step of this length. The pieces together add the tick's noise.
+    """
+
+    __slots__ = ("constant", "driven", "moving", "pieces", "process_noise", "tick_s")
+
+    def __init__(self, config: MekfConfig, pieces: int) -> None:
+        self.pieces = pieces
+        if pieces == 1:
+            self.tick_s = config.tick_s
+            self.process_noise = config.process_noise
+            self.constant = config.constant
+            self.moving = config.moving
+            self.driven = config.driven
+            return
+        part = 1.0 / pieces
+        noise = part * config.process_noise
+        noise[0:3, 0:3] *= part * part
+        noise[0:3, 3:6] *= part
+        noise[3:6, 0:3] *= part
+        identity = np.eye(6, config.layout.size)
+        self.tick_s = part * config.tick_s
+        self.process_noise = noise
+        self.constant = identity + part * (config.constant - identity)
+        self.moving = part * config.moving
+        self.driven = part * config.driven
 
 
-def with_frozen_parameters(config: MekfConfig) -> MekfConfig:
-    """The filter that estimates attitude and rate alone, and allows for the error of its parameters."""
-    return replace(config, considered=slice(6, config.layout.size))
-
-
-def with_open_direction(config: MekfConfig, direction_body: Vec3) -> MekfConfig:
-    """The filter of a tick in which the magnetometer shows nothing of the field along this direction."""
-    open_noise = np.zeros((6, 6))
-    open_noise[0:3, 0:3] = OPEN_T**2 * np.outer(direction_body, direction_body)
-    return replace(
-        config,
-        field_noise=config.field_noise + open_noise[0:3, 0:3],
-        both_noise=config.both_noise + open_noise,
-    )
+def open_noise(direction_body: Vec3) -> Matrix:
+    """The noise of a magnetometer that shows nothing of the field along this direction, (3, 3)."""
+    noise: Matrix = OPEN_T**2 * np.outer(direction_body, direction_body)
+    return noise
 
 
 def with_wheel(

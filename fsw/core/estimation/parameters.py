@@ -214,13 +214,6 @@ def correct_parameters(parameters: Parameters, error: list[float], places: Layou
         parameters.earth_light = _all_moved(parameters.earth_light, error, at)
 
 
-def corrected_parameters(parameters: Parameters, error: list[float], places: Layout) -> Parameters:
-    """The parameters plus their part of an error state."""
-    after = parameters.copy()
-    correct_parameters(after, error, places)
-    return after
-
-
 def _moved(v: Vec3, error: list[float], at: int) -> Vec3:
     x, y, z = v
     return (x + error[at], y + error[at + 1], z + error[at + 2])

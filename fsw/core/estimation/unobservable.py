@@ -19,7 +19,8 @@ Source: Huang, Mourikis, Roumeliotis 2010, on filters that gain information wher
 Bonnabel 2017, on errors along directions that move with the estimate.
 """
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import final
 
 import numpy as np
 
@@ -30,7 +31,8 @@ from fsw.core.estimation.parameters import (
     Layout,
     Parameters,
     Rotor,
-    corrected_parameters,
+    Symmetric,
+    correct_parameters,
     estimated_inertia,
 )
 
@@ -42,7 +44,9 @@ _UPPER = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
 """Rows and columns of a symmetric matrix, in the order of ``Parameters.inertia_error_kgm2``."""
 
 
-class Unobservable(NamedTuple):
+@final
+@dataclass(frozen=True, slots=True)
+class Unobservable:
     """The directions that a filter cannot observe: turns and factor, or the factor alone.
 
     ``moved``: the m components of the error state in which the directions depend on the estimate; they depend
@@ -80,12 +84,11 @@ def unobservable(parts: Layout, variances: list[float], rotor: Rotor) -> Unobser
         coordinates[TURNS, parts.sun_turn] = _UNIT
     given = slice(0 if turns else FACTOR, FACTOR + 1)
     nominal = unobservable_directions(ZERO, NOTHING, rotor, parts)
-    gained = [
-        unobservable_directions(
-            (error[3], error[4], error[5]), corrected_parameters(NOTHING, error, parts), rotor, parts
-        )
-        for error in np.eye(parts.size).tolist()
-    ]
+    gained = []
+    for error in np.eye(parts.size).tolist():
+        parameters = NOTHING.copy()
+        correct_parameters(parameters, error, parts)
+        gained.append(unobservable_directions((error[3], error[4], error[5]), parameters, rotor, parts))
     moved = slice(3, parts.inertia.stop)
     moving = np.array([(directions - nominal)[moved, given].ravel() for directions in gained[moved]])
     trace_kgm2 = float(np.trace(rotor.inertia_kgm2))
@@ -93,7 +96,7 @@ def unobservable(parts: Layout, variances: list[float], rotor: Rotor) -> Unobser
 
 
 def turned_along(
-    covariance: Matrix, error: Matrix, parameters: Parameters, directions: Unobservable
+    covariance: Matrix, error: Matrix, inertia_error_kgm2: Symmetric, directions: Unobservable
 ) -> Matrix:
     """The covariance of a corrected estimate, turned with the directions that no sample shows.
 
@@ -102,13 +105,13 @@ def turned_along(
     Args:
         covariance: after the correction, but along the directions before it, (n, n).
         error: the correction, (n).
-        parameters: as estimated before.
+        inertia_error_kgm2: as estimated before.
         directions: those of the filter.
     """
-    moved, moving, along, trace_kgm2 = directions
-    xx, yy, zz, *_ = parameters.inertia_error_kgm2
-    turns = product(error[None, moved], moving).reshape(-1, len(along))
-    turns[:, -1] *= 1.0 / (trace_kgm2 + xx + yy + zz)
+    moved, along = directions.moved, directions.coordinates
+    xx, yy, zz, _, _, _ = inertia_error_kgm2
+    turns = product(error[None, moved], directions.moving).reshape(-1, len(along))
+    turns[:, -1] *= 1.0 / (directions.trace_kgm2 + xx + yy + zz)
     known = product(along, covariance)
     known[:, moved] += product(product(known, 0.5 * along.T), turns.T)
     turned = covariance.copy()

@@ -1,7 +1,7 @@
 """The flight filter over a pass: magnetometer alone, from a start; and its prediction without any sample."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import nan, radians
 from typing import NamedTuple
 
@@ -129,27 +129,26 @@ def follow(around: Along, known: PassCalibration, start: Spin, config: MekfConfi
     attitude = from_dcm(_mat3(start.dcm_body_from_eci))
     estimate = mekf.start(attitude, _vec3(start.omega_body_radps), config)
     bias_t = _vec3(T_PER_NT * start.bias_nt)
-    estimate = estimate._replace(parameters=replace(estimate.parameters, mag_bias_t=bias_t))
+    estimate.parameters.mag_bias_t = bias_t
     ticks, before = [], int(around.tick[rows[0]])
     with progress(f"{around.recorded.name}, {start.rate_degps:.2f} deg/s", len(rows)) as watch:
         for done, row in enumerate(rows.tolist()):
             now = int(around.tick[row])
             reference = around.references[now]
-            estimate = coasted(estimate, reference, now - before, config)
+            coast(estimate, reference, now - before, config)
             taken = _take(row, estimate, _vec3(field_t[row]), reference, config)
-            estimate, before = taken.estimate, now
+            before = now
             ticks.append(taken)
             watch(done)
     return Followed(start, config, tuple(ticks))
 
 
-def coasted(estimate: Estimate, reference: Reference, ticks: int, config: MekfConfig) -> Estimate:
-    """The estimate after so many ticks without a sample."""
+def coast(estimate: Estimate, reference: Reference, ticks: int, config: MekfConfig) -> None:
+    """Carry the estimate over so many ticks without a sample."""
     e1_eci = scale(1.0 / reference.radius_m, reference.r_eci_m)
     gravity_per_s2 = 3.0 * MU_M3PS2 / reference.radius_m**3
     for _ in range(ticks):
-        estimate = mekf.predict(estimate, e1_eci, reference.b_eci_t, gravity_per_s2, ZERO, config)
-    return estimate
+        mekf.predict(estimate, e1_eci, reference.b_eci_t, gravity_per_s2, ZERO, config)
 
 
 def without_sample(
@@ -158,29 +157,30 @@ def without_sample(
     """From the estimate after a row on, without any sample: ticks since, and angle to the field, deg."""
     start = int(around.tick[begun.row])
     field_t = T_PER_NT * known.field_nt(around.recorded.mag_nt)
-    estimate, before = begun.estimate, start
+    estimate, before = begun.estimate.copy(), start
     rows = sampled(around)
     for row in rows[rows > begun.row].tolist():
         now = int(around.tick[row])
         reference = around.references[now]
-        estimate, before = coasted(estimate, reference, now - before, config), now
+        coast(estimate, reference, now - before, config)
+        before = now
         measured = sub(_vec3(field_t[row]), estimate.parameters.mag_bias_t)
         predicted = rotate(estimate.q_body_from_eci, reference.b_eci_t)
         yield now - start, _angle_deg(measured, predicted)
 
 
 def _take(row: int, estimate: Estimate, field_t: Vec3, reference: Reference, config: MekfConfig) -> Taken:
-    """Offer a sample to the filter: what it lacked beforehand, and the estimate afterwards."""
+    """Offer a sample to the filter: what it lacked beforehand, and a copy of the estimate afterwards."""
     predicted = rotate(estimate.q_body_from_eci, reference.b_eci_t)
     measured = sub(field_t, estimate.parameters.mag_bias_t)
-    after = mekf.update_field(estimate, field_t, reference.b_eci_t, config)
+    took = mekf.update_field(estimate, field_t, reference.b_eci_t, config)
     return Taken(
         row,
-        after or estimate,
+        estimate.copy(),
         _angle_deg(measured, predicted),
         (norm(predicted) - norm(measured)) / T_PER_NT,
-        nan if after is None else after.nis,
-        after is not None,
+        estimate.nis if took else nan,
+        took,
     )
 
 

@@ -100,9 +100,9 @@ def update(pair: DirectionPair, q_body_from_ref: Array, covariance: Array) -> Es
         torque_noise_nm_rts=0.0,
         gate_nis=inf,
     )
-    before = start(normalise((q0, q1, q2, q3)), ZERO, config)
-    after = update_both(before, pair.b1, pair.r1, pair.b2, pair.r2, config)
-    return before if after is None else after
+    estimate = start(normalise((q0, q1, q2, q3)), ZERO, config)
+    update_both(estimate, pair.b1, pair.r1, pair.b2, pair.r2, config)
+    return estimate
 
 
 def _prior_sigma(covariance: Array) -> float:

@@ -83,7 +83,7 @@ def test_equal_states_have_equal_checksums(run):
 
 def test_the_layout_of_an_array_in_memory_does_not_count(run):
     known = run.estimator.estimate
-    turned = known._replace(covariance=np.asfortranarray(known.covariance))
+    turned = replace(known, covariance=np.asfortranarray(known.covariance))
     assert checksum(altered(run, estimator=replace(run.estimator, estimate=turned))) == checksum(run)
 
 

@@ -147,7 +147,7 @@ class TestParameter:
         covariance[7, 7] = broken
         assert len(self.reports(state, estimate, {"torque_body_nm"}, 10)) == 1
         assert self.reports(state, None, {"torque_body_nm"}, 10) == []
-        assert self.reports(state, estimate._replace(covariance=covariance), {"torque_body_nm"}, 10) == []
+        assert self.reports(state, replace(estimate, covariance=covariance), {"torque_body_nm"}, 10) == []
 
     def test_of_a_table_that_is_exact_there_is_none(self, state):
         assert self.reports(state, estimate_with(4, 7, 0.0, 1.0), set(), 10) == []
@@ -156,7 +156,7 @@ class TestParameter:
         estimate = estimate_with(4, 10, 2e-8, 1e-8, size=6 + len(Component))
         excess = (0.01, -0.02, 0.03, -0.04, 0.05, -0.06)
         known = replace(estimate.parameters, cell_excess=excess, cell_gain=excess[::-1], earth_light=(0.07,))
-        estimate = estimate._replace(parameters=known)
+        estimate = replace(estimate, parameters=known)
         sent = [self.reports(state, estimate, set(NAMES), 10 * n)[0] for n in range(len(Component))]
         assert [message.component for message in sent] == list(Component)
 

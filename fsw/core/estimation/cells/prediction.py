@@ -28,8 +28,9 @@ def prediction(
 
     Misalignment and age are those of the Sun sensor that the cells replace: common to all cells.
     """
-    normal, parts, known = cells.normals_body[cell], config.layout, estimate.parameters
-    s, sensitivity = sun_prediction(*estimate[:3], seen.s_eci, config)
+    normal, parts = cells.normals_body[cell], config.layout
+    q, omega, known = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
+    s, sensitivity = sun_prediction(q, omega, known, seen.s_eci, config)
     shown, row = 0.0, np.zeros(parts.size)
     direct = dot(normal, s)
     if direct > 0.0:
@@ -38,7 +39,7 @@ def prediction(
         if parts.cell_gain is not None:
             row[parts.cell_gain.start + cell] = direct
     if seen.earth > 0.0:
-        e, e_sensitivity = sun_prediction(*estimate[:3], seen.e_eci, config)
+        e, e_sensitivity = sun_prediction(q, omega, known, seen.e_eci, config)
         view = 0.5 * (1.0 + dot(normal, e))
         of_one = seen.earth / cells.albedo
         earth = seen.earth + of_one * (known.earth_light[0] if known.earth_light else 0.0)

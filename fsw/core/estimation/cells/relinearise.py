@@ -31,15 +31,16 @@ from fsw.core.estimation.kalman import Matrix, product
 from fsw.core.estimation.measurement import field_prediction
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.parameters import corrected_parameters, difference
+from fsw.core.estimation.parameters import correct_parameters, difference
 
 
 @final
 class Linear:
     """Field and lit cells about an estimate: what they show without bias and excess, and H.
 
-    ``by_sun``, ``by_earth``: numbers of the cells that each of them lights. ``values`` (3 + k) and ``rows``
-    (3 + k, n): of the field, T, and of these k cells in this order; the rows include bias and excess.
+    ``about``: a copy of the estimate. ``by_sun``, ``by_earth``: numbers of the cells that each lights.
+    ``values`` (3 + k) and ``rows`` (3 + k, n): of the field, T, and of these k cells in this order; the rows
+    include bias and excess.
     """
 
     __slots__ = ("about", "b_eci_t", "by_earth", "by_sun", "rows", "seen", "values")
@@ -78,7 +79,7 @@ def linear_about(
     q = estimate.q_body_from_eci
     by_sun, by_earth = (sunlit(q, seen, cells), earthlit(q, seen, cells)) if seen else ([], [])
     values, rows = _shown(estimate, b_eci_t, seen, (*by_sun, *by_earth), config, cells)
-    return Linear(estimate, b_eci_t, seen, tuple(by_sun), tuple(by_earth), values, rows)
+    return Linear(estimate.copy(), b_eci_t, seen, tuple(by_sun), tuple(by_earth), values, rows)
 
 
 def _shown(
@@ -89,7 +90,9 @@ def _shown(
     config: MekfConfig,
     cells: CellSet,
 ) -> tuple[Matrix, Matrix]:
-    field, field_rows = field_prediction(*estimate[:3], b_eci_t, config)
+    field, field_rows = field_prediction(
+        estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters, b_eci_t, config
+    )
     values, rows = list(sub(field, estimate.parameters.mag_bias_t)), [field_rows]
     if seen is not None:
         for cell in lit:
@@ -110,40 +113,40 @@ def cell_shown(known: Linear, number: int, estimate: Estimate, config: MekfConfi
     return about + float(product(row[None, :], moved[:, None])[0, 0]), row[None, :]
 
 
-def relinearised(after: Estimate, known: Linear, config: MekfConfig, cells: CellSet) -> Estimate:
-    """The estimate with bias and excesses that take up what the linear equations have left out.
+def relinearise(
+    estimate: Estimate, known: Linear, config: MekfConfig, cells: CellSet, frozen: bool = False
+) -> None:
+    """Let bias and excesses take up what the linear equations have left out.
 
-    Those that are certain do not, nor any while the parameters are frozen.
+    Those that are certain do not, nor any while the parameters are ``frozen``.
 
     Args:
-        after: corrected by the samples of the tick.
+        estimate: corrected by the samples of the tick.
         known: the equations by which it was.
         config: the filter.
         cells: the cells.
+        frozen: whether the parameters keep their values.
     """
     lit = (*known.by_sun, *known.by_earth)
-    numbers, places = _uncertain(after, lit, config)
-    if not places or config.considered is not None:
-        return after
-    values, rows = _shown(after, known.b_eci_t, known.seen, lit, config, cells)
-    moved = correction(known.about, after, config)
+    numbers, places = _uncertain(estimate, lit, config)
+    if not places or frozen:
+        return
+    values, rows = _shown(estimate, known.b_eci_t, known.seen, lit, config, cells)
+    moved = correction(known.about, estimate, config)
     left = np.zeros(len(moved))
-    by_rows = product(known.rows, moved[:, None])[:, 0]
-    left[places] = (known.values - values + by_rows)[numbers] - moved[places]
+    left[places] = (known.values - values + product(known.rows, moved[:, None])[:, 0])[numbers] - moved[
+        places
+    ]
     change = (known.rows - rows)[numbers]
-    covariance = after.covariance.copy()
+    covariance = estimate.covariance.copy()
     covariance[places] += product(change, covariance)
     covariance[:, places] += product(covariance, change.T)
-    trace = after.trace
-    if trace is not None:
-        effect = trace.effect.copy()
+    if estimate.trace is not None:
+        effect = estimate.trace.effect.copy()
         effect[places] += product(change, effect)
-        trace = trace._replace(effect=effect)
-    return after._replace(
-        parameters=corrected_parameters(after.parameters, left.tolist(), config.layout),
-        covariance=0.5 * (covariance + covariance.T),
-        trace=trace,
-    )
+        estimate.trace.effect = effect
+    correct_parameters(estimate.parameters, left.tolist(), config.layout)
+    estimate.covariance = 0.5 * (covariance + covariance.T)
 
 
 def correction(before: Estimate, after: Estimate, config: MekfConfig) -> Matrix:

@@ -1,7 +1,6 @@
 """Sun-cell samples in the filter, one at a time; of a cell's errors only the smallest is white noise."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import ClassVar, final
 
 import numpy as np
@@ -40,19 +39,25 @@ NO_CELLS = CellsUsed()
 
 
 def update_cells(
-    estimate: Estimate, currents: Sequence[float | None], known: Linear, config: MekfConfig, cells: CellSet
-) -> tuple[Estimate, CellsUsed]:
+    estimate: Estimate,
+    currents: Sequence[float | None],
+    known: Linear,
+    config: MekfConfig,
+    cells: CellSet,
+    frozen: bool = False,
+) -> CellsUsed:
     """Take the cells that see the Sun, then those that the Earth lights, each gated by itself.
 
     A cell that shows nothing is not taken: it may be dead, and one in shadow shows no direction. The Earth's
     light on a cell that faces away from the Sun shows how much of it falls on the others.
 
     Args:
-        estimate: before.
+        estimate: of this tick.
         currents: by cell, fractions of full sunlight; None: not to be used.
         known: what the cells show, about an estimate of this tick.
         config: the filter.
         cells: the cells.
+        frozen: whether the parameters keep their values.
     """
     accepted: list[int] = []
     refused: list[int] = []
@@ -60,61 +65,60 @@ def update_cells(
         current = currents[cell]
         if current is None:
             continue
-        updated = None
+        took = False
         if current > cells.dark:
             shown, row = cell_shown(known, number, estimate, config)
-            updated = _gated(estimate, current - shown, row, config, cells)
+            took = _take(estimate, current - shown, row, config, cells, frozen)
         if cell in known.by_sun:
-            (refused if updated is None else accepted).append(cell)
-        estimate = updated or estimate
-    return estimate, CellsUsed(tuple(accepted), tuple(refused))
+            (accepted if took else refused).append(cell)
+    return CellsUsed(tuple(accepted), tuple(refused))
 
 
-def taken(
+def take_cell(
     estimate: Estimate, cell: int, current: float, seen: Light, config: MekfConfig, cells: CellSet
-) -> Estimate | None:
-    """The estimate after the current of a cell; None when the gate refuses it."""
+) -> bool:
+    """Take the current of a cell; False when the gate refuses it."""
     shown, row = prediction(estimate, cell, seen, config, cells)
-    return _gated(estimate, current - shown - estimate.parameters.cell_excess[cell], row, config, cells)
+    innovation = current - shown - estimate.parameters.cell_excess[cell]
+    return _take(estimate, innovation, row, config, cells, False)
 
 
-def _gated(
-    estimate: Estimate, innovation: float, row: Matrix, config: MekfConfig, cells: CellSet
-) -> Estimate | None:
-    return mekf.take(estimate, (innovation,), row, np.array([[cells.sigma**2]]), config, GATE_NIS)
+def _take(
+    estimate: Estimate, innovation: float, row: Matrix, config: MekfConfig, cells: CellSet, frozen: bool
+) -> bool:
+    noise = np.array([[cells.sigma**2]])
+    return mekf.take(estimate, (innovation,), row, noise, config, GATE_NIS, frozen=frozen)
 
 
-def faded(estimate: Estimate, config: MekfConfig) -> Estimate:
-    """The estimate after a tick in which excess and Earth's light have decayed.
+def fade(estimate: Estimate, config: MekfConfig) -> None:
+    """Let excess and Earth's light decay over a tick.
 
     First-order Markov processes: x <- k x, sigma^2 <- k^2 sigma^2 + (1 - k^2) sigma_0^2, k = 1 / (1 + turn);
     turn is the Earth's motion in view, for the excess of a cell plus the rotation of the satellite. What a
     deviation has left in x decays as x does.
     """
-    parts = config.layout
+    parts, known = config.layout, estimate.parameters
     if config.cells is None or parts.cells is None:
-        return estimate
+        return
     passed = config.tick_s * ORBIT_RADPS / CORRELATION_RAD
     turned = passed + config.tick_s * norm(estimate.omega_body_radps) / CORRELATION_RAD
     of_excess, of_light = 1.0 / (1.0 + turned), 1.0 / (1.0 + passed)
-    known = estimate.parameters
-    known = replace(known, cell_excess=tuple([of_excess * value for value in known.cell_excess]))
-    after = _lost(estimate._replace(parameters=known), parts.cells, of_excess, config)
-    if parts.earth_light is None:
-        return after
-    known = replace(known, earth_light=(of_light * known.earth_light[0],))
-    return _lost(after._replace(parameters=known), parts.earth_light, of_light, config)
+    known.cell_excess = tuple([of_excess * value for value in known.cell_excess])
+    _fade(estimate, parts.cells, of_excess, config)
+    if parts.earth_light is not None:
+        known.earth_light = (of_light * known.earth_light[0],)
+        _fade(estimate, parts.earth_light, of_light, config)
 
 
-def _lost(estimate: Estimate, place: slice, keep: float, config: MekfConfig) -> Estimate:
-    """Covariance and trace with these states scaled by ``keep``, their variances nearer to the prior's."""
-    covariance, trace = estimate.covariance.copy(), estimate.trace
+def _fade(estimate: Estimate, place: slice, keep: float, config: MekfConfig) -> None:
+    """Scale these states in covariance and trace by ``keep``, their variances nearer to the prior's."""
+    covariance = estimate.covariance.copy()
     covariance[place] *= keep
     covariance[:, place] *= keep
     own = range(place.start, place.stop)
     covariance[own, own] += (1.0 - keep * keep) * config.initial_covariance.diagonal()[place]
-    if trace is not None:
-        effect = trace.effect.copy()
+    estimate.covariance = covariance
+    if estimate.trace is not None:
+        effect = estimate.trace.effect.copy()
         effect[place] *= keep
-        trace = trace._replace(effect=effect)
-    return estimate._replace(covariance=covariance, trace=trace)
+        estimate.trace.effect = effect

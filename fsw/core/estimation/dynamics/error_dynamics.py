@@ -9,7 +9,7 @@ from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, skew, transfo
 from fsw.core.estimation.dynamics.motion import BodyFields, BodyMotion, outer
 from fsw.core.estimation.dynamics.torque_maps import torque_rows
 from fsw.core.estimation.kalman import Matrix, combine, product
-from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.estimation.mekf_config import MekfConfig, Step
 from fsw.core.estimation.parameters import Parameters, Rotor, estimated_rotor
 
 _IDENTITY = np.eye(6)
@@ -34,16 +34,17 @@ class Driven:
         return self.m_body_am2 == ZERO and self.doubted_am2 == ZERO
 
 
-def process_noise(driven: Driven, b_body_t: Vec3, config: MekfConfig) -> Matrix:
-    """The noise of a tick; while a coil is driven also that of its dipole, known only to ``dipole_sigma``.
+def process_noise(driven: Driven, b_body_t: Vec3, config: MekfConfig, step: Step) -> Matrix:
+    """The noise of a step; while a coil is driven also that of its dipole, known only to ``dipole_sigma``.
 
-    Its error is constant over a tick and independent of those of the other ticks.
+    Its error is constant over a tick, of which the step may be a piece, and independent of those of the other
+    ticks.
     """
     if driven.nothing:
-        return config.process_noise
-    noise = config.process_noise.copy()
+        return step.process_noise
+    noise = step.process_noise.copy()
     for sigma_am2 in (scale(config.dipole_sigma, driven.m_body_am2), driven.doubted_am2):
-        turn = scale(config.tick_s * sqrt(config.pieces), cross(sigma_am2, b_body_t))
+        turn = scale(step.tick_s * sqrt(step.pieces), cross(sigma_am2, b_body_t))
         kick = np.array(transform(config.rotor.inertia_inverse, turn))
         noise[3:6, 3:6] += np.outer(kick, kick)
     return noise
@@ -60,7 +61,7 @@ KNOWN_RADPS = 0.05 * FAST_RADPS
 
 
 def transition_matrix(
-    motion: BodyMotion, around: BodyFields, m_driven: Vec3, rotor: Rotor, config: MekfConfig
+    motion: BodyMotion, around: BodyFields, m_driven: Vec3, rotor: Rotor, config: MekfConfig, step: Step
 ) -> Matrix:
     """The rows of attitude and rate of I + A h + (A h)^2 / 2, A being the system matrix, (6, n).
 
@@ -73,25 +74,26 @@ def transition_matrix(
         m_driven: dipole that the coils are driven to, A m^2.
         rotor: inertia as estimated.
         config: the filter.
+        step: the tick, or a piece of it.
     """
-    step = config.constant.copy()
-    moving = step[:, 0:6]
+    linear = step.constant.copy()
+    moving = linear[:, 0:6]
     if config.torque_map is None:
-        change = combine((*motion.omega, *around.pull()), config.moving)
+        change = combine((*motion.omega, *around.pull()), step.moving)
         if motion.m_am2 != ZERO:
-            change += combine(outer(motion.m_am2, around.b_t), config.driven)
+            change += combine(outer(motion.m_am2, around.b_t), step.driven)
         moving += change.reshape(6, 6)
     else:
-        moving[0:3, 0:3] = skew(scale(-config.tick_s, motion.omega))
-        inverse_h = config.tick_s * np.array(rotor.inertia_inverse)
+        moving[0:3, 0:3] = skew(scale(-step.tick_s, motion.omega))
+        inverse_h = step.tick_s * np.array(rotor.inertia_inverse)
         by_error = torque_rows(motion, around, m_driven, rotor, config.torque_map)
-        step[3:6, : by_error.shape[1]] = product(inverse_h, by_error)
+        linear[3:6, : by_error.shape[1]] = product(inverse_h, by_error)
         moving += _IDENTITY
-    if config.pieces > 1:
-        return _to_fourth_order(step)
-    transition = product(moving, step)  # (1 + A h)^2: the mean of it and 1 is the series
+    if step.pieces > 1:
+        return _to_fourth_order(linear)
+    transition = product(moving, linear)  # (1 + A h)^2: the mean of it and 1 is the series
     moving[:] = _IDENTITY
-    transition += step
+    transition += linear
     transition *= 0.5
     return transition
 

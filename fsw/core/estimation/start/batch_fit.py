@@ -149,17 +149,17 @@ def estimate_of(
     flow[0:6, 0:MOVING] = moved.T / model.differences
     change = flow.dot(step)
     attitude = turned_by(q[:1], change[None, 0:3])[0]
-    begun = mekf.start(_four(attitude), _three(omega[0] + change[3:6]), model.config)
-    estimate = _with_parameters(begun, found.numbers[0] + step[3:], flow.dot(left).dot(flow.T), model)
-    estimate = _aged(estimate, model.config)
+    estimate = mekf.start(_four(attitude), _three(omega[0] + change[3:6]), model.config)
+    _set_parameters(estimate, found.numbers[0] + step[3:], flow.dot(left).dot(flow.T), model)
+    _add_age(estimate, model.config)
     cost = float(equations.costs[0] + 0.5 * gradient.dot(step))
     return (estimate if mekf.healthy(estimate) else None), cost
 
 
-def _with_parameters(begun: Estimate, numbers: Matrix, left: Matrix, model: BatchModel) -> Estimate:
-    """The estimate with the parameters that were found, and the covariance that is left of all."""
+def _set_parameters(estimate: Estimate, numbers: Matrix, left: Matrix, model: BatchModel) -> None:
+    """Set the parameters to those that were found, and the covariance to what is left of all."""
     config = model.config
-    covariance, parameters = config.initial_covariance.copy(), begun.parameters
+    covariance, parameters = config.initial_covariance.copy(), estimate.parameters
     places, kept = list(range(6)), list(range(6))
     for name, place, own in _found(model):
         if place is not None:
@@ -174,25 +174,24 @@ def _with_parameters(begun: Estimate, numbers: Matrix, left: Matrix, model: Batc
     if (excess := config.layout.cells) is not None:
         now = range(excess.start, excess.start + len(model.normals))
         covariance[now, now] += model.excess_varying**2
-    return begun._replace(parameters=parameters, covariance=0.5 * (covariance + covariance.T))
+    estimate.parameters, estimate.covariance = parameters, 0.5 * (covariance + covariance.T)
 
 
-def _aged(estimate: Estimate, config: MekfConfig) -> Estimate:
-    """The estimate ahead by the age of the samples, which the equations leave out, and wrong by its error.
+def _add_age(estimate: Estimate, config: MekfConfig) -> None:
+    """Set the estimate ahead by the age of the samples, which the equations leave out, and as uncertain.
 
     Both ages are taken as their mean: what that is wrong by is an error along the motion, of which no sample
     tells (``with_age_along``).
     """
-    q, omega, parameters, covariance, delay = *estimate[:4], config.layout.delay
+    q, omega, parameters = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
+    delay = config.layout.delay
     if delay is None:
-        return estimate
+        return
     motion = free_motion(omega, parameters, config.rotor)
     turn, gain = np.split(0.5 * sum(parameters.delay_s) * motion, 2)
-    return estimate._replace(
-        q_body_from_eci=normalise(multiply(q, from_small_rotation(_three(turn)))),
-        omega_body_radps=add(omega, _three(gain)),
-        covariance=with_age_along(motion, covariance, delay),
-    )
+    estimate.q_body_from_eci = normalise(multiply(q, from_small_rotation(_three(turn))))
+    estimate.omega_body_radps = add(omega, _three(gain))
+    estimate.covariance = with_age_along(motion, estimate.covariance, delay)
 
 
 def _found(model: BatchModel) -> tuple[tuple[str, slice | None, range], ...]:

@@ -54,29 +54,29 @@ def first_estimate(
     return mekf.start(triad(sun, field, s, b), ZERO, config)
 
 
-def with_given(
+def give_parameters(
     estimate: Estimate, given: Parameters | None, numbers: Sequence[int], config: MekfConfig
-) -> Estimate:
-    """The estimate with some components of its parameters as given; the others stay as they were found.
+) -> None:
+    """Set some components of the parameters to given values; the others stay as they were found.
 
     The error of each is then that of the prior, uncorrelated with the others.
 
     Args:
-        estimate: before.
+        estimate: holds the parameters.
         given: holds the values, SI units; None: there are none.
         numbers: of the components that are given.
         config: the filter.
     """
     if given is None or not numbers:
-        return estimate
+        return
     values, places = given.floats(), component_places(config.layout)
-    parameters, covariance = estimate.parameters, estimate.covariance.copy()
+    covariance = estimate.covariance.copy()
     for number in numbers:
-        parameters = with_component(parameters, number, values[number])
+        estimate.parameters = with_component(estimate.parameters, number, values[number])
         if number in places:
             place = places[number]
             covariance[place, :] = covariance[:, place] = config.initial_covariance[place]
-    return estimate._replace(parameters=parameters, covariance=covariance)
+    estimate.covariance = covariance
 
 
 def estimate_from_batch(

@@ -47,7 +47,7 @@ def trace_pulse(
     gravity_ps2: float,
     pulses: PulseConfig,
     tuning: MekfConfig,
-) -> Estimate:
+) -> None:
     """Trace one more pulse, which ends now, in place of the oldest of its coil if there are ``PULSES``.
 
     The trace begins anew if the innovations since the last pulse were certainly not due to a coil: whatever
@@ -57,7 +57,7 @@ def trace_pulse(
     pulse seems to have done it.
 
     Args:
-        estimate: before.
+        estimate: of this tick.
         pulse: requested and driven.
         b_eci_t: the field in it.
         gravity_ps2: 3 mu/r^3.
@@ -67,7 +67,7 @@ def trace_pulse(
     trace, coil = _of_coils_alone(estimate.trace) or empty_trace(estimate), pulse.coil
     own = indices_of(coil, trace.numbers)
     if len(own) == PULSES:
-        trace = remove(trace, own[-1])
+        trace = drop_cause(trace, own[-1])
     impulse_nms = impulse(pulse, rotate(estimate.q_body_from_eci, b_eci_t), pulses)
     kick_radps = transform(tuning.rotor.inertia_inverse, impulse_nms)
     effect = np.array((*scale(0.5 * pulses.pulse_s, kick_radps), *kick_radps))
@@ -79,7 +79,7 @@ def trace_pulse(
         assumed=1.0 + estimate.parameters.coil_error[4 * coil],
         uncertain=hypot(MODEL_ERROR, drift_nms / (max(drift_nms, norm(impulse_nms)) or 1.0)),
     )
-    return estimate._replace(trace=extend(trace, (cause,), effect[:, np.newaxis]))
+    estimate.trace = add_causes(trace, (cause,), effect[:, np.newaxis])
 
 
 def _inertia_beyond_kgm2(estimate: Estimate, tuning: MekfConfig) -> float:
@@ -109,7 +109,7 @@ def empty_trace(estimate: Estimate) -> Trace:
     return Trace((), np.zeros((len(estimate.covariance), 1)), np.zeros((1, 1)), 0)
 
 
-def extend(trace: Trace, causes: tuple[Cause, ...], effects: Matrix) -> Trace:
+def add_causes(trace: Trace, causes: tuple[Cause, ...], effects: Matrix) -> Trace:
     """The trace with more causes, by columns of effects on attitude and rate; the unexplained counts anew."""
     new, size = len(causes), len(causes) + len(trace.sums)
     effect, sums = np.zeros((len(trace.effect), size)), np.zeros((size, size))
@@ -119,7 +119,7 @@ def extend(trace: Trace, causes: tuple[Cause, ...], effects: Matrix) -> Trace:
     return Trace((*causes, *trace.causes), effect, sums, 0)
 
 
-def remove(trace: Trace, index: int) -> Trace:
+def drop_cause(trace: Trace, index: int) -> Trace:
     """The trace without one of its causes, whose deviation is marginalised out."""
     row = trace.sums[index]
     sums = trace.sums - np.outer(row, row) / (row[index] + 1.0)
@@ -133,37 +133,39 @@ def select(trace: Trace, kept: list[int], sums: Matrix) -> Trace:
     return Trace(causes, trace.effect[:, places], sums[places][:, places], trace.measured)
 
 
-def solve(estimate: Estimate, tuning: MekfConfig) -> tuple[Estimate, Solution | None]:
-    """Solve for what the causes did.
+def solve(estimate: Estimate, tuning: MekfConfig) -> Solution | None:
+    """Solve for what the causes did, and correct the estimate where a deviation is certain.
 
     Args:
-        estimate: before.
+        estimate: of this tick.
         tuning: of the filter.
 
     Returns:
-        The estimate, corrected where a deviation is certain, and the solution, if the causes explain what was
-        measured. Pulses that no coil fault explains are no longer traced: what they show is not a coil's, and
-        it would remain when the one that contradicts the others is gone. The trace begins anew if noise may
-        leave as much after that many pulses; otherwise there is none: what was known before is suspect too.
+        The solution, if the causes explain what was measured. Pulses that no coil fault explains are no
+        longer traced: what they show is not a coil's, and it would remain when the one that contradicts the
+        others is gone. The trace begins anew if noise may leave as much after that many pulses; otherwise
+        there is none: what was known before is suspect too.
     """
     trace = estimate.trace
     if trace is None:
-        return estimate, None
+        return None
     if not (np.isfinite(trace.sums).all() and np.isfinite(trace.effect).all()):
-        return estimate._replace(trace=None), None
+        estimate.trace = None
+        return None
     try:
         return _solve(estimate, trace, tuning)
     except np.linalg.LinAlgError:  # from damaged sums
-        return estimate._replace(trace=None), None
+        estimate.trace = None
+        return None
 
 
-def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estimate, Solution | None]:
+def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> Solution | None:
     covariance: Matrix = np.asarray(np.linalg.inv(trace.sums[:-1, :-1] + np.eye(len(trace.causes))), float)
     covariance = 0.5 * (covariance + covariance.T)
     np.linalg.cholesky(covariance)  # raises if it is not positive, before an inverse of a part of it does
     deviation = covariance @ trace.sums[:-1, -1]
     if unexplained(trace.sums) > UNEXPLAINED * trace.measured:
-        return estimate, None
+        return None
     assumed, uncertain = (
         np.array([cause.assumed for cause in trace.causes]),
         np.array([cause.uncertain for cause in trace.causes]),
@@ -172,12 +174,13 @@ def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> tuple[Estima
     pulses = [index for index, number in enumerate(trace.numbers) if number < STRAY]
     if not solution.explanations[0].fits:
         by_chance = solution.explanations[0].distance <= most_by_chance(len(pulses))
-        return estimate._replace(trace=empty_trace(estimate) if by_chance else None), None
+        estimate.trace = empty_trace(estimate) if by_chance else None
+        return None
     effect, deviation, covariance = trace.effect[:, pulses], deviation[pulses], covariance[pulses][:, pulses]
     certain = deviation**2 > SIGMAS**2 * solution.noise(pulses).diagonal()
     if (certain & effect.any(axis=0)).any():
-        estimate = mekf.corrected(estimate, effect @ deviation, effect @ covariance @ effect.T, tuning)
+        mekf.correct(estimate, effect @ deviation, effect @ covariance @ effect.T, tuning)
         left = trace.effect.copy()
         left[:, pulses] = 0.0
-        estimate = estimate._replace(trace=Trace(trace.causes, left, trace.sums, trace.measured))
-    return estimate, solution
+        trace.effect = left
+    return solution

@@ -40,13 +40,11 @@ def kicks_radps(m_am2: float, axes: Mat3, estimate: Estimate, b_eci_t: Vec3, tun
     return first, second, third
 
 
-def trace_current(
-    estimate: Estimate, parts: Vec3, kicks_radps: Mat3, tick_s: float, begins: bool
-) -> Estimate:
+def trace_current(estimate: Estimate, parts: Vec3, kicks_radps: Mat3, tick_s: float, begins: bool) -> None:
     """Trace a stray current in any of the coils over one more tick.
 
     Args:
-        estimate: before.
+        estimate: of this tick.
         parts: by coil, the fraction of the current that the filter took into account.
         kicks_radps: by coil, the change of rate that the current would make in this tick, body axes.
         tick_s: length of a tick.
@@ -56,14 +54,14 @@ def trace_current(
     if begins or STRAY not in traced.numbers:
         for number in CAUSES:
             if number in traced.numbers:
-                traced = effects.remove(traced, traced.numbers.index(number))
+                traced = effects.drop_cause(traced, traced.numbers.index(number))
         causes = [Cause(number, part, MODEL_ERROR) for number, part in zip(CAUSES, parts, strict=True)]
-        traced = effects.extend(traced, tuple(causes), np.zeros((6, 3)))
+        traced = effects.add_causes(traced, tuple(causes), np.zeros((6, 3)))
     effect, flows = traced.effect.copy(), _places(traced)
     kicks = np.array(kicks_radps).T
     effect[0:3, flows] += 0.5 * tick_s * kicks
     effect[3:6, flows] += kicks
-    return estimate._replace(trace=Trace(traced.causes, effect, traced.sums, traced.measured))
+    estimate.trace = Trace(traced.causes, effect, traced.sums, traced.measured)
 
 
 def _places(traced: Trace) -> slice:
@@ -71,30 +69,30 @@ def _places(traced: Trace) -> slice:
     return slice(first, first + 3)
 
 
-def follow(estimate: Estimate, solution: Solution, tuning: MekfConfig) -> tuple[Estimate, Vec3] | None:
-    """The estimate with what the current has certainly done, in whichever coils, and its fraction in each.
+def follow(estimate: Estimate, solution: Solution, tuning: MekfConfig) -> Vec3 | None:
+    """Correct the estimate by what the current has certainly done, in whichever coils; its fraction in each.
 
     None while nothing is certain. The fractions stay as uncertain as before: the trace is of the rest.
 
     Args:
-        estimate: before.
+        estimate: of this tick.
         solution: of this tick.
         tuning: of the filter.
     """
     deviation, weights = _lacking(solution)
     if not deviation @ weights @ deviation > SIGMAS**2:
         return None
-    estimate = _shifted(estimate, deviation, np.zeros_like(estimate.covariance), tuning)
+    _shift(estimate, deviation, np.zeros_like(estimate.covariance), tuning)
     first = solution.causes.index(STRAY)
     one, two, three = solution.part[first : first + 3].tolist()
-    return estimate, (one, two, three)
+    return one, two, three
 
 
-def settle(estimate: Estimate, coil: int, tuning: MekfConfig) -> Estimate:
+def settle(estimate: Estimate, coil: int, tuning: MekfConfig) -> None:
     """Correct the estimate for a stray current that certainly flows in this coil, and stop tracing it.
 
     Args:
-        estimate: before, with the trace of a stray current.
+        estimate: of this tick, with the trace of a stray current.
         coil: in which it flows.
         tuning: of the filter.
 
@@ -106,15 +104,15 @@ def settle(estimate: Estimate, coil: int, tuning: MekfConfig) -> Estimate:
         raise ValueError("no stray current is traced")
     lacks = np.eye(3)[coil] - np.array([cause.assumed for cause in traced.causes[_places(traced)]])
     effect = traced.effect[:, _places(traced)][:, coil]
-    estimate = _shifted(estimate, lacks, MODEL_ERROR**2 * np.outer(effect, effect), tuning)
-    return estimate._replace(trace=_without_stray(estimate.trace or traced))
+    _shift(estimate, lacks, MODEL_ERROR**2 * np.outer(effect, effect), tuning)
+    estimate.trace = _without_stray(estimate.trace or traced)
 
 
-def _shifted(estimate: Estimate, parts: Matrix, uncertainty: Matrix, tuning: MekfConfig) -> Estimate:
-    """The estimate with these further fractions of the current, and the trace of what then remains."""
+def _shift(estimate: Estimate, parts: Matrix, uncertainty: Matrix, tuning: MekfConfig) -> None:
+    """Correct the estimate by these further fractions of the current; the trace is of what then remains."""
     traced = estimate.trace or effects.empty_trace(estimate)
     flows = _places(traced)
-    estimate = mekf.corrected(estimate, traced.effect[:, flows] @ parts, uncertainty, tuning)
+    mekf.correct(estimate, traced.effect[:, flows] @ parts, uncertainty, tuning)
     shift = np.eye(len(traced.sums))
     shift[flows, -1] = -parts  # the innovations less what these parts have done to them
     causes = list(traced.causes)
@@ -123,7 +121,7 @@ def _shifted(estimate: Estimate, parts: Matrix, uncertainty: Matrix, tuning: Mek
         for cause, part in zip(causes[flows], parts.tolist(), strict=True)
     ]
     sums = shift.T @ traced.sums @ shift
-    return estimate._replace(trace=Trace(tuple(causes), traced.effect, sums, traced.measured))
+    estimate.trace = Trace(tuple(causes), traced.effect, sums, traced.measured)
 
 
 def _without_stray(traced: Trace) -> Trace:

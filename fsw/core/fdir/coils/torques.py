@@ -74,13 +74,12 @@ def judge_effect(
         m_am2 = stray_am2(health, config)
         kicks_radps = stray.kicks_radps(m_am2, config.stray_axes, estimate, b_eci_t, config.mekf)
         begins = health.unrequested_ticks == 1
-        estimate = stray.trace_current(estimate, health.stray_parts, kicks_radps, config.mekf.tick_s, begins)
+        stray.trace_current(estimate, health.stray_parts, kicks_radps, config.mekf.tick_s, begins)
     if due:
-        estimate = _isolate(health, estimate, view.fired.coil if ended else None, believed, config)
+        _isolate(health, estimate, view.fired.coil if ended else None, believed, config)
     if ended:
         gravity_ps2 = 3.0 * MU_M3PS2 / reference.radius_m**3
-        estimate = effects.trace_pulse(estimate, view.fired, b_eci_t, gravity_ps2, config.pulses, config.mekf)
-    state.estimate = estimate
+        effects.trace_pulse(estimate, view.fired, b_eci_t, gravity_ps2, config.pulses, config.mekf)
 
 
 EARLY_TICKS = 5
@@ -93,8 +92,8 @@ def _isolate(
     ended: int | None,
     believed: BelievedParts,
     config: CoilHealthConfig,
-) -> Estimate:
-    """Isolate the coil that did something other than assumed, if any; return the estimate corrected.
+) -> None:
+    """Isolate the coil that did something other than assumed, if any, and correct the estimate.
 
     A pulse of the coil ``ended`` takes the place of its oldest one, whose evidence is kept.
     """
@@ -103,12 +102,12 @@ def _isolate(
     if estimate.trace is None:  # as after a retest, whose evidence waits for the first pulse
         first, second, third = earlier
         health.older = (Older(kept=first.kept), Older(kept=second.kept), Older(kept=third.kept))
-        return estimate
-    estimate, solution = effects.solve(estimate, config.mekf)
+        return
+    solution = effects.solve(estimate, config.mekf)
     if solution is None:
         if estimate.trace is None:
             health.older = NONE_OLDER
-        return estimate
+        return
     if ended is not None:
         oldest = explanations.oldest_pulse(solution, ended, weak)
         health.older = with_item(earlier, ended, earlier[ended].add(oldest).bound(weak))
@@ -118,22 +117,22 @@ def _isolate(
         if found is not None and found[1] < most and _are_others_sound(health, found[0], gain_nats):
             isolate_coil(health, found[0], coil_fault(found[1], weak.weak_part), config)
             break
-    return _assign_torque(health, estimate, solution, config) if has_unassigned_torque(health) else estimate
+    if has_unassigned_torque(health):
+        _assign_torque(health, estimate, solution, config)
 
 
 def _assign_torque(
     health: CoilHealth, estimate: Estimate, solution: Solution, config: CoilHealthConfig
-) -> Estimate:
+) -> None:
     """Isolate the coil in which a stray current certainly flows, or take into account what is known of it."""
     coil = stray.conducting_coil(solution)
     if coil is not None:
         isolate_coil(health, coil, CoilFault.STUCK, config)
-        return stray.settle(estimate, coil, config.mekf)
-    followed = stray.follow(estimate, solution, config.mekf)
-    if followed is None:
-        return estimate
-    estimate, health.stray_parts = followed
-    return estimate
+        stray.settle(estimate, coil, config.mekf)
+        return
+    parts = stray.follow(estimate, solution, config.mekf)
+    if parts is not None:
+        health.stray_parts = parts
 
 
 def _are_others_sound(health: CoilHealth, coil: int, gain_nats: list[float]) -> bool:

@@ -28,7 +28,7 @@ from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import dot
 from fsw.core.estimation.cells.cell_set import CellSet, Light
 from fsw.core.estimation.cells.prediction import LEAST_COSINE, most_behind, prediction
-from fsw.core.estimation.cells.update import CellsUsed, taken
+from fsw.core.estimation.cells.update import CellsUsed, take_cell
 from fsw.core.estimation.estimator import EstimatorState
 from fsw.core.estimation.loaded import forget
 from fsw.core.estimation.mekf import Estimate
@@ -189,7 +189,7 @@ def _compare(
     unclear = len(used.refused) > max(1, len(used.taken))
     verdict = _verdict(one, cell, current, used, estimate, cells)
     if verdict is None and one.watch.fault and not used.refused:
-        fits = taken(estimate, cell, current, light, config, cells) is not None
+        fits = take_cell(estimate.copy(), cell, current, light, config, cells)
         verdict = 0 if fits else SensorFault.REFUSED
     _weigh(one.watch, verdict, unclear, weights)
 
@@ -208,7 +208,7 @@ def _by_dark(fault: int, current: float, cells: CellSet) -> int | None:
 
 def _as_by_table(estimate: Estimate) -> Estimate:
     """The estimate with gains and albedo as in the table: a stuck cell draws its own gain after it."""
-    return estimate._replace(parameters=replace(estimate.parameters, cell_gain=(), earth_light=()))
+    return replace(estimate, parameters=replace(estimate.parameters, cell_gain=(), earth_light=()))
 
 
 def _verdict(

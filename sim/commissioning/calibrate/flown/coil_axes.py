@@ -101,19 +101,18 @@ def coil_axes(
         level = int(samples.level[k])
         m[int(samples.coil[k])] = levels[abs(level)] * (1.0 if level > 0 else -1.0)
         gravity = 3.0 * MU_M3PS2 / radius**3
-        estimate = mekf.predict(estimate, scale(1.0 / radius, r), b, gravity, (m[0], m[1], m[2]), config)
+        mekf.predict(estimate, scale(1.0 / radius, r), b, gravity, (m[0], m[1], m[2]), config)
         if not samples.reported[k]:
-            estimate = _perhaps_turned(estimate, strongest_radps_per_t * norm(b))
+            _doubt_rate(estimate, strongest_radps_per_t * norm(b))
         for seen, update, sample, reference in (
             (usable[k], mekf.update_field, field[k], b),
             (lit[k], mekf.update_sun, sun[k], s),
         ):
             if not seen:
                 continue
-            after = update(estimate, tuple(sample), reference, config)
-            taken, refused = taken + (after is not None), refused + (after is None)
-            in_a_row = 0 if after is not None else in_a_row + 1
-            estimate = after or estimate
+            took = update(estimate, tuple(sample), reference, config)
+            taken, refused = taken + took, refused + (not took)
+            in_a_row = 0 if took else in_a_row + 1
         if not mekf.healthy(estimate) or in_a_row > MOST_REFUSALS:
             return None
     if estimate is None:
@@ -123,11 +122,11 @@ def coil_axes(
     return CoilAxes(matrix, estimate.covariance[coils, coils], refused / max(1, taken + refused))
 
 
-def _perhaps_turned(estimate: Estimate, by_radps: float) -> Estimate:
+def _doubt_rate(estimate: Estimate, by_radps: float) -> None:
     """After a tick in which any coil may have been driven: by so much the rate may have changed, rad/s."""
     covariance = estimate.covariance.copy()
     covariance[RATE, RATE] += by_radps**2 * np.eye(3)
-    return estimate._replace(covariance=covariance)
+    estimate.covariance = covariance
 
 
 def _config(table: FlightTable) -> MekfConfig:

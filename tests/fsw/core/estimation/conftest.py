@@ -134,8 +134,11 @@ class Satellite:
             for name in self.carried
         }
         rate = tuple(map(float, np.add(estimate.omega_body_radps, error[3:6])))
-        return estimate._replace(
-            q_body_from_eci=q, omega_body_radps=rate, parameters=replace(estimate.parameters, **parts)
+        return replace(
+            estimate,
+            q_body_from_eci=q,
+            omega_body_radps=rate,
+            parameters=replace(estimate.parameters, **parts),
         )
 
     def error(self, before, after):
@@ -209,7 +212,7 @@ def flow(estimate, satellite, driven_am2, b_eci_t, gravity_ps2, duration_s):
     begin = (*estimate.q_body_from_eci, *estimate.omega_body_radps)
     end = solve_ivp(rates, (0.0, duration_s), begin, method="DOP853", rtol=1e-13, atol=1e-15).y[:, -1]
     q = tuple(map(float, end[:4] / np.linalg.norm(end[:4])))
-    return estimate._replace(q_body_from_eci=q, omega_body_radps=tuple(map(float, end[4:])))
+    return replace(estimate, q_body_from_eci=q, omega_body_radps=tuple(map(float, end[4:])))
 
 
 @pytest.fixture(scope="session", params=LAYOUTS)

@@ -19,6 +19,7 @@ from estimator_samples import (
     seen_from,
     step,
 )
+from filter_steps import known_of
 from gate_samples import measured
 
 from fsw.core.algebra.quaternion import conjugate, from_small_rotation, multiply, normalise, rotate
@@ -161,7 +162,7 @@ class TestRunning:
         assert used == Used(True, False, False)
         expected, _ = step(settled, measured())
         estimate = expected.estimate
-        predicted, sensitivity = field_prediction(*estimate[:3], REFERENCE.b_eci_t, MEKF)
+        predicted, sensitivity = field_prediction(*known_of(estimate), REFERENCE.b_eci_t, MEKF)
         rows = np.array([across, cross(open_body, across)])
         before = estimate.covariance
         innovation = rows @ np.subtract([1e-9 * b for b in clipped.values()[1:4]], predicted)
@@ -209,7 +210,7 @@ class TestRunning:
 
     def test_gravity_turns_it_too(self, settled):
         """J dw/dt = 3 mu / r^3 e x J e - w x J w, with a body at rest and nothing else."""
-        still = settled.estimate._replace(omega_body_radps=ZERO, parameters=NO_DIFFERENCE)
+        still = replace(settled.estimate, omega_body_radps=ZERO, parameters=NO_DIFFERENCE)
         after, _ = step(replace(settled, estimate=still), measured())
         e = np.array(rotate(still.q_body_from_eci, REFERENCE.r_eci_m)) / REFERENCE.radius_m
         j = np.array(MEKF.rotor.inertia_kgm2)
@@ -340,7 +341,7 @@ def test_an_old_field_sample_is_of_where_the_satellite_was():
     rate = (3e-7, -2e-7, 4e-7)
     reference = REFERENCE.replace(b_rate_eci_tps=rate)
     begun = mekf.start(Q_BODY_FROM_ECI, ZERO, AGED.mekf)
-    old = begun._replace(parameters=replace(begun.parameters, delay_s=(1.5, 0.5)))
+    old = replace(begun, parameters=replace(begun.parameters, delay_s=(1.5, 0.5)))
     then = add(REFERENCE.b_eci_t, scale(-1.5, rate))
     sampled = seen_from(field=field_message(rotate(Q_BODY_FROM_ECI, then)), sun=None)
     after = EstimatorState(old)

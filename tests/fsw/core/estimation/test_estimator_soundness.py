@@ -35,9 +35,9 @@ class TestSoundness:
         estimate = settled.estimate
         if field in NAMES:
             values = (*getattr(estimate.parameters, field)[:-1], bad)
-            estimate = estimate._replace(parameters=replace(estimate.parameters, **{field: values}))
+            estimate = replace(estimate, parameters=replace(estimate.parameters, **{field: values}))
         else:
-            estimate = estimate._replace(**{field: (*getattr(estimate, field)[:-1], bad)})
+            estimate = replace(estimate, **{field: (*getattr(estimate, field)[:-1], bad)})
         broken = replace(settled, estimate=estimate)
         state, _ = step(broken, readings)
         assert state.estimate is None or mekf.healthy(state.estimate)
@@ -53,7 +53,7 @@ class TestSoundness:
     def test_so_is_a_broken_covariance(self, settled, at, bad):
         covariance = settled.estimate.covariance.copy()
         covariance[at] = covariance[at[::-1]] = bad
-        broken = replace(settled, estimate=settled.estimate._replace(covariance=covariance))
+        broken = replace(settled, estimate=replace(settled.estimate, covariance=covariance))
         for readings in (seen_from(), measured()):
             state, _ = step(broken, readings)
             assert state.estimate is None or mekf.healthy(state.estimate)
@@ -63,14 +63,14 @@ class TestSoundness:
         for value in (1e-2, -1e-2, 1.0, -1.0):
             covariance = settled.estimate.covariance.copy()
             covariance[2, 6] = value
-            broken = replace(settled, estimate=settled.estimate._replace(covariance=covariance))
+            broken = replace(settled, estimate=replace(settled.estimate, covariance=covariance))
             state, _ = step(broken, seen_from())
             assert state.estimate is None or mekf.healthy(state.estimate)
             orbital_attitude(state.estimate, REFERENCE, CONFIG.valid_sigma_rad)
 
     def test_a_covariance_that_overflows_in_the_prediction_is_caught_before_the_update(self, settled):
-        spinning = settled.estimate._replace(
-            omega_body_radps=(1e60, -2e60, 3e60), covariance=1e100 * np.eye(SIZE)
+        spinning = replace(
+            settled.estimate, omega_body_radps=(1e60, -2e60, 3e60), covariance=1e100 * np.eye(SIZE)
         )
         state, used = step(replace(settled, estimate=spinning), seen_from())
         assert state.restarts == 1

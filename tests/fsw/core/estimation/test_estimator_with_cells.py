@@ -52,7 +52,7 @@ def running(turning=Turning.NO):
     estimate = mekf.start(Q_BODY_FROM_ECI, SLOW, MEKF)
     covariance = estimate.covariance.copy()
     covariance[0:6, 0:6] *= 1e-4
-    return EstimatorState(estimate._replace(covariance=covariance), 2, turning=turning)
+    return EstimatorState(replace(estimate, covariance=covariance), 2, turning=turning)
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ class TestAnew:
         before = running(Turning.FAST)
         covariance = before.estimate.covariance.copy()
         covariance[3 + axis, 3 + axis] = radians(0.5) ** 2
-        before = replace(before, estimate=before.estimate._replace(covariance=covariance))
+        before = replace(before, estimate=replace(before.estimate, covariance=covariance))
         state = changed(before, update, readings(), REFERENCE, CONFIG)
         assert state.turning is Turning.FAST
 

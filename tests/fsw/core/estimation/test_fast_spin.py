@@ -9,13 +9,15 @@ from types import MappingProxyType
 
 import numpy as np
 import pytest
+from filter_steps import predict, predict_step, update_field
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from fsw.core.algebra.quaternion import from_dcm, rotate
 from fsw.core.algebra.vector import ZERO, scale, unit
-from fsw.core.estimation.mekf import predict, start, update_field
-from fsw.core.estimation.mekf_config import MOST_PIECES, mekf_config, piece_of_tick, pieces_of_tick
+from fsw.core.estimation.dynamics.error_dynamics import NOT_DRIVEN
+from fsw.core.estimation.mekf import start
+from fsw.core.estimation.mekf_config import MOST_PIECES, Step, mekf_config, pieces_of_tick
 from fsw.core.estimation.parameters import Prior
 
 J = np.array([[0.93, 0.05, -0.03], [0.05, 1.0, 0.04], [-0.03, 0.04, 0.31]])
@@ -91,7 +93,7 @@ def test_the_covariance_goes_where_neighbouring_motions_go():
     seconds, step = 20, 1e-4
     filters = config()
     begun = np.diag(np.square((0.05, 0.002, 0.02, 0.002, 0.0001, 0.001)))
-    estimate = start((1.0, 0.0, 0.0, 0.0), SPIN, filters)._replace(covariance=begun)
+    estimate = replace(start((1.0, 0.0, 0.0, 0.0), SPIN, filters), covariance=begun)
     estimate = coasted(estimate, filters, seconds)
     dcm, omega = flown(np.eye(3), SPIN, seconds)
     columns = []
@@ -110,9 +112,9 @@ def test_without_a_torque_the_pieces_of_a_tick_add_its_noise():
     filters = config(torque_nm_rts=1e-3, attitude_sigma_rad=1e-9, rate_sigma_radps=1e-9)
     begun = start((1.0, 0.0, 0.0, 0.0), ZERO, filters)
     whole = predict(begun, RADIUS, ZERO, 0.0, ZERO, filters).covariance
-    piece, pieces = piece_of_tick(filters, 5), begun
+    piece, pieces = Step(filters, 5), begun
     for _ in range(5):
-        pieces = predict(pieces, RADIUS, ZERO, 0.0, ZERO, piece)
+        pieces = predict_step(pieces, RADIUS, ZERO, 0.0, NOT_DRIVEN, filters, piece)
     np.testing.assert_allclose(pieces.covariance, whole, rtol=1e-6, atol=1e-15)
 
 
@@ -180,7 +182,7 @@ def test_a_bias_of_the_magnetometer_is_carried_through_the_pieces():
     turned = np.array(predict(begun, RADIUS, strong_t, 0.0, ZERO, filters).omega_body_radps)
     for place in range(6):
         name, push = ("torque_body_nm", "dipole_body_am2")[place // 3], (1e-6 * np.eye(3)[place % 3]).tolist()
-        pushed = begun._replace(parameters=replace(begun.parameters, **{name: tuple(push)}))
+        pushed = replace(begun, parameters=replace(begun.parameters, **{name: tuple(push)}))
         moved = np.array(predict(pushed, RADIUS, strong_t, 0.0, ZERO, filters).omega_body_radps)
         slope = (moved - turned) / 1e-6
         np.testing.assert_allclose(felt[:, place], slope, atol=0.03 * np.abs(slope).max())

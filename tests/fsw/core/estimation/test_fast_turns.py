@@ -18,6 +18,7 @@ from estimator_samples import (
     seen_from,
     step,
 )
+from filter_steps import known_of
 
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import add, scale, unit
@@ -42,7 +43,7 @@ class TestAfterAFastTurn:
         """At this rate, with parameters that differ from their start, and sure of it all."""
         rate = scale(radians(degps), unit((0.6, -0.48, 0.64)))
         drawn_away = replace(settled.estimate.parameters, mag_bias_t=(9e-7, -8e-7, 7e-7))
-        estimate = settled.estimate._replace(omega_body_radps=rate, parameters=drawn_away)
+        estimate = replace(settled.estimate, omega_body_radps=rate, parameters=drawn_away)
         return replace(settled, estimate=estimate, turning=turning)
 
     def begun_anew(self, state):
@@ -87,7 +88,7 @@ class TestAfterAFastTurn:
             state = self.turning(settled, 0.6)
             covariance = state.estimate.covariance.copy()
             covariance[3:6, 3:6] = radians(sigma_degps) ** 2 * np.eye(3)
-            unsure = replace(state, estimate=state.estimate._replace(covariance=covariance))
+            unsure = replace(state, estimate=replace(state.estimate, covariance=covariance))
             assert bool(self.seen_tick(unsure).turning) is fast
             assert self.seen_tick(replace(unsure, turning=Turning.FAST)).turning is Turning.FAST
 
@@ -98,7 +99,7 @@ class TestAfterAFastTurn:
         slow = self.turning(settled, 0.1, Turning.FAST)
         covariance = slow.estimate.covariance.copy()
         covariance[3:6, 3:6] = radians(0.026) ** 2 * np.eye(3)
-        unsure = replace(slow, estimate=slow.estimate._replace(covariance=covariance))
+        unsure = replace(slow, estimate=replace(slow.estimate, covariance=covariance))
         for state, anew in ((unsure, False), (slow, True)):
             after = self.seen_tick(state)
             assert self.begun_anew(after) is anew
@@ -110,7 +111,7 @@ class TestAfterAFastTurn:
         )
         after = self.seen_tick(before)
         assert self.begun_anew(after)
-        q, omega = before.estimate[:2]
+        q, omega = before.estimate.q_body_from_eci, before.estimate.omega_body_radps
         assert after.estimate.q_body_from_eci == pytest.approx(q, abs=1e-9)
         assert after.estimate.omega_body_radps == pytest.approx(omega, abs=1e-9)
         assert after.estimate.trace is None
@@ -159,9 +160,9 @@ class TestOfAFastTurnWhoseRateIsKnown:
         covariance = begun.covariance.copy()
         covariance[0:6, 0:6] *= np.diag([1e-4] * 3 + [(sigma_degps / 2.0) ** 2] * 3)
         parameters = replace(begun.parameters, delay_s=(0.8, 0.7))
-        sure = begun._replace(covariance=covariance, parameters=parameters)
-        field, _ = field_prediction(*sure[:3], REFERENCE.b_eci_t, config.mekf)
-        sun, _ = sun_prediction(*sure[:3], REFERENCE.sun_eci, config.mekf)
+        sure = replace(begun, covariance=covariance, parameters=parameters)
+        field, _ = field_prediction(*known_of(sure), REFERENCE.b_eci_t, config.mekf)
+        sun, _ = sun_prediction(*known_of(sure), REFERENCE.sun_eci, config.mekf)
         said = {"field": field_message(field), "sun": SunVector(1, *unit(sun))} | changes
         before = EstimatorState(sure, turning=turning)
         return sure, changed(before, update, seen_from(**said), REFERENCE, config)

@@ -123,7 +123,8 @@ class TestLoad:
         covariances = [state.estimate.covariance[np.ix_(others, others)] for state in (before, after)]
         np.testing.assert_array_equal(*covariances)
         parameters = with_component(before.estimate.parameters, self.NUMBER, self.VALUE)
-        assert after.estimate[:2] == before.estimate[:2]
+        assert after.estimate.q_body_from_eci == before.estimate.q_body_from_eci
+        assert after.estimate.omega_body_radps == before.estimate.omega_body_radps
         assert after.estimate.parameters == parameters
         assert after.first == with_component(config.mekf.initial_parameters, self.NUMBER, self.VALUE)
         assert replace(after, estimate=None, first=None, loaded=()) == replace(before, estimate=None)
@@ -132,7 +133,7 @@ class TestLoad:
     def test_a_start_takes_what_was_loaded_and_keeps_what_it_has_found(self, both, monkeypatch):
         """As from a batch of samples of Sun cells, which finds parameters with attitude and rate."""
         before, after, config = both
-        found = before.estimate._replace(trace=None)
+        found = replace(before.estimate, trace=None)
         monkeypatch.setattr(estimator, "first_estimate", lambda *samples: found)
         waiting = changed(after, estimator.restart)
         begun = changed(waiting, estimator.update, measured(), None, config)
@@ -150,8 +151,8 @@ class TestLoad:
         assert (forgotten.first, forgotten.loaded) == (None, ())
         learnt = replace(
             after,
-            estimate=after.estimate._replace(
-                parameters=with_component(after.estimate.parameters, self.NUMBER, 0.02)
+            estimate=replace(
+                after.estimate, parameters=with_component(after.estimate.parameters, self.NUMBER, 0.02)
             ),
         )
         assert (

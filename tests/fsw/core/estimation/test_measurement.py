@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from filter_steps import known_of
 from scipy.spatial.transform import Rotation
 
 from fsw.core.algebra.quaternion import rotate
@@ -22,7 +23,11 @@ PREDICTION = {"field": field_prediction, "sun": sun_prediction}
 def prediction(kind, satellite, estimate, config=None):
     """What should be measured, and H."""
     vector = {"field": satellite.b_eci_t, "sun": satellite.s_eci}[kind]
-    return PREDICTION[kind](*estimate[:3], vector, config or satellite.config())
+    return PREDICTION[kind](
+        *known_of(estimate),
+        vector,
+        config or satellite.config(),
+    )
 
 
 def expected(kind, satellite, omega, parameters):
@@ -52,7 +57,7 @@ class TestExpected:
         assert np.abs(off).max() < 1e-5
         for name in SEEN[kind]:
             known = replace(estimate.parameters, **{name: getattr(NOTHING, name)})
-            without, _ = prediction(kind, full, estimate._replace(parameters=known))
+            without, _ = prediction(kind, full, replace(estimate, parameters=known))
             moved = np.abs(np.subtract(sample, without)).max() / unit_of(kind, full)
             assert moved > 1e-3
 
@@ -115,14 +120,14 @@ class TestPrediction:
         np.testing.assert_allclose(
             found[:, 3:6], expected[:, 3:6], rtol=0.0, atol=0.03 * np.abs(expected[:, 3:6]).max()
         )
-        in_time = estimate._replace(parameters=replace(estimate.parameters, delay_s=(0.0, 0.0)))
+        in_time = replace(estimate, parameters=replace(estimate.parameters, delay_s=(0.0, 0.0)))
         assert found[:, 3:6].any()
         assert not prediction(kind, full, in_time)[1][:, 3:6].any()
 
     def test_a_turn_of_the_sensor_looks_as_a_turn_of_the_body_then(self, kind, full):
         """Why no measurement can tell the common turn of both sensors from an attitude."""
         estimate = full.estimate()
-        in_time = estimate._replace(parameters=replace(estimate.parameters, delay_s=(0.0, 0.0)))
+        in_time = replace(estimate, parameters=replace(estimate.parameters, delay_s=(0.0, 0.0)))
         place = full.place({"field": "mag_turn_rad", "sun": "sun_turn_rad"}[kind])
         _, found = prediction(kind, full, in_time)
         np.testing.assert_array_equal(found[:, place], found[:, 0:3])
@@ -137,7 +142,7 @@ class TestPrediction:
     def test_a_turn_along_the_rate_looks_as_a_greater_age(self, kind, full):
         """No sample tells them apart, at whatever rate."""
         for rate in (full.omega, (0.07, 0.05, -0.06)):
-            _, found = prediction(kind, full, full.estimate()._replace(omega_body_radps=rate))
+            _, found = prediction(kind, full, replace(full.estimate(), omega_body_radps=rate))
             age = found[:, full.place("delay_s")][:, ("field", "sun").index(kind)]
             np.testing.assert_allclose(found[:, 0:3] @ rate, -age, rtol=0.0, atol=1e-12 * unit_of(kind, full))
             assert np.abs(age).max() > 1e-3 * unit_of(kind, full)

@@ -7,15 +7,18 @@ from math import inf, nan
 import numpy as np
 import pytest
 from estimator_samples import angle_rad
+from filter_steps import predict, update_both, update_field, update_sun
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from fsw.core.algebra.quaternion import normalise, rotate
 from fsw.core.algebra.vector import ZERO, add, cross
 from fsw.core.estimation import mekf
-from fsw.core.estimation.mekf import predict, start, update_both, update_field, update_sun
+from fsw.core.estimation.kalman import Cause, Trace
+from fsw.core.estimation.mekf import start
 from fsw.core.estimation.parameters import NAMES, NOTHING, Parameters
 from fsw.core.estimation.unobservable import unobservable_directions
+from fsw.core.packing import pack
 from sim.validate.reference.reference_table import DATA
 
 
@@ -71,7 +74,10 @@ def along_what_no_sample_tells_after(satellite, before, after, covariance):
     if "inertia_error_kgm2" not in satellite.carried:
         assert config.unobservable is None
         return covariance
-    along = [unobservable_directions(*one[1:3], config.rotor, config.layout) for one in (before, after)]
+    along = [
+        unobservable_directions(one.omega_body_radps, one.parameters, config.rotor, config.layout)
+        for one in (before, after)
+    ]
     coordinates = np.zeros((satellite.size(), 4))
     coordinates[satellite.place("sun_turn_rad"), 0:3] = np.eye(3)
     moments = slice(
@@ -211,7 +217,7 @@ class TestGate:
         config, b = satellite.config(), rotate(satellite.q, satellite.b_eci_t)
         off = add(b, cross(b, (0.09, -0.05, 0.07)))
         sure = satellite.estimate(np.diag(satellite.scales() ** 2), NOTHING)
-        unsure = sure._replace(covariance=config.initial_covariance * 100.0)
+        unsure = replace(sure, covariance=config.initial_covariance * 100.0)
         assert update_field(sure, off, satellite.b_eci_t, config) is None
         assert update_field(unsure, off, satellite.b_eci_t, config) is not None
 
@@ -242,6 +248,62 @@ class TestGate:
             assert np.isfinite(after.covariance).all()
 
 
+class TestInPlace:
+    """A step changes the estimate itself, and replaces its arrays."""
+
+    def traced(self, satellite):
+        effect = np.random.default_rng(3).normal(size=(satellite.size(), 2))
+        estimate = satellite.estimate()
+        estimate.trace = Trace((Cause(1, 1.0, 0.1),), effect, np.eye(2), 3)
+        return estimate
+
+    def test_what_is_refused_changes_nothing(self, satellite):
+        estimate, config = self.traced(satellite), satellite.config()
+        before = pack(estimate)
+        away = add(rotate(satellite.q, satellite.b_eci_t), (5e-5, -4e-5, 6e-5))
+        aside = normalise((0.0, *rotate(satellite.q, satellite.s_eci)))[:0:-1]
+        assert not mekf.update_field(estimate, away, satellite.b_eci_t, config)
+        assert not mekf.update_sun(estimate, aside, satellite.s_eci, config)
+        assert not mekf.update_both(estimate, away, satellite.b_eci_t, aside, satellite.s_eci, config)
+        assert pack(estimate) == before
+
+    def test_a_copy_goes_on_by_itself(self, satellite):
+        estimate, config = self.traced(satellite), satellite.config()
+        before, copy = pack(estimate), estimate.copy()
+        assert pack(copy) == before
+        words = (satellite.e1_eci, satellite.b_eci_t, satellite.gravity_ps2, satellite.driven_am2, config)
+        mekf.predict(copy, *words)
+        near = tuple(np.add(satellite.measured("field", copy), 1e-9).tolist())
+        assert mekf.update_field(copy, near, satellite.b_eci_t, config)
+        mekf.correct(copy, 1e-3 * satellite.scales(), copy.covariance, config)
+        assert pack(estimate) == before != pack(copy)
+
+    @pytest.mark.parametrize("kind", ["field", "sun", "both"])
+    def test_frozen_parameters_keep_their_values_and_what_is_known_of_them(self, kind, full):
+        estimate, config = full.estimate(), full.config()
+        parameters, covariance = estimate.parameters.copy(), estimate.covariance
+        values = np.array(full.measured(kind, estimate)) + 0.5 * full.sigma[kind]
+        assert updated_frozen(kind, estimate, tuple(values.tolist()), full, config)
+        assert estimate.parameters == parameters
+        assert estimate.omega_body_radps != full.omega
+        known = slice(6, None)
+        free = full.estimate()
+        assert update(kind, free, values, full, config).parameters != parameters
+        if config.unobservable is None:
+            np.testing.assert_allclose(estimate.covariance[known, known], covariance[known, known])
+
+
+def updated_frozen(kind, estimate, values, satellite, config):
+    b, s = satellite.b_eci_t, satellite.s_eci
+    match kind:
+        case "both":
+            return mekf.update_both(estimate, values[:3], b, values[3:], s, config, frozen=True)
+        case "field":
+            return mekf.update_field(estimate, values, b, config, frozen=True)
+        case _:
+            return mekf.update_sun(estimate, values, s, config, frozen=True)
+
+
 class TestHealthy:
     def test_a_sound_estimate_is(self, satellite):
         assert mekf.healthy(satellite.estimate())
@@ -252,7 +314,7 @@ class TestHealthy:
         values = getattr(full.estimate(), field)
         for index in range(len(values)):
             broken = (*values[:index], bad, *values[index + 1 :])
-            assert not mekf.healthy(full.estimate()._replace(**{field: broken}))
+            assert not mekf.healthy(replace(full.estimate(), **{field: broken}))
 
     @pytest.mark.parametrize("bad", [nan, inf, -inf])
     @pytest.mark.parametrize("name", NAMES)
@@ -290,7 +352,7 @@ class TestHealthy:
         (xx, xy, xz), (_, yy, yz), (_, _, zz) = full.config().rotor.inertia_kgm2
         gone = (-xx, -yy, -zz, -xy, -xz, -yz)
         before = full.estimate()
-        before = before._replace(parameters=replace(before.parameters, inertia_error_kgm2=gone))
+        before = replace(before, parameters=replace(before.parameters, inertia_error_kgm2=gone))
         after = predict(before, full.e1_eci, full.b_eci_t, full.gravity_ps2, ZERO, full.config())
         assert mekf.healthy(before)
         assert not mekf.healthy(after)

@@ -8,10 +8,11 @@ from math import cos, radians, sin
 
 import numpy as np
 import pytest
+from filter_steps import predict, update_field, update_sun
 
 from fsw.core.algebra.quaternion import multiply, normalise
 from fsw.core.algebra.vector import ZERO
-from fsw.core.estimation.mekf import predict, start, update_field, update_sun
+from fsw.core.estimation.mekf import start
 from fsw.core.estimation.parameters import NAMES, NOTHING, OF_CELLS, Parameters
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
 from sim.plant.dynamics.torques import BodyTorque
@@ -59,8 +60,11 @@ def flown(satellite, true):
         torque, around = BodyTorque(inertia, dipole, true.torque_body_nm), Surroundings(e1, gravity, b)
         motion = body.step(motion, torque, 1.0, around, around, around)
         estimate = predict(estimate, e1, b, gravity, driven, config)
-        truth = estimate._replace(
-            q_body_from_eci=motion.q_body_from_eci, omega_body_radps=motion.omega_body_radps, parameters=true
+        truth = replace(
+            estimate,
+            q_body_from_eci=motion.q_body_from_eci,
+            omega_body_radps=motion.omega_body_radps,
+            parameters=true,
         )
         seen = satellite.measured("both", truth, b) + random.normal(0.0, satellite.sigma["both"])
         measured = tuple(seen.tolist())

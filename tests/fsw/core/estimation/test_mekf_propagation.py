@@ -1,12 +1,15 @@
 """The filter between samples: its motion beside the plant's."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from estimator_samples import angle_rad
+from filter_steps import predict
 
 from fsw.core.algebra.vector import ZERO, scale
 from fsw.core.estimation import mekf
-from fsw.core.estimation.mekf import predict, start
+from fsw.core.estimation.mekf import start
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
 from sim.plant.dynamics.torques import BodyTorque
 from sim.plant.environment.surroundings import Surroundings
@@ -20,7 +23,7 @@ class TestPropagation:
 
     def flown(self, satellite, tick_s, seconds, omega, driven_am2):
         config = satellite.config(tick_s=tick_s)
-        estimate = satellite.estimate()._replace(omega_body_radps=omega)
+        estimate = replace(satellite.estimate(), omega_body_radps=omega)
         for _ in range(round(seconds / tick_s)):
             estimate = predict(
                 estimate, satellite.e1_eci, satellite.b_eci_t, satellite.gravity_ps2, driven_am2, config
@@ -79,7 +82,7 @@ class TestPropagation:
     @pytest.mark.parametrize("tick_s", [1.0, 0.25])
     def test_what_innovations_were_on_the_mean_is_forgotten_over_a_minute(self, satellite, tick_s):
         lag = (0.7, -0.4, 0.3, -0.9, 0.5, 0.2)
-        estimate = satellite.estimate()._replace(lag=lag)
+        estimate = replace(satellite.estimate(), lag=lag)
         after = predict(
             estimate, satellite.e1_eci, satellite.b_eci_t, 0.0, ZERO, satellite.config(tick_s=tick_s)
         )

@@ -4,9 +4,10 @@ from math import radians
 
 import numpy as np
 import pytest
+from filter_steps import predict
 
 from fsw.core.algebra.vector import ZERO
-from fsw.core.estimation.mekf import predict, start
+from fsw.core.estimation.mekf import start
 from fsw.core.estimation.mekf_config import mekf_config, with_wheel
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
 from sim.plant.dynamics.torques import TorqueFunction

@@ -1,5 +1,6 @@
 """The attitude relative to the orbital frame: as estimated, and as the plant reports it."""
 
+from dataclasses import replace
 from math import degrees, radians
 
 import numpy as np
@@ -40,7 +41,7 @@ class TestOrbitalAttitude:
 
     def test_is_seen_from_the_orbital_frame(self):
         """q_body_from_eci = q_orbit_from_eci (x) q_body_from_orbit, and the orbit turns about its normal."""
-        moving = ESTIMATE._replace(omega_body_radps=(0.011, -0.007, 0.005))
+        moving = replace(ESTIMATE, omega_body_radps=(0.011, -0.007, 0.005))
         attitude = orbital_attitude(moving, REFERENCE, VALID_SIGMA_RAD)
         chained = multiply(REFERENCE.q_orbit_from_eci, attitude.q_body_from_orbit)
         assert canonical(chained) == pytest.approx(canonical(moving.q_body_from_eci), abs=1e-14)
@@ -52,7 +53,8 @@ class TestOrbitalAttitude:
 
     def test_a_body_at_rest_in_the_orbital_frame_is(self):
         normal_eci = rotate(conjugate(REFERENCE.q_orbit_from_eci), (0.0, 0.0, 1.0))
-        carried = ESTIMATE._replace(
+        carried = replace(
+            ESTIMATE,
             q_body_from_eci=REFERENCE.q_orbit_from_eci,
             omega_body_radps=scale(1.04e-3, rotate(REFERENCE.q_orbit_from_eci, normal_eci)),
         )
@@ -67,7 +69,7 @@ class TestOrbitalAttitude:
         for axis in range(3):
             covariance = np.diag([radians(0.05) ** 2] * 3 + [1e-10, 4e-10, 9e-10] + [1e-14] * 6)
             covariance[axis, axis] = radians(sigma_deg) ** 2
-            estimated = ESTIMATE._replace(covariance=covariance)
+            estimated = replace(ESTIMATE, covariance=covariance)
             attitude = orbital_attitude(estimated, REFERENCE, VALID_SIGMA_RAD)
             assert attitude.valid is valid
             assert degrees(attitude.sigma3_attitude_rad) == pytest.approx(3.0 * sigma_deg)
@@ -76,7 +78,7 @@ class TestOrbitalAttitude:
     def test_the_sigmas_are_those_of_the_worst_axis_of_attitude_and_of_rate(self):
         for first, second in (([3.0, 1.0, 2.0], [40.0, 20.0, 30.0]), ([1.0, 2.0, 3.0], [20.0, 30.0, 40.0])):
             covariance = 1e-6 * np.diag([*first, *second, *[500.0] * 6])
-            attitude = orbital_attitude(ESTIMATE._replace(covariance=covariance), REFERENCE, VALID_SIGMA_RAD)
+            attitude = orbital_attitude(replace(ESTIMATE, covariance=covariance), REFERENCE, VALID_SIGMA_RAD)
             assert attitude.sigma3_attitude_rad == pytest.approx(3.0 * (3e-6) ** 0.5)
             assert attitude.sigma3_rate_radps == pytest.approx(3.0 * (40e-6) ** 0.5)
 

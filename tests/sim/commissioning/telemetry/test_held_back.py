@@ -38,7 +38,7 @@ def turned(followed, angle_deg):
         return (p0 * s[0] - p @ s[1:], *(p0 * np.array(s[1:]) + s[0] * p + np.cross(p, s[1:])))
 
     ticks = [
-        one._replace(estimate=one.estimate._replace(q_body_from_eci=off(one.estimate.q_body_from_eci)))
+        one._replace(estimate=replace(one.estimate, q_body_from_eci=off(one.estimate.q_body_from_eci)))
         for one in followed.ticks
     ]
     return type(followed)(followed.start, followed.config, tuple(ticks))
@@ -104,8 +104,9 @@ def test_coasting_of_another_rate_goes_away(flight):
     around, followed = flight
     faster = [
         one._replace(
-            estimate=one.estimate._replace(
-                omega_body_radps=tuple((1.03 * np.array(one.estimate.omega_body_radps)).tolist())
+            estimate=replace(
+                one.estimate,
+                omega_body_radps=tuple((1.03 * np.array(one.estimate.omega_body_radps)).tolist()),
             )
         )
         for one in followed.ticks

@@ -86,7 +86,7 @@ class TestFigures:
     def test_are_of_every_parameter_that_is_carried(self, figures):
         """Of a satellite without Sun cells there is nothing that these are wrong by."""
         assert [*NAMES] == [*UNITS]
-        assert [*figures] == [name for name in NOTHING._fields if name not in OF_CELLS]
+        assert [*figures] == [name for name in NAMES if name not in OF_CELLS]
 
     def test_values_and_deviations_are_those_of_the_last_estimate(self, figures):
         assert figures["mag_bias_t"]["value"] == [1e-7, -2e-7, 3e-7]

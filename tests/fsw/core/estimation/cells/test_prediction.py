@@ -32,12 +32,12 @@ def moved(estimate, index, step):
     if index < 3:
         turn = tuple(step if axis == index else 0.0 for axis in range(3))
         q = normalise(multiply(estimate.q_body_from_eci, from_small_rotation(turn)))
-        return estimate._replace(q_body_from_eci=q)
+        return replace(estimate, q_body_from_eci=q)
     if index < 6:
         rate = tuple(
             w + (step if axis == index - 3 else 0.0) for axis, w in enumerate(estimate.omega_body_radps)
         )
-        return estimate._replace(omega_body_radps=rate)
+        return replace(estimate, omega_body_radps=rate)
     for name, place in (
         ("sun_turn_rad", parts.sun_turn),
         ("delay_s", parts.delay),
@@ -48,7 +48,7 @@ def moved(estimate, index, step):
         if place.start <= index < place.stop:
             values = list(getattr(parameters, name))
             values[index - place.start] += step
-            return estimate._replace(parameters=replace(parameters, **{name: tuple(values)}))
+            return replace(estimate, parameters=replace(parameters, **{name: tuple(values)}))
     return estimate
 
 
@@ -58,8 +58,8 @@ class TestPrediction:
 
     @pytest.mark.parametrize("cell", LIT)
     def test_is_the_cosine_and_the_earth_s_light(self, cell):
-        level = begun()._replace(
-            parameters=replace(begun().parameters, sun_turn_rad=(0.0,) * 3, delay_s=(0.0, 0.0))
+        level = replace(
+            begun(), parameters=replace(begun().parameters, sun_turn_rad=(0.0,) * 3, delay_s=(0.0, 0.0))
         )
         value, _ = prediction(level, cell, SEEN, CONFIG, CELLS)
         assert value == pytest.approx(shown(gain=GAIN, light=LIGHT)[cell], rel=1e-12)
@@ -105,7 +105,7 @@ def test_without_light_of_the_earth_it_shows_its_excess_at_most():
 def test_a_cell_with_the_sun_behind_it_shows_the_earth_and_its_excess_at_most(light_shown, brighter):
     """The Earth as bright as the cells have shown it, yet not darker than by the table."""
     estimate = begun()
-    estimate = estimate._replace(parameters=replace(estimate.parameters, earth_light=(light_shown,)))
+    estimate = replace(estimate, parameters=replace(estimate.parameters, earth_light=(light_shown,)))
     for normal in CELLS.normals_body:
         view = 0.5 + 0.5 * np.dot(normal, rotate(Q_BODY_FROM_ECI, SEEN.e_eci))
         most = most_behind(estimate, normal, SEEN, CELLS)

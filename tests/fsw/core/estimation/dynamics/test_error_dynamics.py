@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from filter_steps import predict
 
 from fsw.core.algebra.vector import ZERO
 from fsw.core.estimation.dynamics.error_dynamics import free_motion, with_age_along
 from fsw.core.estimation.dynamics.motion import turn
-from fsw.core.estimation.mekf import predict
 from fsw.core.estimation.parameters import NAMES, UNCHANGED_COILS, UNCHANGED_INERTIA
 
 TICK_S = 0.01
@@ -29,7 +29,7 @@ def strong(satellite, **changes):
     parameters = replace(
         satellite.parameters, **{name: value for name, value in given.items() if name in satellite.carried}
     )
-    return satellite.estimate(parameters=parameters)._replace(omega_body_radps=RATE)
+    return replace(satellite.estimate(parameters=parameters), omega_body_radps=RATE)
 
 
 def transition(satellite, estimate, driven_am2=DRIVEN_AM2):
@@ -38,7 +38,7 @@ def transition(satellite, estimate, driven_am2=DRIVEN_AM2):
     for index in range(satellite.size()):
         direction = np.zeros(satellite.size())
         direction[index] = 1.0
-        before = estimate._replace(covariance=np.outer(direction, direction))
+        before = replace(estimate, covariance=np.outer(direction, direction))
         after = predict(before, satellite.e1_eci, B_ECI_T, GRAVITY_PS2, driven_am2, config).covariance
         columns.append(after[:, index] / np.sqrt(after[index, index]))
     return np.array(columns).T
@@ -135,7 +135,7 @@ class TestProcessNoise:
         )
         size = satellite.size()
         still = satellite.estimate(np.zeros((size, size)), parameters)
-        return still._replace(q_body_from_eci=(1.0, 0.0, 0.0, 0.0), omega_body_radps=ZERO)
+        return replace(still, q_body_from_eci=(1.0, 0.0, 0.0, 0.0), omega_body_radps=ZERO)
 
     def test_is_white_torque_through_the_inertia_and_random_walks(self, satellite):
         """Q = N [[h^3/3, h^2/2], [h^2/2, h]] with N = sigma^2 J^-1 J^-T; of a parameter walk^2 h."""

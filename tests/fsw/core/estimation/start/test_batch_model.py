@@ -65,7 +65,7 @@ def test_a_motion_shows_what_the_filter_predicts(q):
     found = shown(q=q).values[0]
     estimate = mekf.start(q, OMEGA, CONFIG)
     known = replace(estimate.parameters, delay_s=(0.0, 0.0), cell_gain=GAIN, earth_light=(LIGHT,))
-    estimate = estimate._replace(parameters=known)
+    estimate = replace(estimate, parameters=known)
     seen = light(SAMPLES[0].r_eci_m, SAMPLES[0].s_eci, CELLS.albedo)
     cells = [prediction(estimate, cell, seen, CONFIG, CELLS)[0] + EXCESS[cell] for cell in range(6)]
     np.testing.assert_allclose(found[3:], cells, rtol=1e-9)

@@ -193,7 +193,7 @@ class TestLinear:
         begun_at = start(tuple(STARTS[0][0]), (0.0, 0.0, 0.0), CONFIG)
         covariance = begun_at.covariance.copy()
         covariance[0:3, 0:3] = attitude
-        return begun_at._replace(covariance=covariance)
+        return replace(begun_at, covariance=covariance)
 
 
 @pytest.mark.parametrize("bad", [float("nan"), 1e300])

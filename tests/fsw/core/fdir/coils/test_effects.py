@@ -3,8 +3,10 @@
 from dataclasses import replace
 from math import copysign, hypot, inf, isfinite, nan, sqrt
 
+import filter_steps
 import numpy as np
 import pytest
+from changed import changed
 from estimator_samples import tuned
 from pulse_samples import (
     CONFIG,
@@ -30,6 +32,7 @@ from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.coils.effects import trace_pulse
 from fsw.core.fdir.coils.explanations import PULSES
 from fsw.core.laws.plan.pulse_model import Pulse
+from fsw.core.packing import pack
 
 
 def test_the_carried_effect_is_what_a_second_filter_shows_that_knew_of_it():
@@ -38,7 +41,7 @@ def test_the_carried_effect_is_what_a_second_filter_shows_that_knew_of_it():
     def knowing(estimate):
         kick = scale(part, kick_radps(estimate, 1))
         wrong = np.array((*scale(0.5 * PULSE_S, kick), *kick, *np.zeros(6)))
-        return mekf.corrected(estimate, wrong, np.zeros((12, 12)), CONFIG)
+        return filter_steps.correct(estimate, wrong, np.zeros((12, 12)), CONFIG)
 
     unknowing, _ = fly([1], [1.0], noise=0.0)
     other, _ = fly([1], [1.0], noise=0.0, alter=knowing)
@@ -51,21 +54,21 @@ def test_the_carried_effect_is_what_a_second_filter_shows_that_knew_of_it():
 
 @pytest.mark.parametrize(("level", "torque_nm", "ratio"), [(2, 0.0, 0.0), (2, 3e-6, 0.833), (3, 3e-6, 0.417)])
 def test_a_pulse_proves_little_beside_a_torque_that_does_as_much_by_the_next(level, torque_nm, ratio):
-    pushed = START._replace(parameters=replace(START.parameters, torque_body_nm=(0.0, torque_nm, 0.0)))
+    pushed = replace(START, parameters=replace(START.parameters, torque_body_nm=(0.0, torque_nm, 0.0)))
     across = rotate(conjugate(START.q_body_from_eci), (0.0, 0.0, 3e-5))
     cause = traced(pushed, Pulse(1, level), across).trace.causes[0]
     assert cause.uncertain == pytest.approx(hypot(0.05, ratio), rel=1e-3)
-    assert cause[:2] == (1, 1.0)
+    assert (cause.number, cause.assumed) == (1, 1.0)
     weakest = traced(pushed, Pulse(1, 1), across).trace.causes[0]
     assert weakest.uncertain == pytest.approx(hypot(0.05, 1.0 if torque_nm else 0.0))
 
 
 def test_a_torque_acts_until_the_next_pulse_whatever_the_length_of_a_tick():
-    pushed = START._replace(parameters=replace(START.parameters, torque_body_nm=(0.0, 3e-6, 0.0)))
+    pushed = replace(START, parameters=replace(START.parameters, torque_body_nm=(0.0, 3e-6, 0.0)))
     across = rotate(conjugate(START.q_body_from_eci), (0.0, 0.0, 3e-5))
     short = replace(PULSES_1_HZ, pulse_ticks=30, backoff_ticks=1000, tick_s=0.1)
     causes = [
-        trace_pulse(pushed, Pulse(1, 3), across, GRAVITY_PS2, pulses, CONFIG).trace.causes[0]
+        changed(pushed, trace_pulse, Pulse(1, 3), across, GRAVITY_PS2, pulses, CONFIG).trace.causes[0]
         for pulses in (PULSES_1_HZ, short)
     ]
     assert causes[1].uncertain == pytest.approx(causes[0].uncertain)
@@ -74,9 +77,9 @@ def test_a_torque_acts_until_the_next_pulse_whatever_the_length_of_a_tick():
 @pytest.mark.parametrize(("coil", "part"), [(0, 1.1), (1, 0.6), (2, 1.3)])
 def test_what_is_taken_for_its_effect_is_by_the_gain_that_the_filter_has_of_its_coil(coil, part):
     errors = (0.1, 0.02, 0.03, 0.04, -0.4, 0.06, 0.07, 0.08, 0.3)
-    known = START._replace(parameters=replace(START.parameters, coil_error=errors))
+    known = replace(START, parameters=replace(START.parameters, coil_error=errors))
     cause = traced(known, Pulse(coil, 3)).trace.causes[0]
-    assert cause[:2] == (coil, pytest.approx(part))
+    assert (cause.number, cause.assumed) == (coil, pytest.approx(part))
 
 
 WITH_INERTIA = tuned(**QUIET, inertia_error_kgm2=Prior((0.06, 0.1, 0.08, 0.02, 0.02, 0.02), (0.0,) * 6))
@@ -85,7 +88,7 @@ WITH_INERTIA = tuned(**QUIET, inertia_error_kgm2=Prior((0.06, 0.1, 0.08, 0.02, 0
 
 def with_inertia(*error_kgm2):
     estimate = mekf.start(START.q_body_from_eci, START.omega_body_radps, WITH_INERTIA)
-    return estimate._replace(parameters=replace(estimate.parameters, inertia_error_kgm2=error_kgm2))
+    return replace(estimate, parameters=replace(estimate.parameters, inertia_error_kgm2=error_kgm2))
 
 
 @pytest.mark.parametrize("beyond", [(0.0, 0.0, 0.0), (0.2, -0.3, 0.1), (-0.25, 0.25, 0.0)])
@@ -119,7 +122,9 @@ def test_products_of_inertia_beyond_their_bounds_count_too():
 
 def test_a_pulse_along_the_field_is_traced_though_it_does_nothing():
     along = rotate(conjugate(START.q_body_from_eci), (0.0, 3e-5, 0.0))
-    assert np.isfinite(traced(START, Pulse(1, 3), along).trace.causes[0]).all()
+    cause = traced(START, Pulse(1, 3), along).trace.causes[0]
+    assert isfinite(cause.assumed)
+    assert isfinite(cause.uncertain)
     assert traced(START, Pulse(1, 3), ZERO).trace.causes[0].uncertain == 0.05
 
 
@@ -141,7 +146,7 @@ def test_sound_coils_are_not_accused_and_the_estimate_is_left_alone():
     estimate, _ = fly([0, 1, 2, 1, 0, 2], [1.0] * 6)
     after, isolated = judged(estimate)
     assert isolated is None
-    assert after is estimate
+    assert pack(after) == pack(estimate)
     z = deviation(estimate) / np.sqrt(covariance(estimate).diagonal())
     assert np.abs(z).max() < 3.0
 
@@ -161,7 +166,7 @@ def test_the_estimate_is_set_right_once():
     assert (after.covariance.diagonal() >= estimate.covariance.diagonal()).all()
     again, accused_again = judged(after)
     assert accused_again == isolated
-    assert again is after
+    assert pack(again) == pack(after)
 
 
 def test_of_each_coil_the_latest_pulses_are_kept_and_what_is_forgotten_changes_nothing_else():
@@ -181,7 +186,7 @@ def test_a_weak_coil_leaves_noise_and_where_more_is_left_nobody_is_judged():
     assert judged(estimate)[1] is not None
     sums = estimate.trace.sums.copy()
     sums[-1, -1] += 0.7 * estimate.trace.measured
-    doubtful = estimate._replace(trace=estimate.trace._replace(sums=sums))
+    doubtful = replace(estimate, trace=replace(estimate.trace, sums=sums))
     assert judged(doubtful) == (doubtful, None)
 
 
@@ -190,7 +195,7 @@ def test_what_was_shown_of_pulses_while_something_else_misled_the_filter_proves_
     estimate, _ = fly([0], [0.3])
     sums = estimate.trace.sums.copy()
     sums[-1, -1] += more * estimate.trace.measured
-    after = traced(estimate._replace(trace=estimate.trace._replace(sums=sums)), Pulse(1, 3))
+    after = traced(replace(estimate, trace=replace(estimate.trace, sums=sums)), Pulse(1, 3))
     assert left(after) == pytest.approx(0.0, abs=1e-9), "what was left before is of the past"
     assert after.trace.measured == 0
     assert after.trace.numbers == kept
@@ -204,7 +209,7 @@ def test_soon_after_a_pulse_chance_may_leave_more_for_each_sample(unexplained, k
     assert estimate.trace.measured == 12
     sums = estimate.trace.sums.copy()
     sums[-1, -1] += unexplained - left(estimate)
-    after = traced(estimate._replace(trace=estimate.trace._replace(sums=sums)), Pulse(1, 3))
+    after = traced(replace(estimate, trace=replace(estimate.trace, sums=sums)), Pulse(1, 3))
     assert after.trace.numbers == kept
 
 
@@ -224,7 +229,7 @@ def test_damaged_sums_accuse_nobody_and_raise_nothing(place, value):
     estimate, _ = fly([0], [1.0], ticks=10)
     array = getattr(estimate.trace, place).copy()
     array[0, 0] = value  # of sums -1: A + 1 is singular; -1.5: not positive
-    after, isolated = judged(estimate._replace(trace=estimate.trace._replace(**{place: array})))
+    after, isolated = judged(replace(estimate, trace=replace(estimate.trace, **{place: array})))
     assert isolated is None
     assert after.covariance is estimate.covariance
     if place == "sums" or not isfinite(value):

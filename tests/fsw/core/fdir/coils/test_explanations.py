@@ -214,7 +214,7 @@ class TestGain:
             errors[4 * coil] = gain
             estimate = mekf.start((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), config)
             parameters = replace(estimate.parameters, coil_error=tuple(errors))
-            return estimate._replace(parameters=parameters), config
+            return replace(estimate, parameters=parameters), config
 
         return make
 

@@ -108,8 +108,8 @@ def teach(world, coil, error, sigma):
     covariance[place, :] = covariance[:, place] = 0.0
     covariance[place, place] = sigma**2
     parameters = replace(state.estimate.parameters, coil_error=tuple(errors))
-    taught = state.estimate._replace(parameters=parameters, covariance=covariance, trace=None)
-    world.state = altered(world.state, estimator=state._replace(estimate=taught))
+    taught = replace(state.estimate, parameters=parameters, covariance=covariance, trace=None)
+    world.state = altered(world.state, estimator=replace(state, estimate=taught))
 
 
 @pytest.mark.long

@@ -120,7 +120,7 @@ def test_what_the_filter_has_learnt_of_its_gain_is_forgotten(make_world):
     place = config.mekf.layout.coils.start
     errors = (0.01, 0.0, 0.0, 0.0, -0.4, 0.0, 0.0, 0.0, 0.02)
     parameters = replace(state.estimate.parameters, coil_error=errors)
-    learnt = replace(state, estimate=state.estimate._replace(parameters=parameters))
+    learnt = replace(state, estimate=replace(state.estimate, parameters=parameters))
     after = learnt.copy()
     retest(CoilHealth((0, CoilFault.WEAK, 0)), after, True, config)
     assert after.estimate.parameters.coil_error == (0.01, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.02)

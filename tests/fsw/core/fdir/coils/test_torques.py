@@ -23,7 +23,11 @@ LIMITS = CoilHealthConfig((40.0, 120.0, 400.0), WEAK, 1.0, 5, PULSES, CONFIG, 30
 
 def judged(estimate, believed=WEAK_COIL, health=HEALTH):
     """A copy of the health when the next pulse is due, and the state of the estimator."""
-    view, state, health = CoilView(fired_tick=1000 - EVERY), EstimatorState(estimate), copy_state(health)
+    view, state, health = (
+        CoilView(fired_tick=1000 - EVERY),
+        EstimatorState(estimate.copy()),
+        copy_state(health),
+    )
     judge_effect(health, view, REFERENCE, state, 1000, believed, False, LIMITS)
     return health, state
 
@@ -80,7 +84,7 @@ def test_one_bad_pulse_isolates_a_coil_that_is_tried_again(kept, fault):
 def test_where_noise_may_leave_as_much_of_so_many_pulses_what_was_known_before_stays():
     """Sixteen is much for one pulse, and twenty-five hardly too much for eight."""
     odd, _ = fly([0, 1, 2, 0, 1, 2, 0, 1], [1.18, 0.85, 1.2, 0.86, 1.18, 0.84, 1.15, 0.9])
-    _, solution = solve(odd, CONFIG)
+    solution = solve(odd.copy(), CONFIG)
     assert solution is None
     health, state = judged(odd)
     assert state.estimate.trace.numbers == ()
@@ -101,7 +105,7 @@ ENDED = CoilView(fired_tick=1000 - PULSE_S, fired=Pulse(2, -3), driven_coil=2, d
 
 def ended(view=ENDED, estimate=START, health=HEALTH):
     """A copy of the health, and the state of the estimator, at the end of a pulse."""
-    state, health = EstimatorState(estimate), copy_state(health)
+    state, health = EstimatorState(estimate.copy()), copy_state(health)
     judge_effect(health, view, REFERENCE, state, 1000, WEAK_COIL, False, LIMITS)
     return health, state
 
@@ -176,7 +180,7 @@ def test_a_stray_current_is_traced_from_its_first_tick_on_through_all_that_follo
     health, estimate = replace(HEALTH, stray_ma=400, unrequested_ticks=1), START
     lengths = []
     for tick in range(1000, 1004):
-        view, state = CoilView(fired_tick=tick - PULSE_S - 1), EstimatorState(estimate)
+        view, state = CoilView(fired_tick=tick - PULSE_S - 1), EstimatorState(estimate.copy())
         judge_effect(health, view, REFERENCE, state, tick, WEAK_COIL, False, LIMITS)
         estimate = state.estimate
         health.unrequested_ticks += 1
