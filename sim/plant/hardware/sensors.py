@@ -1,6 +1,5 @@
 """Sensor physics: the readings of the boards' instruments."""
 
-from collections import deque
 from math import cos, sin, sqrt
 from typing import final
 
@@ -11,6 +10,9 @@ from sim.plant.sensor_config import AS_NAMED, MagnetometerConfig, SunSensorConfi
 LEAST_LIT = 0.5
 """Visible fraction of the Sun's disc below which the Sun sensor has no reading."""
 
+_TO_EVEN = 1.5 * 2.0**52
+"""Added and subtracted, it rounds a smaller number to the nearest integer, a half to the even one."""
+_EXACT = 2.0**50
 
 _Values = tuple[float, ...]
 
@@ -27,12 +29,13 @@ class Delay:
     def __init__(self, latency_s: float, tick_hz: int) -> None:
         ticks, self._part = divmod(latency_s * tick_hz, 1.0)
         self._length = int(ticks) + 2
-        self._samples: deque[_Values] = deque(maxlen=self._length)
+        self._samples: list[_Values] = []
 
     def take(self, now: _Values) -> _Values:
         """Take the sample ``now``; the delayed values."""
         samples, part = self._samples, self._part
-        samples.append(now)
+        if samples:
+            samples.pop(0)
         while len(samples) < self._length:
             samples.append(now)
         if not part:  # whole ticks
@@ -184,4 +187,9 @@ def _skewed(non_orthogonality_rad: Vec3, axes: Mat3) -> Mat3:
 
 def quantise(value: float, quantum: float) -> float:
     """The multiple of a step nearest to a value; the value itself without a step."""
-    return quantum * round(value / quantum) if quantum else value
+    if not quantum:
+        return value
+    steps = value / quantum
+    if -_EXACT < steps < _EXACT:
+        return quantum * (steps + _TO_EVEN - _TO_EVEN)
+    return quantum * round(steps)
