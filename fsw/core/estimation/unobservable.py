@@ -19,7 +19,6 @@ Source: Huang, Mourikis, Roumeliotis 2010, on filters that gain information wher
 Bonnabel 2017, on errors along directions that move with the estimate.
 """
 
-from dataclasses import dataclass
 from typing import final
 
 import numpy as np
@@ -45,7 +44,6 @@ _UPPER = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
 
 
 @final
-@dataclass(frozen=True, slots=True)
 class Unobservable:
     """The directions that a filter cannot observe: turns and factor, or the factor alone.
 
@@ -55,10 +53,13 @@ class Unobservable:
     ``trace_kgm2``: that trace, by the table.
     """
 
-    moved: slice
-    moving: Matrix
-    coordinates: Matrix
-    trace_kgm2: float
+    __slots__ = ("coordinates", "moved", "moving", "trace_kgm2")
+
+    def __init__(self, moved: slice, moving: Matrix, coordinates: Matrix, trace_kgm2: float) -> None:
+        self.moved = moved
+        self.moving = moving
+        self.coordinates = coordinates
+        self.trace_kgm2 = trace_kgm2
 
 
 def unobservable(parts: Layout, variances: list[float], rotor: Rotor) -> Unobservable | None:
