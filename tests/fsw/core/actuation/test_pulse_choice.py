@@ -112,7 +112,7 @@ def test_of_coils_out_of_square_it_is_the_one_whose_true_dipole_leaves_least(met
         nominal, wanted, b_body_t = random_case(rng)
         axes = np.eye(3) + rng.uniform(-0.4, 0.4, (3, 3))
         config = replace(nominal, coil_axes=tuple(map(tuple, axes.tolist())))
-        candidates = [None, *product(range(3), (-3, -2, -1, 1, 2, 3))]
+        candidates = [None, *(Pulse(*one) for one in product(range(3), (-3, -2, -1, 1, 2, 3)))]
         left = [METRICS[metric](config, wanted, b_body_t, candidate) for candidate in candidates]
         asked = (wanted, getattr(config, metric), TICK, b_body_t)
         chosen = pulses.choose(timers(config), *asked, config)
