@@ -32,7 +32,7 @@ SWITCH: Final = "TORQUER_INTERPRETED"
 ABI: Final = EXTENSION_SUFFIXES[0]
 
 
-class Standing(NamedTuple):
+class CodeStanding(NamedTuple):
     """Whether the flight code runs compiled.
 
     Attributes:
@@ -162,17 +162,17 @@ def _named() -> frozenset[str]:
 
 
 @cache
-def standing() -> Standing:
+def standing() -> CodeStanding:
     """Whether the flight code of this process runs compiled, or why not; decided once."""
     if os.environ.get(SWITCH, "0") not in ("", "0"):
-        return Standing(frozenset(), f"{SWITCH} is set")
+        return CodeStanding(frozenset(), f"{SWITCH} is set")
     try:
         build = Build()
         build.check()
         build.load()
     except BuildError as error:
-        return Standing(frozenset(), str(error))
-    return Standing(build.modules, "")
+        return CodeStanding(frozenset(), str(error))
+    return CodeStanding(build.modules, "")
 
 
 def install() -> None:

@@ -14,7 +14,7 @@ from fsw.core.estimation.attitude import Attitude
 from fsw.wire.messages import Mode
 
 
-class Condition(IntEnum):
+class ModeCondition(IntEnum):
     """The conditions of the table, by their place among those of a tick."""
 
     TRIPPED = 0
@@ -28,7 +28,7 @@ class Condition(IntEnum):
 
 
 Conditions = tuple[bool, ...]
-"""Which hold in a tick, by ``Condition``."""
+"""Which hold in a tick, by ``ModeCondition``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,23 +37,23 @@ class Transition:
 
     source: Mode
     target: Mode
-    condition: Condition
+    condition: ModeCondition
     dwell: str
 
 
 TABLE: tuple[Transition, ...] = (
-    Transition(Mode.SAFE, Mode.DETUMBLE, Condition.CLEAR, "recover_s"),
-    Transition(Mode.DETUMBLE, Mode.SAFE, Condition.TRIPPED, "none_s"),
-    Transition(Mode.DETUMBLE, Mode.SAFE, Condition.BLIND, "lose_s"),
-    Transition(Mode.DETUMBLE, Mode.ACQUIRE, Condition.SLOW, "settle_s"),
-    Transition(Mode.ACQUIRE, Mode.SAFE, Condition.TRIPPED, "none_s"),
-    Transition(Mode.ACQUIRE, Mode.DETUMBLE, Condition.FAST, "settle_s"),
-    Transition(Mode.ACQUIRE, Mode.DETUMBLE, Condition.LOST_ATTITUDE, "lose_s"),
-    Transition(Mode.ACQUIRE, Mode.POINT, Condition.NEAR, "hold_s"),
-    Transition(Mode.POINT, Mode.SAFE, Condition.TRIPPED, "none_s"),
-    Transition(Mode.POINT, Mode.DETUMBLE, Condition.FAST, "settle_s"),
-    Transition(Mode.POINT, Mode.DETUMBLE, Condition.LOST_ATTITUDE, "lose_s"),
-    Transition(Mode.POINT, Mode.ACQUIRE, Condition.FAR, "hold_s"),
+    Transition(Mode.SAFE, Mode.DETUMBLE, ModeCondition.CLEAR, "recover_s"),
+    Transition(Mode.DETUMBLE, Mode.SAFE, ModeCondition.TRIPPED, "none_s"),
+    Transition(Mode.DETUMBLE, Mode.SAFE, ModeCondition.BLIND, "lose_s"),
+    Transition(Mode.DETUMBLE, Mode.ACQUIRE, ModeCondition.SLOW, "settle_s"),
+    Transition(Mode.ACQUIRE, Mode.SAFE, ModeCondition.TRIPPED, "none_s"),
+    Transition(Mode.ACQUIRE, Mode.DETUMBLE, ModeCondition.FAST, "settle_s"),
+    Transition(Mode.ACQUIRE, Mode.DETUMBLE, ModeCondition.LOST_ATTITUDE, "lose_s"),
+    Transition(Mode.ACQUIRE, Mode.POINT, ModeCondition.NEAR, "hold_s"),
+    Transition(Mode.POINT, Mode.SAFE, ModeCondition.TRIPPED, "none_s"),
+    Transition(Mode.POINT, Mode.DETUMBLE, ModeCondition.FAST, "settle_s"),
+    Transition(Mode.POINT, Mode.DETUMBLE, ModeCondition.LOST_ATTITUDE, "lose_s"),
+    Transition(Mode.POINT, Mode.ACQUIRE, ModeCondition.FAR, "hold_s"),
 )
 
 _ROWS_FROM = {mode: [(i, row) for i, row in enumerate(TABLE) if row.source is mode] for mode in Mode}
@@ -124,7 +124,7 @@ def judge_conditions(
 
 def advance(state: ModeState, conditions: Conditions, tick: int, config: ModeConfig) -> None:
     """Take at most one transition in this tick; the dwell times restart in a new mode."""
-    if conditions[Condition.TRIPPED] and state.mode is not Mode.SAFE:
+    if conditions[ModeCondition.TRIPPED] and state.mode is not Mode.SAFE:
         state.trips += 1
     for index, row in _ROWS_FROM[state.mode]:
         if not conditions[row.condition]:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from fsw import compiled
-from fsw.compiled import FOLDER, MANIFEST, ROOT, SWITCH, Build, BuildError, Finder, Standing, standing
+from fsw.compiled import FOLDER, MANIFEST, ROOT, SWITCH, Build, BuildError, CodeStanding, Finder, standing
 
 SAY = "import {}; from fsw.compiled import standing; print(standing()); print({}.__spec__.loader)"
 MODULE = "fsw.core.algebra.vector"
@@ -139,10 +139,10 @@ def test_other_modules_are_none_of_the_finders_concern():
 
 
 def test_a_standing_in_words():
-    assert str(Standing(frozenset("ab"), "")) == "compiled: 2 modules"
-    assert Standing(frozenset("ab"), "").code == "compiled"
-    assert str(Standing(frozenset(), "nothing is built")) == "interpreted: nothing is built"
-    assert Standing(frozenset(), "nothing is built").code == "interpreted"
+    assert str(CodeStanding(frozenset("ab"), "")) == "compiled: 2 modules"
+    assert CodeStanding(frozenset("ab"), "").code == "compiled"
+    assert str(CodeStanding(frozenset(), "nothing is built")) == "interpreted: nothing is built"
+    assert CodeStanding(frozenset(), "nothing is built").code == "interpreted"
 
 
 @pytest.mark.skipif(not standing().modules, reason="nothing is compiled in this run")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fsw.compiled import SWITCH, Standing
+from fsw.compiled import SWITCH, CodeStanding
 from fsw.kernel import KERNEL
 from sim import doctor
 from sim.console import Console, speaking
@@ -30,8 +30,8 @@ def test_this_machine_has_what_the_tests_need():
 @pytest.mark.parametrize(
     ("found", "presence", "remedy"),
     [
-        (Standing(frozenset({"a"}), ""), Presence.OK, ""),
-        (Standing(frozenset(), "nothing is built"), Presence.OPTIONAL, "where there is a C compiler"),
+        (CodeStanding(frozenset({"a"}), ""), Presence.OK, ""),
+        (CodeStanding(frozenset(), "nothing is built"), Presence.OPTIONAL, "where there is a C compiler"),
     ],
 )
 def test_how_the_flight_code_runs(found, presence, remedy, monkeypatch):
@@ -44,7 +44,7 @@ def test_how_the_flight_code_runs(found, presence, remedy, monkeypatch):
 
 def test_who_switched_compiled_code_off_is_told_how_to_switch_it_on(monkeypatch):
     monkeypatch.setenv(SWITCH, "1")
-    monkeypatch.setattr(doctor, "standing", lambda: Standing(frozenset(), f"{SWITCH} is set"))
+    monkeypatch.setattr(doctor, "standing", lambda: CodeStanding(frozenset(), f"{SWITCH} is set"))
     assert {finding.name: finding for finding in examine()}["flight code"].remedy == f"unset {SWITCH}"
 
 

@@ -39,7 +39,7 @@ from fsw.core.estimation.kalman import Matrix, Trace, Update, carry_trace, produ
 from fsw.core.estimation.kalman import predict as predict_covariance
 from fsw.core.estimation.kalman import update as update_error
 from fsw.core.estimation.measurement import field_prediction, sun_prediction
-from fsw.core.estimation.mekf_config import MekfConfig, Step, open_noise, pieces_of_tick
+from fsw.core.estimation.mekf_config import FilterStep, MekfConfig, open_noise, pieces_of_tick
 from fsw.core.estimation.parameters import (
     ATTITUDE_AND_RATE,
     Parameters,
@@ -142,7 +142,7 @@ def predict(
         doubted_am2: standard deviation of that dipole's error, as in ``Driven``.
     """
     count = pieces_of_tick(estimate.omega_body_radps, config.tick_s)
-    step, driven = Step(config, count), Driven(m_body_am2, doubted_am2)
+    step, driven = FilterStep(config, count), Driven(m_body_am2, doubted_am2)
     for _ in range(count):
         predict_step(estimate, e1_eci, b_eci_t, gravity_per_s2, driven, config, step)
 
@@ -154,7 +154,7 @@ def predict_step(
     gravity_per_s2: float,
     driven: Driven,
     config: MekfConfig,
-    step: Step,
+    step: FilterStep,
 ) -> None:
     """Carry estimate and covariance over a tick, or a piece of one."""
     h, parts = step.tick_s, config.layout

@@ -87,7 +87,7 @@ def pieces_of_tick(omega_radps: Vec3, tick_s: float) -> int:
 
 
 @final
-class Step:
+class FilterStep:
     """What the filter predicts by: a tick, or one of so many equal ``pieces`` of it.
 
     As in ``MekfConfig``, for a step of this length. The pieces together add the tick's noise.

@@ -172,7 +172,7 @@ class TestFrozenParameters:
     def test_keep_their_values_while_attitude_and_rate_are_estimated(self, frozen_flight):
         _, states, _ = frozen_flight
         first, last = states[0].estimator.estimate, states[-1].estimator.estimate
-        assert {state.estimator.estimate.parameters for state in states} == {first.parameters}
+        assert all(state.estimator.estimate.parameters == first.parameters for state in states)
         assert (first.parameters.mag_bias_t[0], first.parameters.torque_body_nm[1]) == (7e-7, 6e-8)
         assert last.q_body_from_eci != first.q_body_from_eci
         assert states[-1].estimator.restarts == 0
@@ -208,7 +208,7 @@ class TestFrozenParameters:
         world = make_world(**MATCHED)
         world.fly(120)
         world.step(with_telecommands(TcParameter(Component.MAG_BIAS_X, -9, 170), TcMode(Mode.SAFE)))
-        world.state = altered(world.state, estimator=estimator.restart(world.state.estimator))
+        estimator.restart(world.state.estimator)
         while world.state.estimator.estimate is None:
             world.step()
         assert world.state.estimator.estimate.parameters.mag_bias_t == (1.7e-7, 0.0, 0.0)

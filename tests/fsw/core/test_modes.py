@@ -6,7 +6,7 @@ from math import cos, pi, radians, sin
 import pytest
 
 from fsw.core.estimation.attitude import Attitude
-from fsw.core.modes import TABLE, Condition, ModeConfig, ModeState, advance, judge_conditions
+from fsw.core.modes import TABLE, ModeCondition, ModeConfig, ModeState, advance, judge_conditions
 from fsw.table.sections import ModesTable
 from fsw.wire.messages import Mode
 
@@ -21,7 +21,7 @@ CONFIG = ModeConfig(
     axis_only=False,
     trips_to_stay_safe=3,
 )
-QUIET = (False,) * len(Condition)
+QUIET = (False,) * len(ModeCondition)
 START = 1000
 ROWS = [
     pytest.param(index, row, id=f"{row.source.name}-{row.condition.name}") for index, row in enumerate(TABLE)
@@ -29,7 +29,7 @@ ROWS = [
 
 
 def only(*conditions):
-    return tuple([condition in conditions for condition in Condition])
+    return tuple([condition in conditions for condition in ModeCondition])
 
 
 def long_in(mode):
@@ -48,7 +48,7 @@ def fly(state, situations, start=START, config=CONFIG):
 
 class TestTable:
     def test_every_condition_is_used(self):
-        assert {row.condition for row in TABLE} == set(Condition)
+        assert {row.condition for row in TABLE} == set(ModeCondition)
 
     def test_dwell_times_exist_in_the_onboard_table(self):
         assert {row.dwell for row in TABLE} - {"none_s"} <= set(ModesTable.model_fields)
@@ -66,10 +66,11 @@ class TestTable:
     def test_every_mode_but_safe_trips_to_safe_before_anything_else_and_at_once(self):
         for mode in set(Mode) - {Mode.SAFE}:
             first = next(row for row in TABLE if row.source is mode)
-            assert (first.target, first.condition, first.dwell) == (Mode.SAFE, Condition.TRIPPED, "none_s")
+            assert (first.target, first.dwell) == (Mode.SAFE, "none_s")
+            assert first.condition is ModeCondition.TRIPPED
 
     def test_losing_the_attitude_is_the_business_of_every_mode_that_needs_it(self):
-        sources = {row.source for row in TABLE if row.condition is Condition.LOST_ATTITUDE}
+        sources = {row.source for row in TABLE if row.condition is ModeCondition.LOST_ATTITUDE}
         assert sources == {Mode.ACQUIRE, Mode.POINT}
 
     def test_safe_is_left_towards_detumble_alone(self):
@@ -119,32 +120,32 @@ def test_without_any_condition_no_mode_is_left(mode):
 
 
 def test_a_trip_wins_over_everything_else():
-    everything = only(*set(Condition) - {Condition.CLEAR})
+    everything = only(*set(ModeCondition) - {ModeCondition.CLEAR})
     for mode in (Mode.DETUMBLE, Mode.ACQUIRE, Mode.POINT):
         assert fly(long_in(mode), [everything]) == [Mode.SAFE]
 
 
 def test_being_fast_wins_over_being_near():
-    assert fly(long_in(Mode.ACQUIRE), [only(Condition.FAST, Condition.NEAR)]) == [Mode.DETUMBLE]
+    assert fly(long_in(Mode.ACQUIRE), [only(ModeCondition.FAST, ModeCondition.NEAR)]) == [Mode.DETUMBLE]
 
 
 class TestTrips:
     def test_a_trip_is_counted_once_while_it_lasts(self):
         state = ModeState(Mode.POINT)
         for tick in range(50):
-            advance(state, only(Condition.TRIPPED), tick, CONFIG)
+            advance(state, only(ModeCondition.TRIPPED), tick, CONFIG)
         assert (state.mode, state.trips) == (Mode.SAFE, 1)
 
     def test_a_violation_in_safe_keeps_it_there_and_is_no_trip(self):
         state = ModeState(Mode.SAFE, trips=1)
-        advance(state, only(Condition.TRIPPED), START, CONFIG)
+        advance(state, only(ModeCondition.TRIPPED), START, CONFIG)
         assert (state.mode, state.trips) == (Mode.SAFE, 1)
 
     def test_safe_is_left_after_the_first_and_the_second_trip_but_never_after_the_third(self):
         state = ModeState()
         for trip in (1, 2, 3):
             state.mode = Mode.POINT
-            advance(state, only(Condition.TRIPPED), START * trip, CONFIG)
+            advance(state, only(ModeCondition.TRIPPED), START * trip, CONFIG)
             assert (state.mode, state.trips) == (Mode.SAFE, trip)
             attitude = Attitude((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 0.0, True)
             modes = set()
@@ -163,8 +164,8 @@ def known(angle_deg=0.0, rate_degps=0.0, axis=(0.48, 0.64, 0.6)):
 
 def judged(attitude, tripped=False, config=CONFIG, spin_radps=0.0, has_field=True, **state):
     holding = judge_conditions(attitude, spin_radps, tripped, has_field, ModeState(**state), config)
-    assert len(holding) == len(Condition)
-    return {condition.name.lower() for condition in Condition if holding[condition]}
+    assert len(holding) == len(ModeCondition)
+    return {condition.name.lower() for condition in ModeCondition if holding[condition]}
 
 
 def holding(attitude):

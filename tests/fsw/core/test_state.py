@@ -8,7 +8,7 @@ from batch_samples import search_under_way
 from flight_states import altered
 
 from fsw.core.actuation.wheel import WheelView
-from fsw.core.fdir.sensors.standstill import Displacement, Motion
+from fsw.core.fdir.sensors.standstill import Displacement, ReadingMotion
 from fsw.core.orbit.elements import Elements, Upload
 from fsw.core.packing import checksum, copy_state, field_names
 from fsw.core.state import FlightState
@@ -37,7 +37,8 @@ def run(make_world):
     first, batch = state.estimator.estimate.parameters, search_under_way()
     state = altered(state, estimator=replace(state.estimator, first=first, batch=batch))
     state = altered(state, wheel=WheelView(123.5, 229, 2e-4, -3e-4, 2, known=True))
-    motion = Motion(Displacement((3e-7, -2e-7, 1e-7), 4e-9), Displacement((0.002, 0.003, -0.001), 5e-5))
+    by_field, by_sun = Displacement((3e-7, -2e-7, 1e-7), 4e-9), Displacement((0.002, 0.003, -0.001), 5e-5)
+    motion = ReadingMotion(by_field, by_sun)
     state = altered(state, health=with_motion(state.health, motion))
     assert state.coil.fired_tick >= 0
     assert any(state.pulses.owed_impulse_body_nms)
@@ -64,7 +65,8 @@ def test_what_is_not_there_differs_from_what_is(run):
     without_estimate = altered(run, estimator=replace(run.estimator, estimate=None))
     without_first = altered(run, estimator=replace(run.estimator, first=None))
     without_ephemeris = altered(run, ephemeris=None)
-    without_motion, at_rest = (altered(run, health=with_motion(run.health, m)) for m in (None, Motion()))
+    motions = (None, ReadingMotion())
+    without_motion, at_rest = (altered(run, health=with_motion(run.health, motion)) for motion in motions)
     without_orbit = altered(run, orbit=None)
     without = (without_estimate, without_first, without_ephemeris, without_motion, without_orbit)
     sums = {checksum(state) for state in (run, at_rest, *without)}

@@ -9,7 +9,7 @@ from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, skew, transfo
 from fsw.core.estimation.dynamics.motion import BodyFields, BodyMotion, outer
 from fsw.core.estimation.dynamics.torque_maps import torque_rows
 from fsw.core.estimation.kalman import Matrix, combine, product
-from fsw.core.estimation.mekf_config import MekfConfig, Step
+from fsw.core.estimation.mekf_config import FilterStep, MekfConfig
 from fsw.core.estimation.parameters import Parameters, Rotor, estimated_rotor
 
 _IDENTITY = np.eye(6)
@@ -34,7 +34,7 @@ class Driven:
         return self.m_body_am2 == ZERO and self.doubted_am2 == ZERO
 
 
-def process_noise(driven: Driven, b_body_t: Vec3, config: MekfConfig, step: Step) -> Matrix:
+def process_noise(driven: Driven, b_body_t: Vec3, config: MekfConfig, step: FilterStep) -> Matrix:
     """The noise of a step; while a coil is driven also that of its dipole, known only to ``dipole_sigma``.
 
     Its error is constant over a tick, of which the step may be a piece, and independent of those of the other
@@ -61,7 +61,7 @@ KNOWN_RADPS = 0.05 * FAST_RADPS
 
 
 def transition_matrix(
-    motion: BodyMotion, around: BodyFields, m_driven: Vec3, rotor: Rotor, config: MekfConfig, step: Step
+    motion: BodyMotion, around: BodyFields, m_driven: Vec3, rotor: Rotor, config: MekfConfig, step: FilterStep
 ) -> Matrix:
     """The rows of attitude and rate of I + A h + (A h)^2 / 2, A being the system matrix, (6, n).
 

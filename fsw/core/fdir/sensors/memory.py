@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import final
 
 from fsw.core.algebra.vector import ZERO, Vec3
-from fsw.core.fdir.sensors.standstill import Motion
+from fsw.core.fdir.sensors.standstill import ReadingMotion
 from fsw.core.gate.measurements import Measurements
 
 DARK: Vec3 = (0.0, 0.0, 0.0)
@@ -23,7 +23,7 @@ class Memory:
     sun: Vec3 = ZERO
     field_still: int = 0
     sun_still: int = 0
-    motion: Motion | None = None
+    motion: ReadingMotion | None = None
 
 
 def remember(memory: Memory, measurements: Measurements) -> None:

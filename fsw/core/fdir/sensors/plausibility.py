@@ -17,7 +17,7 @@ from fsw.core.estimation.samples import coils_idle, sensed_sun, usable_cells, us
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.memory import Memory, remember
-from fsw.core.fdir.sensors.standstill import Motion, Steps, is_frozen, update_motion
+from fsw.core.fdir.sensors.standstill import ReadingMotion, Steps, is_frozen, update_motion
 from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.earth import RADIUS_M
 from fsw.core.orbit.ephemeris import Reference
@@ -108,7 +108,7 @@ def examine(
     steps = limits.steps
     if steps is not None:
         if memory.motion is None:
-            memory.motion = Motion()
+            memory.motion = ReadingMotion()
         update_motion(memory.motion, field_still, sun_still, estimate, reference, steps)
         field_still = is_frozen(memory.motion.of_field, field_still, steps.field_t)
         sun_still = is_frozen(memory.motion.of_sun, sun_still, steps.sun)

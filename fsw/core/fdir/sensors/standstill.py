@@ -48,7 +48,7 @@ class Displacement:
 
 @final
 @dataclass(slots=True)
-class Motion:
+class ReadingMotion:
     """Of the field, T, and of the Sun's unit vector."""
 
     of_field: Displacement = field(default_factory=Displacement)
@@ -56,7 +56,7 @@ class Motion:
 
 
 def update_motion(
-    motion: Motion,
+    motion: ReadingMotion,
     field_still: bool,
     sun_still: bool,
     estimate: Estimate | None,

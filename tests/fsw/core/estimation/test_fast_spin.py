@@ -17,7 +17,7 @@ from fsw.core.algebra.quaternion import from_dcm, rotate
 from fsw.core.algebra.vector import ZERO, scale, unit
 from fsw.core.estimation.dynamics.error_dynamics import NOT_DRIVEN
 from fsw.core.estimation.mekf import start
-from fsw.core.estimation.mekf_config import MOST_PIECES, Step, mekf_config, pieces_of_tick
+from fsw.core.estimation.mekf_config import MOST_PIECES, FilterStep, mekf_config, pieces_of_tick
 from fsw.core.estimation.parameters import Prior
 
 J = np.array([[0.93, 0.05, -0.03], [0.05, 1.0, 0.04], [-0.03, 0.04, 0.31]])
@@ -112,7 +112,7 @@ def test_without_a_torque_the_pieces_of_a_tick_add_its_noise():
     filters = config(torque_nm_rts=1e-3, attitude_sigma_rad=1e-9, rate_sigma_radps=1e-9)
     begun = start((1.0, 0.0, 0.0, 0.0), ZERO, filters)
     whole = predict(begun, RADIUS, ZERO, 0.0, ZERO, filters).covariance
-    piece, pieces = Step(filters, 5), begun
+    piece, pieces = FilterStep(filters, 5), begun
     for _ in range(5):
         pieces = predict_step(pieces, RADIUS, ZERO, 0.0, NOT_DRIVEN, filters, piece)
     np.testing.assert_allclose(pieces.covariance, whole, rtol=1e-6, atol=1e-15)

@@ -61,8 +61,8 @@ class TestHappenings:
             SensorHealth(Watch(FROZEN), Watch(SILENT), Pair(Standing.DISPUTED)), CoilHealth((1, 2, 3))
         )
         assert happenings(Health(), found) == [
-            (Event.SENSOR_ISOLATED, 100 + FROZEN),
-            (Event.SENSOR_ISOLATED, 200 + SILENT),
-            (Event.SENSORS_DISAGREE, 0),
-            *((Event.COIL_FAULT, 100 * number + number) for number in (1, 2, 3)),
+            Happening(Event.SENSOR_ISOLATED, 100 + FROZEN),
+            Happening(Event.SENSOR_ISOLATED, 200 + SILENT),
+            Happening(Event.SENSORS_DISAGREE, 0),
+            *(Happening(Event.COIL_FAULT, 100 * number + number) for number in (1, 2, 3)),
         ]

@@ -12,7 +12,7 @@ from fsw.core.algebra.vector import scale, sub
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.fdir.evidence import SIGMAS
-from fsw.core.fdir.sensors.standstill import Displacement, Motion, Steps, is_frozen, update_motion
+from fsw.core.fdir.sensors.standstill import Displacement, ReadingMotion, Steps, is_frozen, update_motion
 
 STEPS = Steps(field_t=2e-7, sun=4e-3, tick_s=0.5)
 OMEGA = (0.002, -0.003, 0.001)
@@ -60,7 +60,7 @@ def attitude(time_s):
 
 def after(ticks, motion=None, still=BOTH, steps=STEPS, **estimate):
     """The motion after these ticks, by default from rest."""
-    motion = Motion() if motion is None else motion
+    motion = ReadingMotion() if motion is None else motion
     for tick in range(ticks):
         time_s = (tick + 0.5) * steps.tick_s
         update_motion(motion, *still, estimated(attitude(time_s), **estimate), At(time_s), steps)
@@ -128,16 +128,16 @@ def test_what_rounds_to_the_same_never_looks_frozen():
 
 def test_only_what_stands_still_and_should_not_is_frozen():
     far, near = (Displacement((part, 0.0, 0.0)) for part in (1.0, 1e-12))
-    assert frozen(Motion(far, far), BOTH, STEPS) == (True, True)
-    assert frozen(Motion(far, near), BOTH, STEPS) == (True, False)
-    assert frozen(Motion(near, far), BOTH, STEPS) == (False, True)
-    assert frozen(Motion(far, far), (False, False), STEPS) == (False, False)
+    assert frozen(ReadingMotion(far, far), BOTH, STEPS) == (True, True)
+    assert frozen(ReadingMotion(far, near), BOTH, STEPS) == (True, False)
+    assert frozen(ReadingMotion(near, far), BOTH, STEPS) == (False, True)
+    assert frozen(ReadingMotion(far, far), (False, False), STEPS) == (False, False)
 
 
 def test_a_continuous_reading_never_stands_still():
     of_field, of_sun = with_values(STEPS, sun=0.0), with_values(STEPS, field_t=0.0)
-    assert frozen(Motion(), BOTH, of_field) == (False, True)
-    assert frozen(Motion(), BOTH, of_sun) == (True, False)
+    assert frozen(ReadingMotion(), BOTH, of_field) == (False, True)
+    assert frozen(ReadingMotion(), BOTH, of_sun) == (True, False)
     assert after(3, steps=of_field).of_sun == Displacement()
     assert after(3, steps=of_sun).of_field == Displacement()
 
