@@ -116,9 +116,18 @@ def healthy(estimate: Estimate) -> bool:
     """
     variances: list[float] = estimate.covariance.diagonal().tolist()
     positive = min(variances[:6]) > 0.0 and min(variances) >= 0.0
-    motion = sum(estimate.q_body_from_eci) + sum(estimate.omega_body_radps)
-    numbers = motion + sum(estimate.parameters.floats()) + sum(estimate.lag) + estimate.nis
-    return isfinite(numbers) and positive and sum(variances) < MAX_VARIANCE
+    numbers, variance = estimate.nis, 0.0
+    for part in (
+        estimate.q_body_from_eci,
+        estimate.omega_body_radps,
+        estimate.lag,
+        estimate.parameters.floats(),
+    ):
+        for number in part:
+            numbers += number
+    for one in variances:
+        variance += one
+    return isfinite(numbers) and positive and variance < MAX_VARIANCE
 
 
 def predict(
