@@ -2,7 +2,10 @@
 
 from typing import Any, ClassVar, Self
 
+from mypy_extensions import mypyc_attr
 
+
+@mypyc_attr(allow_interpreted_subclasses=True)
 class Value:
     """Equal by type and attributes, and shown by them. Never changed once it has been passed on.
 
