@@ -77,6 +77,7 @@ test: venv
 
 test-long: venv
 	$(bin)/pytest $(PYTEST_FLAGS) -m long
+	TORQUER_INTERPRETED=1 $(bin)/pytest $(PYTEST_FLAGS) -m 'interpreted and long'
 
 lint: venv
 	$(bin)/ruff check

@@ -30,7 +30,7 @@ LONG = "pytest.mark.long"
 """It stands in the very file that has long tests: see ``test_house.py``."""
 
 
-INTERPRETED = "pytest.mark.interpreted"
+INTERPRETED = ("pytest.mark.interpreted", "interpreted_alone()")
 
 refuse_patches(standing().modules)
 
@@ -48,11 +48,12 @@ def pytest_configure(config):
 
 def pytest_ignore_collect(collection_path, config):
     """Who wants the long or the interpreted tests alone need not import files that have none."""
-    mark = {"long": LONG, "interpreted": INTERPRETED}.get(config.option.markexpr.partition(" ")[0])
-    if mark is None or not collection_path.name.startswith("test_"):
+    marks = {"long": (LONG,), "interpreted": INTERPRETED}.get(config.option.markexpr.partition(" ")[0])
+    if marks is None or not collection_path.name.startswith("test_"):
         return None
-    has_some = mark in collection_path.read_text(encoding="utf-8")
-    return None if has_some or (mark == LONG and collection_path.is_relative_to(EXAMPLES)) else True
+    text = collection_path.read_text(encoding="utf-8")
+    has_some = any(mark in text for mark in marks)
+    return None if has_some or (LONG in marks and collection_path.is_relative_to(EXAMPLES)) else True
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -7,11 +7,14 @@ import os
 from random import Random
 
 import pytest
+from compiled_guard import interpreted_alone
 
 from hil_stub.bench import Bench, CoilBoard
 from hil_stub.coils import guard
 from hil_stub.coils.coil_driver import CoilDriver, CoilLimits
 from hil_stub.coils.interlock import boot
+
+pytestmark = interpreted_alone()
 
 REQUESTS = int(os.environ.get("TORQUER_ATTACK_REQUESTS", "20000"))
 SEED = int(os.environ.get("TORQUER_ATTACK_SEED", "20150327"))

@@ -87,6 +87,7 @@ GUARDS = {
 
 
 @pytest.mark.long
+@pytest.mark.interpreted
 @pytest.mark.parametrize("off", GUARDS.values(), ids=GUARDS)
 def test_without_the_guard_the_fault_is_seen(off, monkeypatch):
     row = next(row for row in ROWS if row.name == off.row)

@@ -4,6 +4,8 @@ from types import ModuleType
 
 import pytest
 
+from fsw.compiled import SWITCH, standing
+
 
 def refuse_patches(modules):
     """Let ``monkeypatch.setattr`` and ``delattr`` raise for what stands in one of these modules."""
@@ -32,3 +34,13 @@ def _modules_of(target):
         parts = target.split(".")
         return [".".join(parts[:end]) for end in range(1, len(parts))]
     return [target.__name__ if isinstance(target, ModuleType) else getattr(target, "__module__", None)]
+
+
+def interpreted_alone():
+    """The mark of a file whose classes inherit from compiled ones, which needs them interpreted.
+
+    A compiled run skips the file here, before it fails.
+    """
+    if standing().modules:
+        pytest.skip(f"make test runs it with {SWITCH}=1", allow_module_level=True)
+    return pytest.mark.interpreted

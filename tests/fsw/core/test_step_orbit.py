@@ -57,6 +57,7 @@ def test_an_ephemeris_of_what_is_no_number_is_made_anew(make_world, vector, brok
     world.fly_until_valid()
 
 
+@pytest.mark.interpreted
 @pytest.mark.long
 def test_after_a_time_without_a_position_the_old_estimate_is_not_the_present_one(make_world, monkeypatch):
     """Nothing has carried it on: it ends, and until a new one is proven no attitude is valid."""
@@ -79,6 +80,7 @@ def test_after_a_time_without_a_position_the_old_estimate_is_not_the_present_one
     world.fly_until_valid(3000)  # the Earth's shadow is in between
 
 
+@pytest.mark.interpreted
 def test_a_tick_without_a_position_ends_the_estimate(make_world, monkeypatch):
     world, there = make_world(), advance
     world.fly(40)

@@ -16,12 +16,15 @@ from itertools import product
 from typing import NamedTuple
 
 import pytest
+from compiled_guard import interpreted_alone
 from interlocks import numbers_of
 
 from fsw.wire.messages import CoilFire
 from hil_stub.coils import interlock
 from hil_stub.coils.guard import CLOCK_HZ, Guard
 from hil_stub.coils.interlock import CoilLimits
+
+pytestmark = interpreted_alone()
 
 TICK = 300
 JUMPS_MS = (500, 2500)

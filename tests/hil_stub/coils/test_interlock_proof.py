@@ -383,6 +383,7 @@ def cases(bugs: dict[str, Planting]) -> list:
     ]
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(("plant", "shared"), cases(UNSAFE))
 def test_a_planted_danger_is_seen_in_what_is_driven(plant, shared, monkeypatch):
     plant(monkeypatch)
@@ -390,6 +391,7 @@ def test_a_planted_danger_is_seen_in_what_is_driven(plant, shared, monkeypatch):
         prove(shared, exact=False)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(("plant", "shared"), cases(UNSAFE | INEXACT))
 def test_a_planted_bug_is_seen(plant, shared, monkeypatch):
     plant(monkeypatch)
@@ -397,6 +399,7 @@ def test_a_planted_bug_is_seen(plant, shared, monkeypatch):
         prove(shared)
 
 
+@pytest.mark.interpreted
 def test_a_planting_that_changes_nothing_passes(monkeypatch):
     """What is found is the bug, not the planting."""
     for plant in (

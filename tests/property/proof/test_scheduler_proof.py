@@ -325,6 +325,7 @@ UNSAFE = {
 
 
 @pytest.mark.long
+@pytest.mark.interpreted
 @pytest.mark.parametrize(("claim", "bug", "shared"), cases(UNSAFE))
 def test_a_planted_danger_is_seen_in_what_is_driven(search, small, claim, bug, shared):
     setup = claim(small[shared], bug)
@@ -332,6 +333,7 @@ def test_a_planted_danger_is_seen_in_what_is_driven(search, small, claim, bug, s
         search(setup)
 
 
+@pytest.mark.interpreted
 @pytest.mark.long
 @pytest.mark.parametrize("shared", BOTH, ids=["shared", "per coil"])
 @pytest.mark.parametrize("own_timers", [True, False], ids=["with own timers", "without"])
@@ -374,6 +376,7 @@ INEXACT = {
 
 
 @pytest.mark.long
+@pytest.mark.interpreted
 @pytest.mark.parametrize(("bug", "shared"), cases(INEXACT))
 def test_a_planted_bug_is_seen(search, small, bug, shared):
     setup = without_faults(small[shared], bug)

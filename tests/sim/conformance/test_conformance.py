@@ -257,6 +257,7 @@ IN_THE_BOARD = {
 }
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(("plant", "finds"), IN_THE_BOARD.values(), ids=IN_THE_BOARD)
 def test_a_fault_in_the_board_is_found(link_to, monkeypatch, plant, finds, failures):
     plant(monkeypatch)
@@ -264,6 +265,7 @@ def test_a_fault_in_the_board_is_found(link_to, monkeypatch, plant, finds, failu
     assert finds in found, found
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     "fault",
     [

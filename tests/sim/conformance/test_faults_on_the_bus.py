@@ -1,6 +1,7 @@
 """The conformance suite finds each planted fault of what a board sends and takes."""
 
 import pytest
+from compiled_guard import interpreted_alone
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
@@ -14,6 +15,8 @@ from hil_stub.bench import Bench, CoilBoard
 from hil_stub.coils.coil_driver import CoilLimits
 from sim.conformance.board_under_test import BoardLimits
 from sim.conformance.check_runner import run_checks
+
+pytestmark = interpreted_alone()
 
 
 class FaultyBench(Bench):

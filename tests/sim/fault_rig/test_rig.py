@@ -104,6 +104,7 @@ def test_an_exception_in_a_step_is_noted_and_ends_fsw(flown):
     assert "tick 10" in record.crash
 
 
+@pytest.mark.interpreted
 def test_a_board_without_guards_is_found_out(rig, bounds, monkeypatch):
     monkeypatch.setattr("hil_stub.coils.guard.judge", lambda state, asked, tick, limits: None)
     monkeypatch.setattr("hil_stub.coils.guard.accept", take_unlocked)

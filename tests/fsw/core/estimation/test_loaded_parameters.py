@@ -130,6 +130,7 @@ class TestLoad:
         assert replace(after, estimate=None, first=None, loaded=()) == replace(before, estimate=None)
         assert after.loaded == (self.NUMBER,)
 
+    @pytest.mark.interpreted
     def test_a_start_takes_what_was_loaded_and_keeps_what_it_has_found(self, both, monkeypatch):
         """As from a batch of samples of Sun cells, which finds parameters with attitude and rate."""
         before, after, config = both

@@ -161,6 +161,7 @@ class TestJudgement:
         attitude = fdir.judge(health, state.estimator, state.attitude, evidence, config.fdir)
         assert attitude.valid is valid
 
+    @pytest.mark.interpreted
     def test_what_the_filter_knows_of_a_cell_that_is_isolated_is_forgotten_once(self, judged, monkeypatch):
         """Whoever judges the sensors; of which cells, and how, is the cells' own."""
         named = [CellWatch(Watch(SensorFault.STRENGTH)), CellWatch()]
@@ -175,6 +176,7 @@ class TestJudgement:
         judged(health)
         assert forgotten == [((0, 0), named)]
 
+    @pytest.mark.interpreted
     @pytest.mark.parametrize(
         "judgement",
         [
@@ -193,6 +195,7 @@ class TestJudgement:
         (health, _, _), _ = judged(before)
         assert health.coils == with_values(shown, older=NONE_OLDER)
 
+    @pytest.mark.interpreted
     @pytest.mark.parametrize(
         ("pair", "believed"),
         [
@@ -234,6 +237,7 @@ class TestJudgement:
 
         return judge
 
+    @pytest.mark.interpreted
     @pytest.mark.parametrize(
         ("before", "valid"),
         [
@@ -255,6 +259,7 @@ class TestJudgement:
         assert attitude == with_values(state.attitude, valid=valid)
         assert estimator.estimate.trace is None
 
+    @pytest.mark.interpreted
     def test_nor_does_what_is_taken_show_the_attitude(self, in_doubt, make_world):
         limit = make_world().config.fdir.sensors.weights.blind_ticks
         for blind_ticks, valid in ((limit - 1, True), (limit, False)):
@@ -262,6 +267,7 @@ class TestJudgement:
             assert health.sensors.pair.blind_ticks == blind_ticks + 1
             assert attitude.valid is valid
 
+    @pytest.mark.interpreted
     def test_enough_doubt_ends_the_filter(self, judged, monkeypatch):
         disputed = SensorHealth(pair=Pair(Standing.DISPUTED, ended=True))
         monkeypatch.setattr(fdir.sensor_health, "judge_sensors", judgement_of(disputed))

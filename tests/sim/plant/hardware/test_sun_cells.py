@@ -85,6 +85,7 @@ def test_the_earth_s_light_is_that_of_its_view_also_in_the_shade():
     assert currents == pytest.approx(np.array(measured(CELLS, SUN)[0]) + light)
 
 
+@pytest.mark.interpreted
 def test_it_varies_over_the_clouds_as_a_markov_process(monkeypatch):
     monkeypatch.setattr(sun_cells, "CLOUDS_S", 3.0)
     one = replace(CELLS, cells=CELLS.cells[1:2], albedo=0.3, albedo_spread=0.2)

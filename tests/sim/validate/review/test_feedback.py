@@ -16,12 +16,14 @@ def missed(study):
     return {one.claim.id for one in outcomes if one.verdict is not ClaimVerdict.PASS}
 
 
+@pytest.mark.interpreted
 def test_an_observer_that_is_not_told_its_torque_points_as_well_but_lags(monkeypatch):
     assert missed(laws.sphere()) == set()
     monkeypatch.setattr(sphere, "_given", lambda dipole_am2, most_am2: ZERO)
     assert missed(laws.sphere()) == {"review.feedback.sphere.pd"}
 
 
+@pytest.mark.interpreted
 def test_a_delayed_law_with_half_of_its_attitude_points_as_well_but_takes_another_way(monkeypatch):
     """The gravity gradient holds the body besides."""
     assert missed(laws.delayed()) == set()

@@ -16,6 +16,7 @@ def verdict(name):
     return outcome.verdict
 
 
+@pytest.mark.interpreted
 def test_panels_without_their_difference_miss_the_sun(monkeypatch):
     assert verdict("sun_panels") is ClaimVerdict.PASS
     whole = sun_panels.panel_torque
@@ -25,6 +26,7 @@ def test_panels_without_their_difference_miss_the_sun(monkeypatch):
     assert verdict("sun_panels") is ClaimVerdict.FAIL
 
 
+@pytest.mark.interpreted
 def test_with_half_of_its_damping_the_critical_law_is_slower_without_the_gravity_gradient(monkeypatch):
     """With it the law only comes nearer."""
     both = ("sun_critical", "sun_critical_free")

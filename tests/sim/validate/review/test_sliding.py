@@ -1,5 +1,7 @@
 """Claims on sliding control: a law without what makes it up misses them."""
 
+import pytest
+
 from fsw.core.algebra.vector import ZERO
 from fsw.core.laws.sliding import super_twisting
 from sim.campaign.claim import ClaimVerdict
@@ -12,6 +14,7 @@ def verdict():
     return outcome.verdict
 
 
+@pytest.mark.interpreted
 def test_super_twisting_without_its_integral_is_another_law(monkeypatch):
     assert verdict() is ClaimVerdict.PASS
     monkeypatch.setattr(super_twisting, "_grown", lambda *words: ZERO)

@@ -20,6 +20,7 @@ def missed(*names):
     return {one.claim.id.rpartition(".")[2] for one in outcomes if one.verdict is not ClaimVerdict.PASS}
 
 
+@pytest.mark.interpreted
 def test_without_the_error_of_the_spin_the_relay_turns_the_momentum_but_does_not_spin(monkeypatch):
     names = ("relay", "relay_spin", "relay_nutation")
     assert missed(*names) == set()
@@ -28,6 +29,7 @@ def test_without_the_error_of_the_spin_the_relay_turns_the_momentum_but_does_not
     assert missed(*names) == {"relay_spin", "relay_nutation"}
 
 
+@pytest.mark.interpreted
 def test_without_its_first_term_the_law_of_three_leaves_the_nutation(monkeypatch):
     names = ("three_term", "three_term_spin", "three_term_nutation")
     assert missed(*names) == set()
@@ -42,6 +44,7 @@ def test_without_its_first_term_the_law_of_three_leaves_the_nutation(monkeypatch
     assert missed(*names) == {"three_term_nutation"}
 
 
+@pytest.mark.interpreted
 def test_without_the_term_of_the_spin_the_law_of_three_spins_up_by_the_momentum_alone(monkeypatch):
     """It comes to the same end, at half the speed."""
     names = ("three_term", "three_term_spin", "three_term_nutation")
@@ -56,6 +59,7 @@ def test_without_the_term_of_the_spin_the_law_of_three_spins_up_by_the_momentum_
     assert three_term.study().conclude([three_term.decay_ratio()])[0].verdict is ClaimVerdict.FAIL
 
 
+@pytest.mark.interpreted
 def test_without_the_coil_that_holds_it_the_spin_stays_as_it_was(monkeypatch):
     names = ("y_thomson", "y_thomson_spin")
     assert missed(*names) == set()
@@ -63,6 +67,7 @@ def test_without_the_coil_that_holds_it_the_spin_stays_as_it_was(monkeypatch):
     assert missed(*names) == set(names)
 
 
+@pytest.mark.interpreted
 def test_half_the_gain_misses_its_direction(monkeypatch):
     whole = spin_axis.reorientation_dipole
     monkeypatch.setattr(
@@ -71,6 +76,7 @@ def test_half_the_gain_misses_its_direction(monkeypatch):
     assert missed("reorientation") == {"reorientation"}
 
 
+@pytest.mark.interpreted
 def test_half_of_one_of_two_terms_misses_the_target(monkeypatch):
     def halved(b, target, axis, k, limit):
         u, v = (axis + 1) % 3, (axis + 2) % 3

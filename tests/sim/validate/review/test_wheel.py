@@ -26,6 +26,7 @@ def test_a_law_of_the_wrong_sign_would_miss_its_claim():
     assert wrong > 1.2 * right
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(("axis", "name"), [(0, "wheel_integral_yaw"), (2, "wheel_integral_pitch")])
 def test_without_one_of_its_integrals_the_turn_about_that_axis_stays(monkeypatch, axis, name):
     study = next(one for one in wheel.studies() if one.id == f"review.wheel.{name}")

@@ -118,6 +118,7 @@ class TestSettled:
         sigmas = np.sqrt(straight.covariance.diagonal()[0:6])
         assert (abs(error(estimate, q, omega) - error(straight, q, omega)) / sigmas).max() < 0.5
 
+    @pytest.mark.interpreted
     def test_one_that_goes_on_and_on_is_none(self, monkeypatch):
         samples, _, _ = flight(*STARTS[0], 25)
         monkeypatch.setattr(search_module, "SETTLED", -1.0)
@@ -295,6 +296,7 @@ class TestByTicks:
         assert (abs(there) / sigmas).max() < 0.01  # the first steps were with fewer samples
         np.testing.assert_allclose(np.sqrt(estimate.covariance.diagonal()[0:6]), sigmas, rtol=0.01)
 
+    @pytest.mark.interpreted
     def test_no_tick_does_more_than_its_pieces(self, samples, monkeypatch):
         legs = []
         monkeypatch.setattr(search_module, "flown", partial(noted, legs))
@@ -313,6 +315,7 @@ class TestByTicks:
         assert all(by_tick[1:][begins] <= PIECES)
         assert {one[0] for one in passes if one} == set(Stage) - {Stage.ENDED}
 
+    @pytest.mark.interpreted
     def test_an_estimate_too_uncertain_for_the_filter_is_left_for_more_samples(self, samples, monkeypatch):
         asked = []
 
@@ -326,6 +329,7 @@ class TestByTicks:
         assert estimate is asked[1]
         assert len(batch.samples) > len(samples)
 
+    @pytest.mark.interpreted
     def test_of_as_many_samples_as_there_can_be_it_is_taken(self, monkeypatch):
         monkeypatch.setattr(first_module, "linear", lambda *_: False)
         monkeypatch.setattr(first_module, "MOST", 21)

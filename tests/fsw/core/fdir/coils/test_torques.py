@@ -32,6 +32,7 @@ def judged(estimate, believed=WEAK_COIL, health=HEALTH):
     return health, state
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("by_pulses", "by_gain", "fault"),
     [
@@ -110,6 +111,7 @@ def ended(view=ENDED, estimate=START, health=HEALTH):
     return health, state
 
 
+@pytest.mark.interpreted
 def test_a_pulse_that_ends_is_traced_with_the_gravity_of_its_orbit(monkeypatch):
     """3 mu/r^3 of a circular orbit is thrice the square of its angular rate: here 1.055 mrad/s."""
     seen = []
@@ -152,6 +154,7 @@ def test_what_the_oldest_pulse_of_a_coil_has_shown_is_kept_with_that_coil():
     assert [older.parts.pulses for older in health.older] == [0, 0, 1]
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("faults", "gain_nats", "named"),
     [

@@ -63,6 +63,7 @@ def test_along_the_field_no_dipole_is_wasted(axis):
     assert np.abs(boxed_dipole(tuple(torque), tuple(b), MOST)).max() > 0.01
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("most", [0, 1, 4])
 def test_the_search_ends_after_so_many_changes_of_a_coil(monkeypatch, most):
     """At most two more, within a round of all three."""

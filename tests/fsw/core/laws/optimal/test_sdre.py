@@ -106,6 +106,7 @@ def test_where_the_course_leaves_all_bounds_nothing_is_asked_for(bench, times, i
     assert np.isfinite(found.m_body_am2).all()
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("last", [np.inf, np.nan])
 def test_a_course_that_only_ends_beyond_all_bounds_is_no_solution(bench, monkeypatch, last):
     settings = bench.scheduled(bench.Body(np.array(INERTIA), most_am2=2.0), 1.0, "sdre")
@@ -150,6 +151,7 @@ def test_the_cost_at_the_end_is_that_of_orbital_axes(bench, turned, steps):
     assert min(left(m + one) for one in by * np.vstack([np.eye(3), -np.eye(3)])) > left(m)
 
 
+@pytest.mark.interpreted
 def test_the_fields_looked_at_are_those_in_the_middle_of_the_steps_ahead(bench, monkeypatch):
     """To the node of the table where they end, half an orbit on."""
     seen = []

@@ -45,6 +45,7 @@ def test_the_rate_is_that_of_the_orbital_frame():
     assert orbit_ahead(model, times.tolist()).rate_radps == pytest.approx(np.abs(expected), rel=1e-5)
 
 
+@pytest.mark.interpreted
 def test_none_where_the_orbit_has_no_position(monkeypatch):
     monkeypatch.setattr("fsw.core.laws.plan.orbit_ahead.state_eci", lambda orbit, unix_s: None)
     model = model_of(FieldKind.DIRECT_DIPOLE)

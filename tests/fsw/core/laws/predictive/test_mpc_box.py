@@ -134,6 +134,7 @@ def test_of_a_turned_body_the_dipole_is_in_its_axes(asked, bench, turned, table)
     assert found == pytest.approx(c @ gain @ x, rel=1e-2, abs=1e-2 * np.abs(gain @ x).max())
 
 
+@pytest.mark.interpreted
 def test_the_programme_ends_in_the_cost_of_its_last_node(bench, monkeypatch):
     """A quarter of an orbit ahead."""
     ends = []

@@ -48,6 +48,7 @@ def flight(bench, monkeypatch):
     return fly
 
 
+@pytest.mark.interpreted
 @BOTH
 def test_it_takes_energy_away(flight, law, name, kind):
     """Nearly as much as coils at their limits can against the rate normal to the field."""
@@ -56,6 +57,7 @@ def test_it_takes_energy_away(flight, law, name, kind):
     assert np.abs(flown.m_body).max() <= MOST_AM2
 
 
+@pytest.mark.interpreted
 @pytest.mark.long
 def test_the_rule_saves_most_of_the_search_and_loses_little(flight):
     """The source: a stop at a sufficient fall of the cost."""
@@ -102,6 +104,7 @@ def test_no_step_of_a_plan_is_shorter_than_a_tick(asked, law, name, kind):
     assert short == whole
 
 
+@pytest.mark.interpreted
 def test_the_reference_begins_at_the_damping_laws_course(flight, monkeypatch):
     """With no search at all its dipole is that of the law."""
     monkeypatch.setattr(tumbling, "LENGTHS", np.zeros(1))
@@ -137,6 +140,7 @@ def test_numbers_out_of_range_are_refused(gains):
         NmpcGains(**gains)
 
 
+@pytest.mark.interpreted
 def test_a_search_may_end_at_the_old_cost_less_the_fall_asked_for(asked, monkeypatch):
     """J(t - dt) - gamma |omega|^2, gamma relative to the mean moment; six seconds into the old plan."""
     enough = []
@@ -166,6 +170,7 @@ def test_what_is_planned_for_is_what_is_known(bench, turned):
     assert case.omega_body_radps == pytest.approx(np.array(RATE))
 
 
+@pytest.mark.interpreted
 @BOTH
 @pytest.mark.parametrize(
     ("rate_radps", "horizon_s"),

@@ -146,6 +146,7 @@ def test_in_point_a_pulse_is_asked_for_as_it_is_without_taking_off_the_residual_
     assert asked.m_body_am2 == ZERO
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize(
     ("gains", "told"),
     [
@@ -196,12 +197,14 @@ class TestAhead:
         times = self.middle_unix_s + step_s * np.asarray(steps)
         return orbit_ahead(FAR_SIGHTED.ephemeris, times.tolist())
 
+    @pytest.mark.interpreted
     def test_a_pulse_acts_in_the_field_of_its_middle(self, told):
         pulses, ahead = FAR_SIGHTED.control.pulse_model, told["ahead"]
         expected = kicks(pulses, self.orbit_at(np.arange(len(ahead))).b_orbit_t)
         for k in range(1, len(ahead)):
             assert ahead[k].kicks == pytest.approx(expected[k], abs=4e-3 * np.abs(expected).max())
 
+    @pytest.mark.interpreted
     def test_between_two_the_residual_dipole_and_the_changing_rate_move_it(self, told, dipole):
         """G (m_r x b) - (w0' h, w0' h^2 / 2) e3."""
         ahead, problem = told["ahead"], FAR_SIGHTED.control.pulse_model.problem
@@ -217,6 +220,7 @@ class TestAhead:
             assert found.drift == pytest.approx(wanted, rel=0.02, abs=1e-3 * h * np.abs(rate_changes).max())
         assert np.abs(h * rate_changes).max() > 1e-8
 
+    @pytest.mark.interpreted
     def test_after_those_searched_the_field_is_looked_at_step_by_step_to_the_horizon(self, told):
         """In the middle of each step of the regulator, which begins where the last one searched ends."""
         later_t, table = told["end"][0], FAR_SIGHTED.control.schedules["pulse_mpc"]
@@ -227,6 +231,7 @@ class TestAhead:
         expected = self.orbit_at(middles_s / pulses.problem.step_s).b_orbit_t
         assert later_t == pytest.approx(expected, abs=0.01 * np.abs(expected).max())
 
+    @pytest.mark.interpreted
     def test_at_the_end_stands_what_the_regulator_of_a_whole_orbit_has_there(self, told):
         later_t, last = told["end"]
         table, pulses = FAR_SIGHTED.control.schedules["pulse_mpc"], FAR_SIGHTED.control.pulse_model

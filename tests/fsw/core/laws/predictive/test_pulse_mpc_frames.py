@@ -41,6 +41,7 @@ def told(monkeypatch):
     return at
 
 
+@pytest.mark.interpreted
 def test_of_each_pulse_fired_now_it_is_the_change_of_rate_turned_back_from_the_body(told):
     """J^-1 (T_p m x b) in body axes, by numpy."""
     control, inputs, seen = told(TICK, SECTIONS)
@@ -51,6 +52,7 @@ def test_of_each_pulse_fired_now_it_is_the_change_of_rate_turned_back_from_the_b
         assert rotate(Q, tuple(kick.tolist())) == pytest.approx(expected, rel=1e-6, abs=1e-14)
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("tick", [500, 5000, 20000])
 def test_what_is_left_after_the_last_of_them_is_the_regulators_cost_over_the_same_time(told, tick):
     """In the direct dipole's field.

@@ -19,6 +19,7 @@ def test_a_regulator_that_learns_nothing_misses_its_claim():
     assert claims_of(regulators.disturbed(), (learned,) * 4) == ["FAIL", "FAIL", "FAIL"]
 
 
+@pytest.mark.interpreted
 def test_without_its_functions_of_twice_the_latitude_a_torque_of_that_kind_is_not_learned(monkeypatch):
     """The torque of light has no such part: its claims do not notice."""
     whole = disturbed.functions

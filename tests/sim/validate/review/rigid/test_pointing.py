@@ -26,6 +26,7 @@ def test_each_decays_as_claimed_and_the_limit_is_near(name):
     assert not found.claim.wide
 
 
+@pytest.mark.interpreted
 def test_half_a_gain_about_one_axis_is_missed(monkeypatch):
     whole = pd.pd_dipole
 
