@@ -14,8 +14,8 @@ PACKAGES = ("fsw", "hil_stub", "sim", "torquer")
 
 CALCULATION = {
     "bisect", "collections", "copy", "dataclasses", "enum", "functools", "marshal", "math", "operator", "re",
-    "struct", "types", "typing", "zlib",
-    "numpy", "scipy.linalg.lapack", "filterpy.kalman", "sgp4.api", "sgp4.io",
+    "mypy_extensions", "struct", "types", "typing", "zlib",
+    "numpy", "filterpy.kalman", "sgp4.api", "sgp4.io",
 }  # fmt: skip
 FORBIDDEN_NAMES = {
     "__import__", "breakpoint", "compile", "delattr", "eval", "exec", "globals", "hash", "id", "input",
