@@ -1,6 +1,7 @@
 # make sil    make the environment .venv and fly the default scenario
-# make test   the tests, but for the long ones, those that need it interpreted: some four minutes
-# TORQUER_INTERPRETED=1 make ...   nothing is compiled, all runs interpreted
+# make test   the tests, but for the long ones, interpreted: some four minutes
+# make compiled   compile the flight code, as far as it is in the group: half a minute
+# make test-compiled   the golden logs by the compiled flight code
 # make test-long   those of over a second: many orbits, processes, waits in real time; on a CAN interface where there is one: a quarter of an hour
 # make lint   style, types, layers, generated code, pages and pictures
 # make validate   compute every claim and reference figure, into docs/validation.md: some hours; stopped, it goes on where it was
@@ -42,12 +43,12 @@ compiled := .venv/.compiled
 pip := TORQUER_INTERPRETED=1 $(bin)/pip install --quiet --disable-pip-version-check
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv sil test test-long lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate validate-recorded same-flights fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv compiled sil test test-compiled test-long lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate validate-recorded same-flights fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
 
-venv: $(installed) $(kernel) $(if $(TORQUER_INTERPRETED),,$(compiled))
+venv: $(installed) $(kernel)
 
 $(installed): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit("torquer needs Python 3.11 or newer: make PYTHON=python3.11 ..." if sys.version_info < (3, 11) else 0)'
@@ -65,19 +66,24 @@ $(compiled): tools/compile_group.py $(shell find fsw hil_stub sim -name '*.py') 
 	@$(bin)/python tools/compile_group.py
 	@touch $@
 
+compiled: venv $(compiled)
+	@$(bin)/python tools/compile_group.py --check
+
 sil: venv
 	$(bin)/torquer sil
 
 # a worker, a core
 test test-long: export OPENBLAS_NUM_THREADS = 1
+test test-long: export TORQUER_INTERPRETED = 1
 
 test: venv
 	$(bin)/pytest $(PYTEST_FLAGS)
-	TORQUER_INTERPRETED=1 $(bin)/pytest $(PYTEST_FLAGS) -m 'interpreted and not long'
+
+test-compiled: compiled
+	$(bin)/pytest -q -rs tests/golden
 
 test-long: venv
 	$(bin)/pytest $(PYTEST_FLAGS) -m long
-	TORQUER_INTERPRETED=1 $(bin)/pytest $(PYTEST_FLAGS) -m 'interpreted and long'
 
 lint: venv
 	$(bin)/ruff check

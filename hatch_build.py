@@ -81,7 +81,7 @@ class CustomBuildHook(BuildHookInterface):  # type: ignore[misc]  # hatchling is
         return [TARGET]
 
     def _flight_code(self) -> list[str]:
-        if os.environ.get("TORQUER_INTERPRETED", "0") not in ("", "0"):
+        if os.environ.get("TORQUER_COMPILED", "0") in ("", "0"):
             return []
         sys.path.insert(0, str(Path(self.root, "tools")))
         from compile_group import FOLDER, CompileError, build  # noqa: PLC0415  (of the sources that are built)
