@@ -35,9 +35,12 @@ from sim.record.run_dir import replace_file
 ROOT = Path(__file__).resolve().parent.parent
 SCENARIOS = "sim/scenario/shipped"
 NO_FIGURES = frozenset(
-    {"wall_seconds", "realtime_factor", "wall_s", "worst step ms", "code", "otherwise_flown", "injected"}
+    {
+        "wall_seconds", "realtime_factor", "wall_s", "worst step ms", "code", "algebra", "otherwise_flown",
+        "injected",
+    }  # fmt: skip
 )
-"""Of a summary or a row of faults: the time that the computer took, the digest of the code, and words."""
+"""Of a summary or a row of faults: the time that the computer took, what code computed it, and words."""
 DIGESTS = """
 from sim.campaign.code_digest import code_digest
 from sim.fault_table.campaign import FAULT_CODE
