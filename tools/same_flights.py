@@ -36,9 +36,15 @@ ROOT = Path(__file__).resolve().parent.parent
 SCENARIOS = "sim/scenario/shipped"
 NO_FIGURES = frozenset(
     {
-        "wall_seconds", "realtime_factor", "wall_s", "worst step ms", "code", "algebra", "otherwise_flown",
+        "wall_seconds",
+        "realtime_factor",
+        "wall_s",
+        "worst step ms",
+        "code",
+        "algebra",
+        "otherwise_flown",
         "injected",
-    }  # fmt: skip
+    }
 )
 """Of a summary or a row of faults: the time that the computer took, what code computed it, and words."""
 DIGESTS = """
