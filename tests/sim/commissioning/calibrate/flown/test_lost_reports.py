@@ -45,5 +45,5 @@ def test_dipoles_are_as_sure_as_the_reports_that_are_left(flown, part, tmp_path)
 def test_a_lost_report_that_is_taken_for_a_coil_at_rest_makes_them_wrong_and_sure(
     flown, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr(coil_axes, "_perhaps_turned", lambda estimate, by_radps: estimate)
+    monkeypatch.setattr(coil_axes, "_doubt_rate", lambda estimate, by_radps: None)
     assert sigmas_off(with_lost(flown, 0.1, tmp_path / "bus.log")).max() > 8.0
