@@ -38,6 +38,7 @@ def build_kernel(root: Path) -> Path:
     """
     import numpy as np  # noqa: PLC0415  (of the environment that builds)
 
+    part = root / f"{TARGET}.part"  # a build that is killed leaves the binary as it was
     digest = hashlib.sha256((root / SOURCE).read_bytes()).hexdigest()
     folders = {sysconfig.get_path("include"), sysconfig.get_path("platinclude"), np.get_include()}
     words = [
@@ -48,7 +49,7 @@ def build_kernel(root: Path) -> Path:
         *(f"-I{folder}" for folder in sorted(folders)),
         str(root / SOURCE),
         "-o",
-        str(root / TARGET),
+        str(part),
     ]
     try:
         done = subprocess.run(words, capture_output=True, text=True, check=False)
@@ -56,7 +57,7 @@ def build_kernel(root: Path) -> Path:
         raise KernelError(f"{words[0]}: {error.strerror}") from None
     if done.returncode:
         raise KernelError(done.stderr.strip() or f"{words[0]} ended with exit code {done.returncode}")
-    return root / TARGET
+    return part.replace(root / TARGET)
 
 
 class CustomBuildHook(BuildHookInterface):  # type: ignore[misc]  # hatchling is not there where tools run
