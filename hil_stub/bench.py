@@ -16,7 +16,7 @@ from hil_stub.sensors.sun_sensor import SunSensor
 DEADMAN_MS: Final = 5000
 """Time without ``SYNC`` after which a board on a bench switches off, by default."""
 
-LEVEL_A: Final = (0.1, 0.2, 0.3)
+LEVEL_A: tuple[float, float, float] = (0.1, 0.2, 0.3)
 """Current at levels 1, 2, 3 [A], by default."""
 
 

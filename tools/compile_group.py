@@ -42,14 +42,9 @@ from fsw.compiled import (
     standing,
 )
 
-GROUP = (
-    "fsw/core/algebra/*.py",
-    "fsw/core/gate/*.py",
-    "fsw/wire/*.py",
-    "sim/plant/rotation.py",
-)
+GROUP = ("fsw/core/**/*.py", "fsw/wire/*.py", "hil_stub/**/*.py", "sim/plant/**/*.py")
 """What is compiled, as one group: calls within it are direct, a call into it or out of it costs."""
-INTERPRETED: tuple[str, ...] = ()
+INTERPRETED = ("hil_stub/__main__.py", "sim/plant/__main__.py")
 """Within those, what stays interpreted."""
 OPTIMISATION = ("-O2", "-g0", "-fno-fast-math", "-ffp-contract=off")
 """No contraction: a product and a sum are rounded each by itself, as Python does it."""

@@ -82,13 +82,13 @@ def _square(q: Quaternion) -> float:
 MONITORS: tuple[tuple[Monitor, Callable[[MonitorInput], bool]], ...] = (
     (
         Monitor.ATTITUDE_FINITE,
-        lambda w: isfinite(sum(w.attitude.q_body_from_orbit) + sum(w.attitude.omega_body_orbit_radps)),
+        lambda w: isfinite(sum(w.attitude.q_body_from_orbit, sum(w.attitude.omega_body_orbit_radps, 0.0))),
     ),
     (
         Monitor.QUATERNION_UNIT,
         lambda w: abs(_square(w.attitude.q_body_from_orbit) - 1.0) < UNIT_TOLERANCE,
     ),
-    (Monitor.OWED_FINITE, lambda w: isfinite(sum(w.owed_impulse_body_nms))),
+    (Monitor.OWED_FINITE, lambda w: isfinite(sum(w.owed_impulse_body_nms, 0.0))),
     (Monitor.FIELD_FRESH, lambda w: w.field_age_ticks < w.stale_after_ticks),
     (Monitor.COIL_STATUS_FRESH, lambda w: w.status_age_ticks < w.stale_after_ticks),
     (Monitor.COIL_AS_COMMANDED, lambda w: not w.unexpected_drive),

@@ -46,7 +46,7 @@ class DipoleDrive(Value):
         self.fraction = fraction
 
 
-_NONE: Final[Vec3] = (0.0, 0.0, 0.0)
+_NONE: Vec3 = (0.0, 0.0, 0.0)
 
 
 class DipoleDriver:

@@ -10,7 +10,7 @@ _LOW: Final = -2.0
 _HIGH: Final = 2.0 - 2.0**-14
 """Range of the signals ``s_x``, ``s_y``, ``s_z``."""
 
-_DARK: Final = (0.0, 0.0, 0.0)
+_DARK: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 class SunSensor:

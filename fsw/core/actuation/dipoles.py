@@ -110,7 +110,7 @@ def saturate(m_body_am2: Vec3, config: DipoleConfig) -> CoilDipole:
     if config.coils_from_body is not None:
         m_body_am2 = transform(config.coils_from_body, m_body_am2)
     fractions = scale(1.0 / config.full_scale_am2, m_body_am2)
-    if not isfinite(sum(fractions)):
+    if not isfinite(sum(fractions, 0.0)):
         return CoilDipole(0.0, 0.0, 0.0)
     most = max(abs(fractions[0]), abs(fractions[1]), abs(fractions[2]))
     x, y, z = scale(MOST / most, fractions) if most > MOST else fractions

@@ -128,5 +128,5 @@ def mean_misfit(means: tuple[float, ...], weights: EvidenceWeights) -> float:
     """
     b1, b2, b3, s1, s2, s3 = means
     of_field, of_sun = weights.lasting
-    most = max(sum([b1 * b1, b2 * b2, b3 * b3]) / of_field, sum([s1 * s1, s2 * s2, s3 * s3]) / of_sun)
+    most = max((b1 * b1 + b2 * b2 + b3 * b3) / of_field, (s1 * s1 + s2 * s2 + s3 * s3) / of_sun)
     return 0.5 * weights.averaged * most / INFLATION

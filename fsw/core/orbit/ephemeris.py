@@ -197,7 +197,7 @@ def plausible(reference: Reference) -> bool:
         LEAST_RADIUS_M < reference.radius_m < MOST_RADIUS_M
         and norm(reference.b_eci_t) < MOST_FIELD_T
         and 0.9 < norm(reference.sun_eci) < 1.1
-        and isfinite(sum(reference.q_orbit_from_eci) + reference.orbit_rate_radps)
+        and isfinite(sum(reference.q_orbit_from_eci, 0.0) + reference.orbit_rate_radps)
     )
 
 

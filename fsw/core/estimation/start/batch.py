@@ -49,7 +49,7 @@ class SampleBatch:
     @property
     def span_s(self) -> float:
         """From the first sample to the last."""
-        return sum([sample.since_s for sample in self.samples[1:]])
+        return sum([sample.since_s for sample in self.samples[1:]], 0.0)
 
     @property
     def lit(self) -> int:

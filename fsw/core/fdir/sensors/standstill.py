@@ -96,6 +96,6 @@ def _move(moved: Displacement, v_eci: Vec3, rate_eci: Vec3, estimate: Estimate, 
     """Add what a vector has moved by in one more tick."""
     q, omega = estimate.q_body_from_eci, estimate.omega_body_radps
     rate_body = sub(rotate(q, rate_eci), cross(omega, rotate(q, v_eci)))
-    sigma_radps = sqrt(sum(estimate.covariance.diagonal()[3:6].tolist()))
+    sigma_radps = sqrt(sum(estimate.covariance.diagonal()[3:6].tolist(), 0.0))
     moved.by_body = add(moved.by_body, scale(tick_s, rate_body))
     moved.sigma += sigma_radps * norm(v_eci) * tick_s

@@ -119,7 +119,7 @@ def _planned(
     going_on = known and 0.0 <= age_s < 2.0 * step_s
     old = np.array(memory[2:]).reshape(STEPS, 3) if going_on else np.zeros((STEPS, 3))
     start = np.concatenate([old[1:], old[-1:]]) if steepness is None else damping_course(case)
-    fall = gains.gamma * sum(config.inertia_kgm2[k][k] for k in range(3)) / 3.0
+    fall = gains.gamma * sum((config.inertia_kgm2[k][k] for k in range(3)), 0.0) / 3.0
     enough = -inf
     if going_on and gains.gamma >= 0.0:
         enough = memory[1] - fall * dot(moving.omega_body_radps, moving.omega_body_radps)
