@@ -228,7 +228,7 @@ def test_ticks_bear_the_epoch_and_the_rate(sil_run, bus):
     epoch_s = 1709251140
     assert times[0] == epoch_s * 1_000_000
     assert sorted(set(times)) == [epoch_s * 1_000_000 + tick * 100_000 for tick in range(1088)]
-    assert of(frames, Sync)[605] == (605, epoch_s + 60)
+    assert of(frames, Sync)[605] == Sync(tick=605, unix_time_s=epoch_s + 60)
 
 
 def test_the_epoch_of_a_tle_is_its_own_rounded_up(run, bus):

@@ -33,7 +33,7 @@ def ready_at_once(tick, config):
 
 def believing(watch, current, tick, leap_ticks):
     """Every tick ahead is believed at once, and none behind ever."""
-    return Belief.NEXT if tick > current else Belief.IGNORED, watch
+    return Belief.NEXT if tick > current else Belief.IGNORED
 
 
 HALFWAY = 5
@@ -51,14 +51,14 @@ GUARDS = {
         ("hil_stub.coils.guard.Guard.pass_time", lambda self, clock_ms: None),
     ),
     "ticks that leap": Off(
-        "sync-forged-going-on", "undisturbed", ("fsw.core.step.judge", believing), watch_s=100.0
+        "sync-forged-going-on", "undisturbed", ("fsw.core.step.judge_sync", believing), watch_s=100.0
     ),
     "freshness": Off("mag-board-dead", "silence named", ("fsw.core.monitors.MONITORS", WITHOUT_FRESHNESS)),
     "monitors": Off(
         "coil-stuck-on-1", "stuck", ("fsw.core.supervisor.first_violation", lambda watched: None)
     ),
     "second sender": Off(
-        "second-sender", "no request", ("fsw.core.step.second_sender.watch", lambda before, *seen: before)
+        "second-sender", "no request", ("fsw.core.step.watch_senders", lambda *seen: None)
     ),
     "sensor health": Off(
         "mag-bias",
