@@ -110,6 +110,7 @@ MAX_GAIN = 1e12
 """Largest gain that a setpoint may hold: a hundred times that of a satellite of many tons."""
 
 
+@final
 @dataclass(frozen=True, slots=True)
 class Setpoint:
     """What the ground may change in flight: law, gains, and the spin wanted.

@@ -1,10 +1,11 @@
 """Orbit elements from the ground: stored one by one, put into use all at once."""
 
-from typing import NamedTuple
+from typing import NamedTuple, final
 
 from fsw.wire.messages import Element
 
 
+@final
 class Elements(NamedTuple):
     """Mean elements as in a two-line element set, in its units, in the order of ``Element``.
 
@@ -37,6 +38,7 @@ RANGES: dict[Element, tuple[float, float]] = {
 """Range of each element alone; whether together they are an orbit is judged when they are loaded."""
 
 
+@final
 class Upload(NamedTuple):
     """Elements received so far, and which: bit n for element n."""
 
