@@ -91,6 +91,7 @@ lint: venv
 	$(bin)/mypy
 	$(bin)/lint-imports --no-logo
 	$(bin)/python tools/generate_messages.py --check
+	$(bin)/python tools/generate_state_bytes.py --check
 	$(bin)/python tools/generate_icd.py --check
 	$(bin)/python tools/write_requirements.py --check
 	$(bin)/python tools/write_scenario_keys.py --check

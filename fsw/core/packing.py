@@ -13,7 +13,6 @@ from functools import cache
 from operator import attrgetter, is_
 from types import UnionType
 from typing import Any, Final, TypeVar, Union, final, get_args, get_origin, get_type_hints
-from zlib import crc32
 
 import numpy as np
 
@@ -34,15 +33,7 @@ def pack(state: object) -> bytes:
     Raises:
         TypeError: a field holds something else; names it.
     """
-    try:
-        return marshal.dumps(_take_apart(state), _MARSHAL_VERSION)
-    except (TypeError, ValueError):  # a field does not hold what it is declared to hold
-        return marshal.dumps(_take_all_apart(state), _MARSHAL_VERSION)
-
-
-def checksum(state: object) -> int:
-    """CRC-32 of the bytes of a state."""
-    return crc32(pack(state))
+    return marshal.dumps(_take_apart(state), _MARSHAL_VERSION)
 
 
 @final
@@ -69,23 +60,7 @@ class _Plan:
 
 
 def _take_apart(value: Any) -> Any:  # noqa: ANN401  (any part of a state)
-    """The value as tuples of numbers and texts, where its fields hold what they are declared to hold."""
-    kind: Any = type(value)
-    if kind is tuple or kind is list:
-        return tuple([part if type(part) in _LEAVES else _take_apart(part) for part in value])
-    plan = _plan(kind)
-    if not plan.nested:
-        return plan.parts(value)
-    parts = list(plan.parts(value))
-    for index in plan.nested:
-        part = parts[index]
-        if type(part) not in _LEAVES:
-            parts[index] = _take_apart(part)
-    return tuple(parts)
-
-
-def _take_all_apart(value: Any) -> Any:  # noqa: ANN401  (any part of a state)
-    """The same whatever the fields hold.
+    """The value as tuples of numbers and texts.
 
     Raises:
         TypeError: it cannot be packed; names the fields that lead to it.
@@ -94,14 +69,14 @@ def _take_all_apart(value: Any) -> Any:  # noqa: ANN401  (any part of a state)
     if kind in _LEAVES:
         return value
     if kind is tuple or kind is list:
-        return tuple([_take_all_apart(part) for part in value])
+        return tuple([_take_apart(part) for part in value])
     plan = _plan(kind)
     if not plan.names:
         return plan.parts(value)
     parts = []
     for name, part in zip(plan.names, plan.parts(value), strict=True):
         try:
-            parts.append(_take_all_apart(part))
+            parts.append(_take_apart(part))
         except TypeError as error:
             raise TypeError(f"{kind.__name__}.{name}: {error}") from None
     return tuple(parts)

@@ -27,9 +27,9 @@ from fsw.core.laws import by_mode
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
 from fsw.core.laws.plan.constant_torque import constant_torque
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, plausible, reference_at, with_orbit
-from fsw.core.packing import checksum
 from fsw.core.restart import begin_count
 from fsw.core.state import FlightState, Inbox
+from fsw.core.state_bytes import checksum
 from fsw.core.supervisor import supervise
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilDipole, CoilFire, TickDone, WheelTorque

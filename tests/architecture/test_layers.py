@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("fsw", "hil_stub", "sim", "torquer")
 
 CALCULATION = {
-    "bisect", "collections", "copy", "dataclasses", "enum", "functools", "marshal", "math", "operator", "re",
+    "bisect", "collections", "copy", "dataclasses", "enum", "functools", "librt.strings", "marshal", "math", "operator", "re",
     "mypy_extensions", "struct", "types", "typing", "zlib",
     "numpy", "filterpy.kalman", "sgp4.api", "sgp4.io",
 }  # fmt: skip

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from flight_states import altered
 
-from fsw.core.packing import checksum
+from fsw.core.state_bytes import checksum
 from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame

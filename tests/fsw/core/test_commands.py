@@ -20,7 +20,8 @@ from fsw.core.monitors import Monitor
 from fsw.core.orbit.elements import RANGES, Elements, Upload
 from fsw.core.orbit.ephemeris import advance, with_orbit
 from fsw.core.orbit.propagation import element_orbit, sgp4_orbit, state_eci
-from fsw.core.packing import checksum, pack
+from fsw.core.packing import pack
+from fsw.core.state_bytes import checksum
 from fsw.wire.messages import (
     Component,
     Element,

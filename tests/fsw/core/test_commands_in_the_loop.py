@@ -13,7 +13,7 @@ from fsw.core.estimation.parameters import component_places
 from fsw.core.gate.readings import TELECOMMANDS
 from fsw.core.modes import ModeState
 from fsw.core.orbit.ephemeris import advance, with_orbit
-from fsw.core.packing import checksum
+from fsw.core.state_bytes import checksum
 from fsw.wire.messages import (
     CoilFire,
     CoilRefused,

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from enum import Enum, IntEnum
 from math import inf, nan
 from typing import NamedTuple
+from zlib import crc32
 
 import numpy as np
 import pytest
 
-from fsw.core.packing import checksum, copy_state, pack
+from fsw.core.packing import copy_state, pack
 
 
 class Colour(Enum):
@@ -108,7 +109,6 @@ def test_what_differs_is_packed_differently():
 @pytest.mark.parametrize("name", DIFFERENT)
 def test_a_copy_is_packed_as_the_original(name):
     assert pack(deepcopy(DIFFERENT[name])) == pack(DIFFERENT[name])
-    assert checksum(deepcopy(DIFFERENT[name])) == checksum(DIFFERENT[name])
 
 
 @pytest.mark.parametrize("name", sorted(DIFFERENT.keys() - {"no number", "its type"}))
@@ -147,8 +147,8 @@ def test_an_unknown_in_a_field_declared_otherwise_is_named_too():
         pack(whole(part=Part(3, (object(),))))
 
 
-def test_the_checksum_has_32_bits_and_is_the_same_on_every_machine():
-    assert checksum(whole(anything=("law", 7, -0.5, True, Number.ONE))) == 551747733
+def test_the_bytes_are_the_same_on_every_machine():
+    assert crc32(pack(whole(anything=("law", 7, -0.5, True, Number.ONE)))) == 551747733
 
 
 class TestCopies:

@@ -8,7 +8,7 @@ from flight_states import stepped
 from replies import events_of, of
 
 from fsw.core.algebra.vector import dot, norm
-from fsw.core.packing import checksum
+from fsw.core.state_bytes import checksum
 from fsw.core.step import boot
 from fsw.core.telemetry import Event
 from fsw.wire.messages import (

@@ -13,8 +13,8 @@ from flight_states import stepped
 from fsw.core.estimation import mekf
 from fsw.core.gate.readings import INBOX_LIMIT
 from fsw.core.gate.sync_watch import near
-from fsw.core.packing import checksum
 from fsw.core.state import Inbox
+from fsw.core.state_bytes import checksum
 from fsw.core.step import boot
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import (

@@ -8,8 +8,8 @@ from replies import of
 
 from fsw.core.fdir.sensors.pair import Standing
 from fsw.core.orbit.ephemeris import advance
-from fsw.core.packing import checksum
 from fsw.core.state import Inbox
+from fsw.core.state_bytes import checksum
 from fsw.core.telemetry import Event
 from fsw.wire.messages import (
     CoilFire,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from flight_states import altered
 
-from fsw.core.packing import checksum
 from fsw.core.restart import begin_count
+from fsw.core.state_bytes import checksum
 from fsw.wire.messages import Mode, WheelStatus, WheelTorque
 
 WHEEL = {

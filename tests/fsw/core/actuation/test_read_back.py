@@ -10,7 +10,7 @@ from fsw.core.actuation.actuator import CoilView
 from fsw.core.actuation.read_back import ReadBackConfig, remove_offset
 from fsw.core.gate.measurements import CoilReport
 from fsw.core.laws.plan.pulse_model import Pulse
-from fsw.core.packing import checksum
+from fsw.core.state_bytes import checksum
 from fsw.wire.messages import CoilStatus
 
 CONFIG = ReadBackConfig(off_ma=2.5, died_away_ticks=5)

@@ -15,7 +15,7 @@ from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
 from fsw.core.laws.plan.pulse_model import NO_PULSE
 from fsw.core.laws.table import CHECK, LAWS
-from fsw.core.packing import checksum
+from fsw.core.state_bytes import checksum
 from fsw.core.step import boot
 from fsw.table.config import flight_config
 from fsw.table.table import flight_table

@@ -7,9 +7,10 @@ from flight_states import altered, stepped
 
 from fsw.core.estimation.estimator import restart
 from fsw.core.estimation.start.batch import SampleBatch
-from fsw.core.packing import checksum, copy_state, pack
+from fsw.core.packing import copy_state, pack
 from fsw.core.restart import begin_count
 from fsw.core.state import Inbox
+from fsw.core.state_bytes import checksum
 from fsw.core.step import boot
 from fsw.table.config import flight_config
 from fsw.wire.messages import Mode, Sync, TcMode
