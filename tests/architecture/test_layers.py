@@ -13,8 +13,8 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("fsw", "hil_stub", "sim", "torquer")
 
 CALCULATION = {
-    "bisect", "collections", "copy", "dataclasses", "enum", "functools", "librt.strings", "marshal", "math", "operator", "re",
-    "mypy_extensions", "struct", "types", "typing", "zlib",
+    "bisect", "collections", "copy", "dataclasses", "enum", "functools", "librt.strings", "marshal", "math",
+    "mypy_extensions", "operator", "re", "struct", "types", "typing", "zlib",
     "numpy", "filterpy.kalman", "sgp4.api", "sgp4.io",
 }  # fmt: skip
 FORBIDDEN_NAMES = {
