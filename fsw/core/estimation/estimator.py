@@ -11,6 +11,7 @@ from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.cells.relinearise import Linear, linear_about, relinearise
 from fsw.core.estimation.cells.update import NO_CELLS, CellsUsed, fade, update_cells
 from fsw.core.estimation.dynamics.error_dynamics import FAST_RADPS, KNOWN_RADPS, SLOW_RADPS, Driven
+from fsw.core.estimation.kalman import diagonal
 from fsw.core.estimation.measurement import field_sampled
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
@@ -235,7 +236,8 @@ def _settle(state: EstimatorState, estimate: Estimate, seen: bool, config: MekfC
     field and Sun, ``seen`` in this tick: with one alone the covariance of a start would not shrink.
     """
     square = dot(estimate.omega_body_radps, estimate.omega_body_radps)
-    known = max(estimate.covariance.diagonal()[3:6].tolist()) < KNOWN_RADPS**2
+    variances = diagonal(estimate.covariance)
+    known = max(variances[3], variances[4], variances[5]) < KNOWN_RADPS**2
     if state.turning is Turning.NO and known and square > FAST_RADPS**2:
         state.turning = Turning.FAST
     after = state.turning

@@ -1,19 +1,27 @@
-"""Prediction and update by filterpy: the reference of the kernel, which also flies where there is none."""
+"""What the kernel computes, by filterpy and numpy: its reference, which also flies where there is none.
+
+The functions are those of ``_kalman_kernel``; what they compute is told in ``kalman``.
+"""
 
 import numpy as np
 from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
 
 Matrix = NDArray[np.float64]
+Numbers = tuple[float | tuple[float, ...], ...]
+
+MOVING = 6
 
 
-def predict(covariance: Matrix, transition: Matrix, noise: Matrix) -> Matrix:
-    """As in ``kalman``."""
+def predict(covariance: Matrix, transition: Matrix, noise: Matrix, kicks: Numbers) -> Matrix:
+    """Covariance after a step."""
     size = len(covariance)
-    kalman, whole = KalmanFilter(dim_x=size, dim_z=1), np.eye(size)
+    kalman, whole, whole_noise = KalmanFilter(dim_x=size, dim_z=1), np.eye(size), noise.copy()
     whole[: len(transition)] = transition
+    for kick in _flat(kicks).reshape(-1, 3):
+        whole_noise[3:6, 3:6] += np.outer(kick, kick)
     kalman.P = covariance
-    kalman.predict(F=whole, Q=noise)
+    kalman.predict(F=whole, Q=whole_noise)
     return _symmetric(kalman.P)
 
 
@@ -22,25 +30,133 @@ def update(
     innovation: tuple[float, ...],
     noise: Matrix,
     sensitivity: Matrix,
-    considered: slice | None,
-) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix] | None:
-    """Error, covariance, gain, spread and weight, as in ``kalman``.
+    first: int,
+    last: int,
+) -> tuple[tuple[float, ...], Matrix, Matrix, Matrix, tuple[float, ...], float] | None:
+    """Error, covariance, gain, weight, variances and NIS; None where the spread is singular.
 
     filterpy considers no states; with some, the covariance is Joseph's with the gain that is left.
     """
-    kalman = KalmanFilter(dim_x=len(covariance), dim_z=len(innovation))
+    kalman, y = KalmanFilter(dim_x=len(covariance), dim_z=len(innovation)), np.array(innovation)
     kalman.x, kalman.P = np.zeros(len(covariance)), covariance
     try:
-        kalman.update(np.array(innovation), noise, sensitivity)
+        kalman.update(y, noise, sensitivity)
     except np.linalg.LinAlgError:
         return None
     error, after, gain = kalman.x, kalman.P, kalman.K
-    if considered is not None:
-        gain[considered] = 0.0
-        error, remains = gain.dot(innovation), np.eye(len(covariance)) - gain.dot(sensitivity)
+    if last > first:
+        gain[first:last] = 0.0
+        error, remains = gain.dot(y), np.eye(len(covariance)) - gain.dot(sensitivity)
         after = remains.dot(covariance).dot(remains.T) + gain.dot(noise).dot(gain.T)
-    return error, _symmetric(after), gain, kalman.S, kalman.SI
+    nis = float(y.dot(kalman.SI).dot(y))
+    return tuple(error.tolist()), _symmetric(after), gain, kalman.SI, diagonal(kalman.S), nis
+
+
+def product(left: Matrix, right: Matrix) -> Matrix:
+    """Product of two matrices."""
+    result: Matrix = left.dot(right)
+    return result
+
+
+def inverse(m: Matrix) -> Matrix:
+    """Inverse, NaN of a singular matrix."""
+    try:
+        return np.asarray(np.linalg.inv(m), float)
+    except np.linalg.LinAlgError:
+        return np.full_like(m, np.nan)
+
+
+def linear(
+    constant: Matrix,
+    numbers: Numbers,
+    rows: Matrix,
+    others: Numbers = (),
+    other_rows: Matrix | None = None,
+) -> Matrix:
+    """Constant, its first columns plus the sum of each number times its row."""
+    total = _flat(numbers).dot(rows)
+    if other_rows is not None:
+        total = total + _flat(others).dot(other_rows)
+    result, part = constant.copy(), total.reshape(len(constant), -1)
+    result[:, : part.shape[1]] += part
+    return result
+
+
+def system_rows(constant: Matrix, turn: Numbers, inverse_h: Numbers, torque: Matrix) -> Matrix:
+    """Rows of attitude and rate of 1 + A h."""
+    rows = constant.copy()
+    x, y, z = _flat(turn).tolist()
+    rows[0:3, 0:3] = ((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0))
+    rows[3:6, : torque.shape[1]] = _flat(inverse_h).reshape(3, 3).dot(torque)
+    rows[:, 0:MOVING] += np.eye(MOVING)
+    return rows
+
+
+def series(rows: Matrix, order: int) -> Matrix:
+    """Rows of attitude and rate of exp(A h) from those of 1 + A h, to this order."""
+    identity = np.eye(*rows.shape)
+    change = rows - identity
+    total = change
+    for place in range(order, 1, -1):
+        total = change + change[:, 0:MOVING].dot(total) / place
+    result: Matrix = total + identity
+    return result
+
+
+def stack(above: Matrix, below: Matrix) -> Matrix:
+    """The rows of both."""
+    return np.concatenate((above, below))
+
+
+def diagonal(m: Matrix) -> tuple[float, ...]:
+    """Numbers on the diagonal."""
+    return tuple(m.diagonal().tolist())
+
+
+def carry_trace(effect: Matrix, transition: Matrix) -> Matrix:
+    """Effect after a prediction."""
+    after = effect.copy()
+    after[: len(transition)] = transition.dot(effect)
+    return after
+
+
+def update_trace(
+    effect: Matrix,
+    sums: Matrix,
+    innovation: tuple[float, ...],
+    sensitivity: Matrix,
+    gain: Matrix,
+    weight: Matrix,
+) -> tuple[Matrix, Matrix]:
+    """Effect and sums after an update."""
+    traced = sensitivity.dot(effect)
+    traced[:, -1] = innovation
+    return effect - gain.dot(traced), sums + traced.T.dot(weight).dot(traced)
+
+
+def unexplained(sums: Matrix) -> float:
+    """The summed NIS that no deviation explains."""
+    evidence = sums[:-1, -1]
+    weights = inverse(sums[:-1, :-1] + np.eye(len(evidence)))
+    return float(sums[-1, -1] - evidence.dot(weights).dot(evidence))
+
+
+def turn_along(
+    covariance: Matrix, error: Numbers, first: int, factor: float, coordinates: Matrix, moving: Matrix
+) -> Matrix:
+    """The covariance turned with directions that no sample shows."""
+    moved = slice(first, first + len(moving))
+    turns = _flat(error)[moved].dot(moving).reshape(-1, len(coordinates))
+    turns[:, -1] *= factor
+    turn = np.eye(len(covariance))
+    turn[moved] += turns.dot(coordinates)
+    return _symmetric(turn.dot(covariance).dot(turn.T))
+
+
+def _flat(numbers: Numbers) -> Matrix:
+    return np.concatenate([np.atleast_1d(np.array(part, float)) for part in numbers] or [np.zeros(0)])
 
 
 def _symmetric(covariance: Matrix) -> Matrix:
-    return 0.5 * (covariance + covariance.T)
+    result: Matrix = 0.5 * (covariance + covariance.T)
+    return result

@@ -14,19 +14,25 @@ With them, a trace of what unmodelled deviations would do to errors and innovati
 
 from dataclasses import dataclass
 from enum import StrEnum
-from math import nan
 from typing import final
 
 import numpy as np
 from numpy.typing import NDArray
 
-Matrix = NDArray[np.float64]
+from fsw.core.algebra.vector import Vec3
 
+Matrix = NDArray[np.float64]
+Numbers = tuple[float | tuple[float, ...], ...]
+"""Numbers in a row, some of which may be in tuples of their own."""
 
 try:
     from fsw.core.estimation import _kalman_kernel as _kernel
-except ImportError:  # it is not built
-    _kernel = None  # type: ignore[assignment]
+
+    BUILT = True
+except ImportError:
+    from fsw.core.estimation import filterpy_algebra as _kernel  # type: ignore[no-redef]
+
+    BUILT = False
 
 
 class Algebra(StrEnum):
@@ -38,7 +44,7 @@ class Algebra(StrEnum):
 
 def available(wanted: Algebra) -> Algebra:
     """The algebra that flies where this one is wanted: filterpy's where the kernel is not built."""
-    return wanted if _kernel is not None else Algebra.FILTERPY
+    return wanted if BUILT else Algebra.FILTERPY
 
 
 @final
@@ -49,36 +55,47 @@ class Update:
         error: x, the error state, (n).
         covariance: P, (n, n).
         gain: K, (n, m).
-        spread: S, the covariance of the innovation, (m, m).
         weight: S^-1, (m, m).
+        variances: of the innovation, the diagonal of S, (m).
+        nis: the normalised innovation squared, y^T S^-1 y.
     """
 
-    __slots__ = ("covariance", "error", "gain", "spread", "weight")
+    __slots__ = ("covariance", "error", "gain", "nis", "variances", "weight")
 
     def __init__(
-        self, error: Matrix, covariance: Matrix, gain: Matrix, spread: Matrix, weight: Matrix
+        self,
+        error: tuple[float, ...],
+        covariance: Matrix,
+        gain: Matrix,
+        weight: Matrix,
+        variances: tuple[float, ...],
+        nis: float,
     ) -> None:
         self.error = error
         self.covariance = covariance
         self.gain = gain
-        self.spread = spread
         self.weight = weight
+        self.variances = variances
+        self.nis = nis
 
 
-def predict(covariance: Matrix, transition: Matrix, noise: Matrix, algebra: Algebra) -> Matrix:
+def predict(
+    covariance: Matrix, transition: Matrix, noise: Matrix, kicks: Numbers, algebra: Algebra
+) -> Matrix:
     """The covariance P after a step, (n, n).
 
     Args:
         covariance: before, (n, n).
         transition: the first rows of F, (k, n); the others are those of the identity.
-        noise: Q, (n, n).
+        noise: Q, (n, n), without the kicks.
+        kicks: vectors v, at most two, each of which adds v v^T to the block of the rate in Q.
         algebra: what computes it.
     """
-    if algebra is Algebra.KERNEL and _kernel is not None:
-        return _kernel.predict(covariance, transition, noise)
+    if algebra is Algebra.KERNEL:
+        return _kernel.predict(covariance, transition, noise, kicks)
     from fsw.core.estimation import filterpy_algebra  # noqa: PLC0415  (slow to load, and seldom flown)
 
-    return filterpy_algebra.predict(covariance, transition, noise)
+    return filterpy_algebra.predict(covariance, transition, noise, kicks)
 
 
 def update(
@@ -100,35 +117,95 @@ def update(
             the errors (Schmidt 1966).
         algebra: what computes it.
     """
-    if algebra is Algebra.KERNEL and _kernel is not None:
-        first, last = (considered.start, considered.stop) if considered is not None else (0, 0)
+    first, last = (considered.start, considered.stop) if considered is not None else (0, 0)
+    if algebra is Algebra.KERNEL:
         found = _kernel.update(covariance, innovation, noise, sensitivity, first, last)
-        return None if found is None else Update(*found)
-    from fsw.core.estimation import filterpy_algebra  # noqa: PLC0415  (slow to load, and seldom flown)
+    else:
+        from fsw.core.estimation import filterpy_algebra  # noqa: PLC0415  (slow to load, and seldom flown)
 
-    by_filterpy = filterpy_algebra.update(covariance, innovation, noise, sensitivity, considered)
-    return None if by_filterpy is None else Update(*by_filterpy)
+        found = filterpy_algebra.update(covariance, innovation, noise, sensitivity, first, last)
+    if found is None:
+        return None
+    error, after, gain, weight, variances, nis = found
+    return Update(error, after, gain, weight, variances, nis)
 
 
 def product(left: Matrix, right: Matrix) -> Matrix:
     """The product of two matrices, (k, m) and (m, n)."""
-    return left.dot(right) if _kernel is None else _kernel.product(left, right)
-
-
-def combine(numbers: tuple[float, ...], rows: Matrix) -> Matrix:
-    """The sum of each number times its row, (n), of rows (k, n)."""
-    return np.array(numbers).dot(rows) if _kernel is None else _kernel.combine(numbers, rows)
+    return _kernel.product(left, right)
 
 
 def inverse(m: Matrix) -> Matrix:
     """The inverse; NaN where it is singular."""
-    if _kernel is None:
-        try:
-            return np.asarray(np.linalg.inv(m), float)
-        except np.linalg.LinAlgError:
-            return np.full_like(m, nan)
-    found = _kernel.inverse(m)
-    return np.full_like(m, nan) if found is None else found
+    return _kernel.inverse(m)
+
+
+def stack(above: Matrix, below: Matrix) -> Matrix:
+    """The rows of two matrices of as many columns."""
+    return _kernel.stack(above, below)
+
+
+def diagonal(m: Matrix) -> tuple[float, ...]:
+    """The numbers on the diagonal."""
+    return _kernel.diagonal(m)
+
+
+def linear(constant: Matrix, numbers: Numbers, rows: Matrix) -> Matrix:
+    """A matrix that is linear in some numbers, (r, n), in its first w columns.
+
+    Args:
+        constant: what it is where all of them are zero, (r, n).
+        numbers: (k).
+        rows: what it gains by each, a matrix (r, w) by rows, (k, r w).
+    """
+    return _kernel.linear(constant, numbers, rows)
+
+
+def bilinear(constant: Matrix, numbers: Numbers, rows: Matrix, others: Numbers, other_rows: Matrix) -> Matrix:
+    """As ``linear``, by two groups of numbers, each with its rows."""
+    return _kernel.linear(constant, numbers, rows, others, other_rows)
+
+
+def system_rows(constant: Matrix, turn: Vec3, inverse_h: Numbers, torque: Matrix) -> Matrix:
+    """The rows of attitude and rate of 1 + A h, (6, n), A being the system matrix and h the step.
+
+    Args:
+        constant: what they are but for the following, (6, n).
+        turn: -h omega, of which the derivative by the attitude consists.
+        inverse_h: h J^-1 by rows.
+        torque: the torque's derivative by the first w numbers of the error state, (3, w).
+    """
+    return _kernel.system_rows(constant, turn, inverse_h, torque)
+
+
+def series(rows: Matrix, order: int) -> Matrix:
+    """The rows of attitude and rate of exp(A h), from those of 1 + A h, (6, n), to second or fourth order.
+
+    All other rows of A are zero. To second order: half of 1 + (1 + A h)^2.
+    """
+    return _kernel.series(rows, order)
+
+
+def turn_along(
+    covariance: Matrix,
+    error: tuple[float, ...],
+    first: int,
+    factor: float,
+    coordinates: Matrix,
+    moving: Matrix,
+) -> Matrix:
+    """The covariance T P T^T, T = 1 + D W^T, symmetric.
+
+    Args:
+        covariance: P, (n, n).
+        error: a correction, (n).
+        first: number of the first row of D, (n, k), that is not zero; there are m.
+        factor: of the last column of D.
+        coordinates: W^T, (k, n), k at most 4.
+        moving: what those rows gain per unit of each of the m numbers of the correction in their place, by
+            rows, (m, m k).
+    """
+    return _kernel.turn_along(covariance, error, first, factor, coordinates, moving)
 
 
 @final
@@ -170,10 +247,18 @@ class Trace:
 
 
 def carry_trace(trace: Trace, transition: Matrix) -> None:
-    """Carry the trace over a prediction with this transition, (6, n)."""
-    effect = trace.effect.copy()
-    effect[0:6] = product(transition, trace.effect)
-    trace.effect = effect
+    """Carry the trace over a prediction with this transition, (k, n): the first rows of F."""
+    trace.effect = _kernel.carry_trace(trace.effect, transition)
+
+
+def update_trace(
+    trace: Trace, innovation: tuple[float, ...], sensitivity: Matrix, found: Update
+) -> tuple[Matrix, Matrix]:
+    """Effect and sums after an update, u - K t and sums + t^T S^-1 t, t being H u and, last, the innovation.
+
+    The trace itself stays as it is.
+    """
+    return _kernel.update_trace(trace.effect, trace.sums, innovation, sensitivity, found.gain, found.weight)
 
 
 def unexplained(sums: Matrix) -> float:
@@ -181,6 +266,4 @@ def unexplained(sums: Matrix) -> float:
 
     What an update adds is its NIS in a filter that solves for the deviations too. NaN of damaged sums.
     """
-    evidence = sums[:-1, -1:]
-    weights = inverse(sums[:-1, :-1] + np.eye(len(evidence)))
-    return float(sums[-1, -1] - product(evidence.T, product(weights, evidence))[0, 0])
+    return _kernel.unexplained(sums)

@@ -1,4 +1,4 @@
-/* Kalman prediction and update, and products of matrices, in a fixed order of sums.
+/* Kalman prediction and update, and what a tick of the filter needs beside them, in a fixed order of sums.
 
    Every sum runs over its index in rising order and is rounded after each multiplication and each addition.
    Compiled without contraction (-ffp-contract=off) and without -ffast-math, IEEE doubles then give the same bits
@@ -10,6 +10,7 @@
 #include <Python.h>
 #include <numpy/arrayobject.h>
 #include <math.h>
+#include <string.h>
 
 #ifndef SOURCE_SHA256
 #define SOURCE_SHA256 ""
@@ -18,6 +19,10 @@
 #define MOST_STATES 64
 #define MOST_MEASURED 6
 #define LANES 8 /* measured numbers, padded so that their sums vectorise */
+#define MOST_TURNS 4
+#define MOST_MAPPED 512 /* entries of a matrix that a map goes to */
+#define MOST_MAPS 3
+#define MOVING 6 /* attitude and rate: the rows of the transition that are not the identity's */
 
 /* out (m,n) = A (m,k) B (k,n) */
 static void multiply(int m, int k, int n, const double *restrict A, const double *restrict B,
@@ -34,11 +39,16 @@ static void multiply(int m, int k, int n, const double *restrict A, const double
     }
 }
 
-/* out = F P F^T + Q, F being the first k rows of the transition (k,n), the others those of the identity */
-static void predict(int n, int k, const double *restrict P, const double *restrict F, const double *restrict Q,
-                    double *restrict out)
+/* out = F P F^T + Q, F being the first k rows of the transition (k,n), the others those of the identity; to the
+   block of the rate in Q, v v^T is added for each of these kicks v (kicks,3) */
+static void predict(int n, int k, int kicks, const double *restrict P, const double *restrict F,
+                    const double *restrict given, const double *restrict v, double *restrict out)
 {
-    double rows[MOST_STATES * MOST_STATES];
+    double rows[MOST_STATES * MOST_STATES], Q[MOST_STATES * MOST_STATES];
+    memcpy(Q, given, sizeof(double) * n * n);
+    for (int kick = 0; kick < kicks; kick++)
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) Q[(3 + i) * n + 3 + j] += v[3 * kick + i] * v[3 * kick + j];
     multiply(k, n, n, F, P, rows);
     for (int i = 0; i < k; i++) {
         for (int j = 0; j <= i; j++) {
@@ -107,13 +117,14 @@ static void times_transposed(int n, int m, const double *restrict A, const doubl
     }
 }
 
-/* S = H P H^T + R, K = P H^T S^-1 with zero rows from first to last, x = K y,
+/* S = H P H^T + R, K = P H^T S^-1 with zero rows from first to last, x = K y, nis = y^T S^-1 y,
    out = (1 - K H) P (1 - K H)^T + K R K^T, expanded from the left, then from the right.
    All (n) columns of K^T lie side by side in gain (m,n). 1: S is singular */
 static int update(int n, int m, const double *restrict P, const double *restrict H, const double *restrict R,
                   const double *restrict y, int first, int last, double *restrict out, double *restrict x,
-                  double *restrict K, double *restrict S, double *restrict SI)
+                  double *restrict K, double *restrict S, double *restrict SI, double *nis)
 {
+    double weighed[MOST_MEASURED];
     double ph[MOST_MEASURED * MOST_STATES], gain[MOST_MEASURED * MOST_STATES];
     double left_ht[MOST_STATES * LANES];
     multiply(m, n, n, H, P, ph); /* (P H^T)^T, as P is symmetric */
@@ -124,6 +135,8 @@ static int update(int n, int m, const double *restrict P, const double *restrict
             S[i * m + j] = sum + R[i * m + j];
         }
     if (invert(m, S, SI)) return 1;
+    multiply(m, m, 1, SI, y, weighed);
+    multiply(1, m, 1, y, weighed, nis);
     for (int i = 0; i < m; i++) {
         double *row = gain + i * n;
         for (int c = 0; c < n; c++) row[c] = 0.0;
@@ -162,168 +175,482 @@ static int update(int n, int m, const double *restrict P, const double *restrict
     return 0;
 }
 
-/* A matrix (rows, columns) of doubles, contiguous; -1: any number of these. NULL with an exception otherwise. */
-static PyArrayObject *matrix(PyObject *given, npy_intp rows, npy_intp columns, const char *name)
+/* out (r,n) = constant; its first w columns gain the sum of each number times its row of a map (k,r w), the sums
+   of several maps being added first */
+typedef struct { int k; const double *numbers, *rows; } Map;
+
+static void linear(int r, int n, int w, int maps, const Map *map, const double *restrict constant,
+                   double *restrict sum, double *restrict part, double *restrict out)
 {
-    PyArrayObject *array = (PyArrayObject *)PyArray_FROM_OTF(given, NPY_DOUBLE, NPY_ARRAY_IN_ARRAY);
-    if (array == NULL) return NULL;
-    if (PyArray_NDIM(array) != 2 || (rows >= 0 && PyArray_DIM(array, 0) != rows) ||
-        (columns >= 0 && PyArray_DIM(array, 1) != columns)) {
-        PyErr_Format(PyExc_ValueError, "%s is not a matrix of this size", name);
-        Py_DECREF(array);
-        return NULL;
+    memcpy(out, constant, sizeof(double) * r * n);
+    for (int at = 0; at < maps; at++) {
+        double *to = at ? part : sum;
+        for (int c = 0; c < r * w; c++) to[c] = 0.0;
+        for (int j = 0; j < map[at].k; j++) {
+            const double factor = map[at].numbers[j], *row = map[at].rows + (size_t)j * r * w;
+            if (factor == 0.0) continue;
+            for (int c = 0; c < r * w; c++) to[c] += factor * row[c];
+        }
+        if (at)
+            for (int c = 0; c < r * w; c++) sum[c] += part[c];
     }
-    return array;
+    for (int i = 0; i < r; i++)
+        for (int c = 0; c < w; c++) out[i * n + c] += sum[i * w + c];
 }
 
-static PyObject *empty(int dimensions, npy_intp rows, npy_intp columns)
+/* The rows of attitude and rate of 1 + A h, out (6,n): [turn x], turn being -h omega; h domega/dt by all, J^-1 h
+   (3,3) times the torque's derivative by the first w numbers (3,w); all else, and of the attitude, as constant */
+static void system_rows(int n, int w, const double *restrict constant, const double *restrict turn,
+                        const double *restrict inverse_h, const double *restrict torque, double *restrict out)
+{
+    double rate[3 * MOST_STATES];
+    memcpy(out, constant, sizeof(double) * MOVING * n);
+    const double skew[9] = {0.0, -turn[2], turn[1], turn[2], 0.0, -turn[0], -turn[1], turn[0], 0.0};
+    multiply(3, 3, w, inverse_h, torque, rate);
+    for (int i = 0; i < 3; i++) {
+        for (int c = 0; c < 3; c++) out[i * n + c] = skew[3 * i + c];
+        for (int c = 0; c < w; c++) out[(3 + i) * n + c] = rate[i * w + c];
+    }
+    for (int i = 0; i < MOVING; i++) out[i * n + i] += 1.0;
+}
+
+/* The rows of attitude and rate of exp(A h), out (6,n), from those of 1 + A h, to second or to fourth order */
+static void series(int n, int order, const double *restrict linear, double *restrict out)
+{
+    double moving[MOVING * MOVING], change[MOVING * MOST_STATES], sums[MOVING * MOST_STATES];
+    memcpy(change, linear, sizeof(double) * MOVING * n);
+    for (int i = 0; i < MOVING; i++)
+        for (int c = 0; c < MOVING; c++) {
+            if (order > 2 && c == i) change[i * n + c] -= 1.0;
+            moving[i * MOVING + c] = change[i * n + c];
+            if (order == 2) change[i * n + c] = c == i ? 1.0 : 0.0;
+        }
+    if (order == 2) { /* (1 + A h)^2: the mean of it and 1 is the series */
+        multiply(MOVING, MOVING, n, moving, linear, out);
+        for (int c = 0; c < MOVING * n; c++) out[c] = (out[c] + change[c]) * 0.5;
+        return;
+    }
+    memcpy(out, change, sizeof(double) * MOVING * n);
+    for (; order > 1; order--) {
+        multiply(MOVING, MOVING, n, moving, out, sums);
+        for (int c = 0; c < MOVING * n; c++) out[c] = change[c] + sums[c] / order;
+    }
+    for (int i = 0; i < MOVING; i++) out[i * n + i] += 1.0;
+}
+
+/* A trace over an update: t = H effect, its last column y; sums += t^T S^-1 t, effect -= K t. Returned to sums_out
+   (k,k) and out (n,k) */
+static void trace_update(int n, int m, int k, const double *restrict effect, const double *restrict sums,
+                         const double *restrict y, const double *restrict H, const double *restrict K,
+                         const double *restrict SI, double *restrict out, double *restrict sums_out)
+{
+    double t[MOST_MEASURED * MOST_STATES], weighed[MOST_MEASURED * MOST_STATES];
+    double transposed[MOST_STATES * MOST_MEASURED];
+    multiply(m, n, k, H, effect, t);
+    for (int i = 0; i < m; i++) {
+        t[i * k + k - 1] = y[i];
+        for (int c = 0; c < k; c++) transposed[c * m + i] = t[i * k + c];
+    }
+    multiply(m, m, k, SI, t, weighed);
+    multiply(k, m, k, transposed, weighed, sums_out);
+    for (int c = 0; c < k * k; c++) sums_out[c] = sums[c] + sums_out[c];
+    multiply(n, m, k, K, t, out);
+    for (int c = 0; c < n * k; c++) out[c] = effect[c] - out[c];
+}
+
+/* s_yy - s_y^T (s + 1)^-1 s_y, s_y being the last column of the sums (k,k), s those before; NaN if it is singular */
+static double unexplained(int k, const double *restrict sums)
+{
+    double M[MOST_STATES * MOST_STATES], weights[MOST_STATES * MOST_STATES];
+    double evidence[MOST_STATES], weighed[MOST_STATES], explained;
+    const int n = k - 1;
+    if (n < 1) return sums[0];
+    for (int i = 0; i < n; i++) {
+        for (int c = 0; c < n; c++) M[i * n + c] = sums[i * k + c] + (i == c ? 1.0 : 0.0);
+        evidence[i] = sums[i * k + n];
+    }
+    if (invert(n, M, weights)) return NAN;
+    multiply(n, n, 1, weights, evidence, weighed);
+    multiply(1, n, 1, evidence, weighed, &explained);
+    return sums[n * k + n] - explained;
+}
+
+/* out = T P T^T, T = 1 + D W (n,n): D (m,k) in the rows from first on is linear in the error e there, by moving
+   (m,m k), its last column times a factor; W (k,n) */
+static void turn_along(int n, int m, int k, int first, const double *restrict P, const double *restrict e,
+                       double factor, const double *restrict W, const double *restrict moving,
+                       double *restrict out)
+{
+    double D[MOST_STATES * MOST_TURNS], transposed[MOST_TURNS * MOST_STATES], half[MOST_STATES * MOST_TURNS];
+    double known[MOST_TURNS * MOST_STATES], own[MOST_TURNS * MOST_TURNS], change[MOST_STATES * MOST_STATES];
+    multiply(1, m, m * k, e + first, moving, D);
+    for (int i = 0; i < m; i++) D[i * k + k - 1] *= factor;
+    for (int i = 0; i < m; i++)
+        for (int c = 0; c < k; c++) transposed[c * m + i] = D[i * k + c];
+    for (int i = 0; i < k; i++)
+        for (int c = 0; c < n; c++) half[c * k + i] = 0.5 * W[i * n + c];
+    multiply(k, n, n, W, P, known); /* W P + half of W P W^T D^T: half of the terms, twice of which are all */
+    multiply(k, n, k, known, half, own);
+    multiply(k, k, m, own, transposed, change);
+    for (int i = 0; i < k; i++)
+        for (int c = 0; c < m; c++) known[i * n + first + c] += change[i * m + c];
+    multiply(m, k, n, D, known, change);
+    memcpy(out, P, sizeof(double) * n * n);
+    for (int c = 0; c < m * n; c++) out[first * n + c] += 2.0 * change[c];
+    for (int r = 0; r < n; r++)
+        for (int c = 0; c < r; c++)
+            out[r * n + c] = out[c * n + r] = 0.5 * (out[r * n + c] + out[c * n + r]);
+}
+
+/* The arrays that a call holds while it computes, and numbers of its tuples. */
+#define MOST_HELD 12
+typedef struct { int count; PyArrayObject *array[MOST_HELD]; } Held;
+
+static void release(Held *held)
+{
+    while (held->count) Py_DECREF(held->array[--held->count]);
+}
+
+/* A matrix (rows, columns) of doubles, contiguous; -1: any number of these. NULL with an exception otherwise. */
+static PyArrayObject *matrix(Held *held, PyObject *given, npy_intp rows, npy_intp columns, const char *name)
+{
+    PyArrayObject *array = (PyArrayObject *)given;
+    if (PyArray_CheckExact(given) && PyArray_TYPE(array) == NPY_DOUBLE && PyArray_ISCARRAY_RO(array))
+        Py_INCREF(array);
+    else if ((array = (PyArrayObject *)PyArray_FROM_OTF(given, NPY_DOUBLE, NPY_ARRAY_IN_ARRAY)) == NULL)
+        return NULL;
+    held->array[held->count++] = array;
+    if (PyArray_NDIM(array) == 2 && (rows < 0 || PyArray_DIM(array, 0) == rows) &&
+        (columns < 0 || PyArray_DIM(array, 1) == columns))
+        return array;
+    return (PyArrayObject *)PyErr_Format(PyExc_ValueError, "%s is not a matrix of this size", name);
+}
+
+/* A square one of at most this many rows */
+static PyArrayObject *square(Held *held, PyObject *given, npy_intp most, const char *name)
+{
+    PyArrayObject *array = matrix(held, given, -1, -1, name);
+    if (array == NULL || (PyArray_DIM(array, 0) == PyArray_DIM(array, 1) && PyArray_DIM(array, 0) <= most))
+        return array;
+    return (PyArrayObject *)PyErr_Format(PyExc_ValueError, "%s is not square, or of more than %d rows", name, (int)most);
+}
+
+/* One that is returned, not initialised */
+static double *result(Held *held, npy_intp rows, npy_intp columns)
 {
     npy_intp shape[2] = {rows, columns};
-    return PyArray_SimpleNew(dimensions, shape, NPY_DOUBLE);
+    PyArrayObject *array = (PyArrayObject *)PyArray_SimpleNew(2, shape, NPY_DOUBLE);
+    if (array == NULL) return NULL;
+    held->array[held->count++] = array;
+    return PyArray_DATA(array);
 }
 
-static double *numbers(PyObject *array) { return (double *)PyArray_DATA((PyArrayObject *)array); }
-
-/* predict(P, F, Q) -> P */
-static PyObject *py_predict(PyObject *self, PyObject *const *given, Py_ssize_t count)
+/* The last one made, which is returned; NULL if there was an error */
+static PyObject *returned(Held *held, double *made)
 {
-    PyArrayObject *P = NULL, *F = NULL, *Q = NULL;
-    PyObject *out = NULL;
-    if (count != 3) return PyErr_Format(PyExc_TypeError, "predict takes P, F and Q");
-    if ((P = matrix(given[0], -1, -1, "P")) == NULL) goto done;
-    const npy_intp n = PyArray_DIM(P, 0);
-    if (n != PyArray_DIM(P, 1) || n > MOST_STATES) {
-        PyErr_Format(PyExc_ValueError, "P is not square, or of more than %d states", MOST_STATES);
-        goto done;
-    }
-    if ((F = matrix(given[1], -1, n, "F")) == NULL || (Q = matrix(given[2], n, n, "Q")) == NULL) goto done;
-    if (PyArray_DIM(F, 0) > n) {
-        PyErr_SetString(PyExc_ValueError, "F has more rows than columns");
-        goto done;
-    }
-    if ((out = empty(2, n, n)) != NULL)
-        predict((int)n, (int)PyArray_DIM(F, 0), PyArray_DATA(P), PyArray_DATA(F), PyArray_DATA(Q), numbers(out));
-done:
-    Py_XDECREF(P);
-    Py_XDECREF(F);
-    Py_XDECREF(Q);
-    return out;
+    PyObject *last = made == NULL ? NULL : (PyObject *)held->array[--held->count];
+    release(held);
+    return last;
 }
 
-/* update(P, y, R, H, first, last) -> (x, P, K, S, SI), or None where S is singular */
-static PyObject *py_update(PyObject *self, PyObject *const *given, Py_ssize_t count)
+/* The numbers of a tuple, and of the tuples in it: how many, or -1 with an exception */
+static int tuple(PyObject *given, int least, int most, double *numbers, const char *name)
 {
-    PyArrayObject *P = NULL, *R = NULL, *H = NULL;
-    PyObject *x = NULL, *after = NULL, *K = NULL, *S = NULL, *SI = NULL, *found = NULL;
-    if (count != 6) return PyErr_Format(PyExc_TypeError, "update takes P, y, R, H, first and last");
-    const long first = PyLong_AsLong(given[4]), last = PyLong_AsLong(given[5]);
-    if (PyErr_Occurred()) return NULL;
-    if (!PyTuple_Check(given[1]))
-        return PyErr_Format(PyExc_TypeError, "the innovation is a tuple of numbers");
-    const Py_ssize_t m = PyTuple_GET_SIZE(given[1]);
-    if (m < 1 || m > MOST_MEASURED)
-        return PyErr_Format(PyExc_ValueError, "an update takes 1 to %d numbers", MOST_MEASURED);
-    double y[MOST_MEASURED];
-    for (Py_ssize_t i = 0; i < m; i++) y[i] = PyFloat_AsDouble(PyTuple_GET_ITEM(given[1], i));
-    if (PyErr_Occurred()) return NULL;
-    if ((P = matrix(given[0], -1, -1, "P")) == NULL) goto done;
-    const npy_intp n = PyArray_DIM(P, 0);
-    if (n != PyArray_DIM(P, 1) || n > MOST_STATES) {
-        PyErr_Format(PyExc_ValueError, "P is not square, or of more than %d states", MOST_STATES);
-        goto done;
+    int count = 0;
+    if (!PyTuple_Check(given)) {
+        PyErr_Format(PyExc_TypeError, "%s: no tuple of numbers", name);
+        return -1;
     }
+    for (Py_ssize_t i = 0; i < PyTuple_GET_SIZE(given); i++) {
+        PyObject *part = PyTuple_GET_ITEM(given, i);
+        if (PyTuple_Check(part)) {
+            const int more = tuple(part, 0, most - count, numbers + count, name);
+            if (more < 0) return -1;
+            count += more;
+        } else if (count < most) {
+            numbers[count++] = PyFloat_AsDouble(part);
+        } else {
+            count = most + 1;
+            break;
+        }
+    }
+    if (PyErr_Occurred()) return -1;
+    if (count >= least && count <= most) return count;
+    PyErr_Format(PyExc_ValueError, "%s: not %d to %d numbers", name, least, most);
+    return -1;
+}
+
+/* Numbers as a tuple; every step of them is taken */
+static PyObject *as_tuple(const double *numbers, int count, int step)
+{
+    PyObject *made = PyTuple_New(count);
+    for (int i = 0; made != NULL && i < count; i++) {
+        PyObject *number = PyFloat_FromDouble(numbers[(size_t)i * step]);
+        if (number == NULL) Py_CLEAR(made);
+        else PyTuple_SET_ITEM(made, i, number);
+    }
+    return made;
+}
+
+static int takes(Py_ssize_t count, Py_ssize_t wanted, const char *what)
+{
+    if (count != wanted) PyErr_Format(PyExc_TypeError, "it takes %s", what);
+    return count == wanted;
+}
+
+#define DATA(array) ((const double *)PyArray_DATA(array))
+#define ROWS(array) ((int)PyArray_DIM(array, 0))
+#define COLUMNS(array) ((int)PyArray_DIM(array, 1))
+#define FUNCTION(name) static PyObject *py_##name(PyObject *self, PyObject *const *given, Py_ssize_t count)
+
+FUNCTION(predict)
+{
+    Held held = {0};
+    PyArrayObject *P, *F, *Q;
+    double v[6], *out = NULL;
+    int kicks;
+    if (takes(count, 4, "P, F, Q and kicks") && (kicks = tuple(given[3], 0, 6, v, "kicks")) >= 0 &&
+        (P = square(&held, given[0], MOST_STATES, "P")) != NULL &&
+        (F = matrix(&held, given[1], -1, ROWS(P), "F")) != NULL &&
+        (Q = matrix(&held, given[2], ROWS(P), ROWS(P), "Q")) != NULL) {
+        if (ROWS(F) > ROWS(P) || kicks % 3)
+            PyErr_SetString(PyExc_ValueError, "F has more rows than columns, or a kick less than three numbers");
+        else if ((out = result(&held, ROWS(P), ROWS(P))) != NULL)
+            predict(ROWS(P), ROWS(F), kicks / 3, DATA(P), DATA(F), DATA(Q), v, out);
+    }
+    return returned(&held, out);
+}
+
+FUNCTION(update)
+{
+    Held held = {0};
+    PyArrayObject *P, *R, *H;
+    PyObject *found = NULL;
+    double y[MOST_MEASURED], x[MOST_STATES], S[MOST_MEASURED * MOST_MEASURED], nis, *after, *K, *SI;
+    if (!takes(count, 6, "P, y, R, H, first and last")) return NULL;
+    const int m = tuple(given[1], 1, MOST_MEASURED, y, "the innovation");
+    const long first = m < 0 ? -1 : PyLong_AsLong(given[4]), last = m < 0 ? -1 : PyLong_AsLong(given[5]);
+    if (PyErr_Occurred() || (P = square(&held, given[0], MOST_STATES, "P")) == NULL) goto done;
+    const int n = ROWS(P);
     if (first < 0 || first > last || last > n) {
         PyErr_SetString(PyExc_ValueError, "the considered states are none of P");
         goto done;
     }
-    if ((R = matrix(given[2], m, m, "R")) == NULL || (H = matrix(given[3], m, n, "H")) == NULL) goto done;
-    if ((x = empty(1, n, 0)) == NULL || (after = empty(2, n, n)) == NULL || (K = empty(2, n, m)) == NULL ||
-        (S = empty(2, m, m)) == NULL || (SI = empty(2, m, m)) == NULL)
+    if ((R = matrix(&held, given[2], m, m, "R")) == NULL || (H = matrix(&held, given[3], m, n, "H")) == NULL ||
+        (after = result(&held, n, n)) == NULL || (K = result(&held, n, m)) == NULL ||
+        (SI = result(&held, m, m)) == NULL)
         goto done;
-    if (update((int)n, (int)m, PyArray_DATA(P), PyArray_DATA(H), PyArray_DATA(R), y, (int)first, (int)last,
-               numbers(after), numbers(x), numbers(K), numbers(S), numbers(SI))) {
-        Py_INCREF(Py_None);
-        found = Py_None;
+    if (update(n, m, DATA(P), DATA(H), DATA(R), y, (int)first, (int)last, after, x, K, S, SI, &nis)) {
+        found = Py_NewRef(Py_None);
     } else {
-        found = PyTuple_Pack(5, x, after, K, S, SI);
+        PyArrayObject **made = held.array + held.count - 3;
+        found = Py_BuildValue("NOOONd", as_tuple(x, n, 1), made[0], made[1], made[2],
+                              as_tuple(S, m, m + 1), nis);
     }
 done:
-    Py_XDECREF(P);
-    Py_XDECREF(R);
-    Py_XDECREF(H);
-    Py_XDECREF(x);
-    Py_XDECREF(after);
-    Py_XDECREF(K);
-    Py_XDECREF(S);
-    Py_XDECREF(SI);
+    release(&held);
     return found;
 }
 
-/* product(A, B) -> A B */
-static PyObject *py_product(PyObject *self, PyObject *const *given, Py_ssize_t count)
+FUNCTION(product)
 {
-    PyArrayObject *A = NULL, *B = NULL;
-    PyObject *out = NULL;
-    if (count != 2) return PyErr_Format(PyExc_TypeError, "product takes A and B");
-    if ((A = matrix(given[0], -1, -1, "A")) == NULL) goto done;
-    if ((B = matrix(given[1], PyArray_DIM(A, 1), -1, "B")) == NULL) goto done;
-    const npy_intp m = PyArray_DIM(A, 0), n = PyArray_DIM(B, 1);
-    if ((out = empty(2, m, n)) != NULL)
-        multiply((int)m, (int)PyArray_DIM(A, 1), (int)n, PyArray_DATA(A), PyArray_DATA(B), numbers(out));
-done:
-    Py_XDECREF(A);
-    Py_XDECREF(B);
-    return out;
+    Held held = {0};
+    PyArrayObject *A, *B;
+    double *out = NULL;
+    if (takes(count, 2, "A and B") && (A = matrix(&held, given[0], -1, -1, "A")) != NULL &&
+        (B = matrix(&held, given[1], COLUMNS(A), -1, "B")) != NULL &&
+        (out = result(&held, ROWS(A), COLUMNS(B))) != NULL)
+        multiply(ROWS(A), COLUMNS(A), COLUMNS(B), DATA(A), DATA(B), out);
+    return returned(&held, out);
 }
 
-/* inverse(M) -> M^-1, None where M is singular */
-static PyObject *py_inverse(PyObject *self, PyObject *const *given, Py_ssize_t count)
+FUNCTION(inverse)
 {
-    PyArrayObject *M = NULL;
-    PyObject *out = NULL;
-    if (count != 1) return PyErr_Format(PyExc_TypeError, "inverse takes a matrix");
-    if ((M = matrix(given[0], -1, -1, "M")) == NULL) return NULL;
-    const npy_intp m = PyArray_DIM(M, 0);
-    if (m != PyArray_DIM(M, 1) || m > MOST_STATES) {
-        PyErr_Format(PyExc_ValueError, "M is not square, or of more than %d rows", MOST_STATES);
-    } else if ((out = empty(2, m, m)) != NULL && invert((int)m, PyArray_DATA(M), numbers(out))) {
-        Py_DECREF(out);
-        Py_INCREF(Py_None);
-        out = Py_None;
+    Held held = {0};
+    PyArrayObject *M;
+    double *out = NULL;
+    if (takes(count, 1, "a matrix") && (M = square(&held, given[0], MOST_STATES, "M")) != NULL &&
+        (out = result(&held, ROWS(M), ROWS(M))) != NULL && invert(ROWS(M), DATA(M), out))
+        for (int i = 0; i < ROWS(M) * ROWS(M); i++) out[i] = NAN;
+    return returned(&held, out);
+}
+
+FUNCTION(linear)
+{
+    Held held = {0};
+    PyArrayObject *constant, *rows;
+    Map map[MOST_MAPS];
+    double numbers[MOST_MAPS][MOST_STATES], sums[2][MOST_MAPPED], *out = NULL;
+    const int maps = (int)(count / 2);
+    int width = 0;
+    if (!takes(count, 2 * (maps < 1 ? 1 : maps > MOST_MAPS ? MOST_MAPS : maps) + 1, "a constant, numbers, map"))
+        return NULL;
+    if ((constant = matrix(&held, given[0], -1, -1, "the constant")) == NULL) goto done;
+    for (int at = 0; at < maps; at++) {
+        map[at].k = tuple(given[1 + 2 * at], 0, MOST_STATES, numbers[at], "what is mapped");
+        if (map[at].k < 0 || (rows = matrix(&held, given[2 + 2 * at], map[at].k, -1, "a map")) == NULL) goto done;
+        map[at].numbers = numbers[at];
+        map[at].rows = DATA(rows);
+        if (at == 0 && ROWS(constant) > 0) width = COLUMNS(rows) / ROWS(constant);
+        if (width * ROWS(constant) != COLUMNS(rows) || width > COLUMNS(constant) || COLUMNS(rows) > MOST_MAPPED) {
+            PyErr_SetString(PyExc_ValueError, "a map is not to the first columns of the constant");
+            goto done;
+        }
     }
-    Py_DECREF(M);
-    return out;
+    if ((out = result(&held, ROWS(constant), COLUMNS(constant))) != NULL)
+        linear(ROWS(constant), COLUMNS(constant), width, maps, map, DATA(constant), sums[0], sums[1], out);
+done:
+    return returned(&held, out);
 }
 
-/* combine(numbers, rows) -> the sum of each number times its row, (n) */
-static PyObject *py_combine(PyObject *self, PyObject *const *given, Py_ssize_t count)
+FUNCTION(system_rows)
 {
-    PyArrayObject *rows = NULL;
-    PyObject *out = NULL;
-    if (count != 2 || !PyTuple_Check(given[0]))
-        return PyErr_Format(PyExc_TypeError, "combine takes a tuple of numbers and as many rows");
-    const Py_ssize_t k = PyTuple_GET_SIZE(given[0]);
-    double factors[MOST_STATES];
-    if (k > MOST_STATES) return PyErr_Format(PyExc_ValueError, "at most %d numbers are combined", MOST_STATES);
-    for (Py_ssize_t j = 0; j < k; j++) factors[j] = PyFloat_AsDouble(PyTuple_GET_ITEM(given[0], j));
-    if (PyErr_Occurred()) return NULL;
-    if ((rows = matrix(given[1], k, -1, "rows")) == NULL) return NULL;
-    const npy_intp n = PyArray_DIM(rows, 1);
-    if ((out = empty(1, n, 0)) != NULL)
-        multiply(1, (int)k, (int)n, factors, PyArray_DATA(rows), numbers(out));
-    Py_DECREF(rows);
-    return out;
+    Held held = {0};
+    PyArrayObject *constant, *torque;
+    double turn[3], inverse_h[9], *out = NULL;
+    if (takes(count, 4, "constant, turn, inverse and torque") && tuple(given[1], 3, 3, turn, "the turn") == 3 &&
+        tuple(given[2], 9, 9, inverse_h, "the inverse") == 9 &&
+        (constant = matrix(&held, given[0], MOVING, -1, "the constant")) != NULL &&
+        (torque = matrix(&held, given[3], 3, -1, "the torque")) != NULL) {
+        if (COLUMNS(torque) > COLUMNS(constant) || COLUMNS(constant) > MOST_STATES)
+            PyErr_SetString(PyExc_ValueError, "the torque is not by the first states");
+        else if ((out = result(&held, MOVING, COLUMNS(constant))) != NULL)
+            system_rows(COLUMNS(constant), COLUMNS(torque), DATA(constant), turn, inverse_h, DATA(torque), out);
+    }
+    return returned(&held, out);
 }
+
+FUNCTION(series)
+{
+    Held held = {0};
+    PyArrayObject *given_rows;
+    double *out = NULL;
+    const long order = count == 2 ? PyLong_AsLong(given[1]) : 0;
+    if (takes(count, 2, "rows and order") && !PyErr_Occurred() &&
+        (given_rows = matrix(&held, given[0], MOVING, -1, "the rows")) != NULL) {
+        if (COLUMNS(given_rows) > MOST_STATES || (order != 2 && order != 4))
+            PyErr_SetString(PyExc_ValueError, "more states than allowed, or an order other than 2 and 4");
+        else if ((out = result(&held, MOVING, COLUMNS(given_rows))) != NULL)
+            series(COLUMNS(given_rows), (int)order, DATA(given_rows), out);
+    }
+    return returned(&held, out);
+}
+
+FUNCTION(stack)
+{
+    Held held = {0};
+    PyArrayObject *A, *B;
+    double *out = NULL;
+    if (takes(count, 2, "A and B") && (A = matrix(&held, given[0], -1, -1, "A")) != NULL &&
+        (B = matrix(&held, given[1], -1, COLUMNS(A), "B")) != NULL &&
+        (out = result(&held, ROWS(A) + ROWS(B), COLUMNS(A))) != NULL) {
+        memcpy(out, DATA(A), sizeof(double) * ROWS(A) * COLUMNS(A));
+        memcpy(out + (size_t)ROWS(A) * COLUMNS(A), DATA(B), sizeof(double) * ROWS(B) * COLUMNS(A));
+    }
+    return returned(&held, out);
+}
+
+FUNCTION(diagonal)
+{
+    Held held = {0};
+    PyArrayObject *P;
+    PyObject *found = NULL;
+    if (takes(count, 1, "a matrix") && (P = square(&held, given[0], MOST_STATES, "P")) != NULL)
+        found = as_tuple(DATA(P), ROWS(P), ROWS(P) + 1);
+    release(&held);
+    return found;
+}
+
+FUNCTION(carry_trace)
+{
+    Held held = {0};
+    PyArrayObject *effect, *F;
+    double *out = NULL;
+    if (takes(count, 2, "effect and F") && (effect = matrix(&held, given[0], -1, -1, "the effect")) != NULL &&
+        (F = matrix(&held, given[1], -1, ROWS(effect), "F")) != NULL) {
+        if (ROWS(F) > ROWS(effect))
+            PyErr_SetString(PyExc_ValueError, "F has more rows than columns");
+        else if ((out = result(&held, ROWS(effect), COLUMNS(effect))) != NULL) {
+            memcpy(out, DATA(effect), sizeof(double) * ROWS(effect) * COLUMNS(effect));
+            multiply(ROWS(F), ROWS(effect), COLUMNS(effect), DATA(F), DATA(effect), out);
+        }
+    }
+    return returned(&held, out);
+}
+
+FUNCTION(update_trace)
+{
+    Held held = {0};
+    PyArrayObject *effect, *sums, *H, *K, *SI;
+    PyObject *found = NULL;
+    double y[MOST_MEASURED], *out, *sums_out;
+    if (!takes(count, 6, "effect, sums, y, H, K and S^-1")) return NULL;
+    const int m = tuple(given[2], 1, MOST_MEASURED, y, "the innovation");
+    if (m < 0 || (sums = square(&held, given[1], MOST_STATES, "the sums")) == NULL) goto done;
+    const int k = ROWS(sums);
+    if ((effect = matrix(&held, given[0], -1, k, "the effect")) != NULL &&
+        (H = matrix(&held, given[3], m, ROWS(effect), "H")) != NULL &&
+        (K = matrix(&held, given[4], ROWS(effect), m, "K")) != NULL &&
+        (SI = matrix(&held, given[5], m, m, "S^-1")) != NULL &&
+        (out = result(&held, ROWS(effect), k)) != NULL && (sums_out = result(&held, k, k)) != NULL) {
+        trace_update(ROWS(effect), m, k, DATA(effect), DATA(sums), y, DATA(H), DATA(K), DATA(SI), out, sums_out);
+        found = PyTuple_Pack(2, held.array[held.count - 2], held.array[held.count - 1]);
+    }
+done:
+    release(&held);
+    return found;
+}
+
+FUNCTION(unexplained)
+{
+    Held held = {0};
+    PyArrayObject *sums;
+    PyObject *found = NULL;
+    if (takes(count, 1, "sums") && (sums = square(&held, given[0], MOST_STATES, "the sums")) != NULL) {
+        if (ROWS(sums) < 1) PyErr_SetString(PyExc_ValueError, "there are no sums");
+        else found = PyFloat_FromDouble(unexplained(ROWS(sums), DATA(sums)));
+    }
+    release(&held);
+    return found;
+}
+
+FUNCTION(turn_along)
+{
+    Held held = {0};
+    PyArrayObject *P, *W, *moving;
+    double e[MOST_STATES], *out = NULL;
+    if (!takes(count, 6, "P, error, first, factor, W and the map")) return NULL;
+    const long first = PyLong_AsLong(given[2]);
+    const double factor = PyErr_Occurred() ? 0.0 : PyFloat_AsDouble(given[3]);
+    if (!PyErr_Occurred() && (P = square(&held, given[0], MOST_STATES, "P")) != NULL &&
+        tuple(given[1], ROWS(P), ROWS(P), e, "the error") >= 0 &&
+        (W = matrix(&held, given[4], -1, ROWS(P), "W")) != NULL &&
+        (moving = matrix(&held, given[5], -1, -1, "the map")) != NULL) {
+        const int m = ROWS(moving), k = ROWS(W);
+        if (first < 0 || first + m > ROWS(P) || k > MOST_TURNS || COLUMNS(moving) != m * k)
+            PyErr_SetString(PyExc_ValueError, "the map is not to the directions of P");
+        else if ((out = result(&held, ROWS(P), ROWS(P))) != NULL)
+            turn_along(ROWS(P), m, k, (int)first, DATA(P), e, factor, DATA(W), DATA(moving), out);
+    }
+    return returned(&held, out);
+}
+
+#define METHOD(name, words) {#name, (PyCFunction)(void (*)(void))py_##name, METH_FASTCALL, words}
 
 static PyMethodDef methods[] = {
-    {"predict", (PyCFunction)(void (*)(void))py_predict, METH_FASTCALL, "predict(P, F, Q) -> P"},
-    {"update", (PyCFunction)(void (*)(void))py_update, METH_FASTCALL,
-     "update(P, y, R, H, first, last) -> (x, P, K, S, SI), None where S is singular"},
-    {"product", (PyCFunction)(void (*)(void))py_product, METH_FASTCALL, "product(A, B) -> A B"},
-    {"inverse", (PyCFunction)(void (*)(void))py_inverse, METH_FASTCALL,
-     "inverse(M) -> M^-1, None where M is singular"},
-    {"combine", (PyCFunction)(void (*)(void))py_combine, METH_FASTCALL,
-     "combine(numbers, rows) -> the sum of each number times its row"},
+    METHOD(predict, "predict(P, F, Q, kicks) -> P"),
+    METHOD(update, "update(P, y, R, H, first, last) -> (x, P, K, S^-1, diagonal of S, y^T S^-1 y); None: S is singular"),
+    METHOD(product, "product(A, B) -> A B"),
+    METHOD(inverse, "inverse(M) -> M^-1, NaN where M is singular"),
+    METHOD(linear, "linear(constant, numbers, map, ...) -> constant + numbers * map, in its first columns"),
+    METHOD(system_rows, "system_rows(constant, -h omega, h J^-1, torque by state) -> rows of 1 + A h"),
+    METHOD(series, "series(1 + A h, 2 or 4) -> exp(A h) to this order"),
+    METHOD(stack, "stack(A, B) -> the rows of A, then those of B"),
+    METHOD(diagonal, "diagonal(M) -> its numbers"),
+    METHOD(carry_trace, "carry_trace(effect, F) -> effect"),
+    METHOD(update_trace, "update_trace(effect, sums, y, H, K, S^-1) -> (effect, sums)"),
+    METHOD(unexplained, "unexplained(sums) -> what no deviation explains, NaN of damaged sums"),
+    METHOD(turn_along, "turn_along(P, error, first, factor, W, map) -> P"),
     {NULL, NULL, 0, NULL},
 };
 

@@ -1,10 +1,10 @@
 """What each sensor should measure, and how that depends on every part of the error state."""
 
 from fsw.core.algebra.quaternion import Quaternion, rotate
-from fsw.core.algebra.vector import ZERO, Vec3, add, cross, dot, scale, skew, sub
-from fsw.core.estimation.kalman import Matrix, combine
+from fsw.core.algebra.vector import ZERO, Vec3, add, cross, dot, scale, sub
+from fsw.core.estimation.kalman import Matrix, linear
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.parameters import Parameters
+from fsw.core.estimation.parameters import Matrix3x3, Parameters
 
 Prediction = tuple[Vec3, Matrix]
 """What should be measured, and its sensitivity H, (3, n)."""
@@ -39,16 +39,10 @@ def sun_prediction(
     return s, _sensitivity(s, omega, delay_s, config.sun_sensitivity, config.sun_map)
 
 
-def _sensitivity(
-    u: Vec3, omega: Vec3, delay_s: float, constant: Matrix, by_direction: Matrix | None
-) -> Matrix:
+def _sensitivity(u: Vec3, omega: Vec3, delay_s: float, constant: Matrix, by_direction: Matrix) -> Matrix:
     """H, (3, n), of a sensor that sees the direction u; body axes."""
-    if by_direction is None:
-        sensitivity = constant.copy()
-        sensitivity[:, 0:3] = skew(u)
-        return sensitivity
-    numbers = (*_since(u, omega, delay_s), *u, *cross(omega, u), *scale(-delay_s, u))
-    return combine(numbers, by_direction).reshape(constant.shape) + constant
+    numbers = (_since(u, omega, delay_s), u, cross(omega, u), scale(-delay_s, u))
+    return linear(constant, numbers, by_direction)
 
 
 def _late(v_body: Vec3, omega: Vec3, delay_s: float) -> Vec3:
@@ -56,7 +50,7 @@ def _late(v_body: Vec3, omega: Vec3, delay_s: float) -> Vec3:
     return _turned(v_body, scale(-delay_s, omega))
 
 
-def _since(u: Vec3, omega: Vec3, delay_s: float) -> tuple[float, ...]:
+def _since(u: Vec3, omega: Vec3, delay_s: float) -> Matrix3x3:
     """The derivative by the attitude now, from that by the attitude ``delay_s`` ago; to first order, by rows.
 
     [u x] (1 + [w x]) = [u x] + w u^T - (u . w) 1, w being the rotation since. Along the rate it is exactly
@@ -66,9 +60,15 @@ def _since(u: Vec3, omega: Vec3, delay_s: float) -> tuple[float, ...]:
     w1, w2, w3 = w = scale(delay_s, omega)
     along = dot(u, w)
     return (
-        *(w1 * u1 - along, w1 * u2 - u3, w1 * u3 + u2),
-        *(w2 * u1 + u3, w2 * u2 - along, w2 * u3 - u1),
-        *(w3 * u1 - u2, w3 * u2 + u1, w3 * u3 - along),
+        w1 * u1 - along,
+        w1 * u2 - u3,
+        w1 * u3 + u2,
+        w2 * u1 + u3,
+        w2 * u2 - along,
+        w2 * u3 - u1,
+        w3 * u1 - u2,
+        w3 * u2 + u1,
+        w3 * u3 - along,
     )
 
 

@@ -22,20 +22,26 @@ from dataclasses import dataclass
 from math import inf, isfinite, sqrt
 from typing import final
 
-import numpy as np
-
 from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, normalise
 from fsw.core.algebra.vector import ZERO, Vec3, add, dot, sub
 from fsw.core.estimation.dynamics.error_dynamics import (
     FAST_RADPS,
     Driven,
     free_motion,
-    process_noise,
+    kicks,
     transition_matrix,
     with_age_along,
 )
 from fsw.core.estimation.dynamics.motion import Acting, advanced, middle, turn
-from fsw.core.estimation.kalman import Matrix, Trace, Update, carry_trace, product, unexplained
+from fsw.core.estimation.kalman import (
+    Matrix,
+    Trace,
+    carry_trace,
+    diagonal,
+    stack,
+    unexplained,
+    update_trace,
+)
 from fsw.core.estimation.kalman import predict as predict_covariance
 from fsw.core.estimation.kalman import update as update_error
 from fsw.core.estimation.measurement import field_prediction, sun_prediction
@@ -51,7 +57,8 @@ from fsw.core.estimation.unobservable import turned_along
 
 LAG_S = 60.0
 """Time over which innovations are averaged."""
-NO_LAG = (0.0,) * 6
+Lag = tuple[float, float, float, float, float, float]
+NO_LAG: Lag = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 MAX_VARIANCE = 1e6
 """Beyond it (1000 rad) an estimate is worthless, and the algebra nears overflow."""
 
@@ -74,7 +81,7 @@ class Estimate:
     trace: Trace | None = None
     nis: float = 0.0
     numbers: int = 0
-    lag: tuple[float, ...] = NO_LAG
+    lag: Lag = NO_LAG
 
     def copy(self) -> "Estimate":
         """An estimate that goes on by itself from here; the arrays are shared, since none is changed."""
@@ -105,7 +112,7 @@ def correct(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: Mekf
         uncertainty: covariance that this adds, (n, n).
         config: the filter.
     """
-    _fold(estimate, error, estimate.covariance + uncertainty, config)
+    _fold(estimate, tuple(error.tolist()), estimate.covariance + uncertainty, config)
 
 
 def healthy(estimate: Estimate) -> bool:
@@ -114,20 +121,16 @@ def healthy(estimate: Estimate) -> bool:
     Only a component of a parameter may be exact, with zero variance. To be checked after a prediction, which
     moves a bad number onto the diagonal of the covariance.
     """
-    variances: list[float] = estimate.covariance.diagonal().tolist()
-    positive = min(variances[:6]) > 0.0 and min(variances) >= 0.0
-    numbers, variance = estimate.nis, 0.0
-    for part in (
-        estimate.q_body_from_eci,
-        estimate.omega_body_radps,
-        estimate.lag,
-        estimate.parameters.floats(),
-    ):
-        for number in part:
-            numbers += number
-    for one in variances:
-        variance += one
-    return isfinite(numbers) and positive and variance < MAX_VARIANCE
+    variances, total = diagonal(estimate.covariance), 0.0
+    for place in range(len(variances)):
+        variance = variances[place]
+        if variance < 0.0 or (variance == 0.0 and place < ATTITUDE_AND_RATE):
+            return False
+        total += variance
+    (q0, q1, q2, q3), (w1, w2, w3) = estimate.q_body_from_eci, estimate.omega_body_radps
+    b1, b2, b3, s1, s2, s3 = estimate.lag
+    numbers = q0 + q1 + q2 + q3 + w1 + w2 + w3 + b1 + b2 + b3 + s1 + s2 + s3 + estimate.nis
+    return total < MAX_VARIANCE and isfinite(numbers + estimate.parameters.total())
 
 
 def predict(
@@ -180,14 +183,17 @@ def predict_step(
     around_mid, motion = middle(q, omega, acting, h)
     rotation, omega_after = advanced(q, omega, motion, acting, h)
     transition = transition_matrix(motion, around_mid, driven.m_body_am2, rotor, config, step)
-    noise = process_noise(driven, around_mid.b_t, config, step)
+    kicked = kicks(driven, around_mid.b_t, config, step)
     estimate.q_body_from_eci = normalise(multiply(q, turn(rotation)))
     estimate.omega_body_radps = omega_after
-    estimate.covariance = predict_covariance(estimate.covariance, transition, noise, config.algebra)
+    estimate.covariance = predict_covariance(
+        estimate.covariance, transition, step.process_noise, kicked, config.algebra
+    )
     if estimate.trace is not None:
         carry_trace(estimate.trace, transition)
     estimate.nis, estimate.numbers = 0.0, 0
-    estimate.lag = tuple([(1.0 - h / LAG_S) * mean for mean in estimate.lag])
+    left, (b1, b2, b3, s1, s2, s3) = 1.0 - h / LAG_S, estimate.lag
+    estimate.lag = (left * b1, left * b2, left * b3, left * s1, left * s2, left * s3)
 
 
 def update_field(
@@ -247,7 +253,7 @@ def update_both(
     b_predicted, b_sensitivity = field_prediction(q, omega, parameters, b_eci_t, config)
     s_predicted, s_sensitivity = sun_prediction(q, omega, parameters, s_eci, config)
     innovation = (*sub(b_body_t, b_predicted), *sub(s_body, s_predicted))
-    sensitivity = np.concatenate((b_sensitivity, s_sensitivity))
+    sensitivity = stack(b_sensitivity, s_sensitivity)
     noise = config.both_noise
     if open_body is not None:
         noise = noise.copy()
@@ -274,57 +280,50 @@ def take(
     found = update_error(estimate.covariance, innovation, noise, sensitivity, considered, config.algebra)
     if found is None:
         return False
-    y, trace = np.array([innovation]).T, estimate.trace
-    nis = float(product(y.T, product(found.weight, y))[0, 0])
-    traced: Matrix | None = None
-    sums: Matrix | None = None
+    trace, nis, measured = estimate.trace, found.nis, len(innovation)
     if trace is not None:
-        traced = product(sensitivity, trace.effect)
-        traced[:, -1:] = y
-        sums = trace.sums + product(traced.T, product(found.weight, traced))
-        if nis > 2.0 * len(traced):  # otherwise nothing to explain
+        effect, sums = update_trace(trace, innovation, sensitivity, found)
+        if nis > 2.0 * measured:  # otherwise nothing to explain
             nis = unexplained(sums) - unexplained(trace.sums)
     if not 0.0 <= nis <= gate_nis:  # overflow can make it -inf
         return False
-    if trace is not None and traced is not None and sums is not None:
-        trace.effect = trace.effect - product(found.gain, traced)
-        trace.sums = sums
-        trace.measured += len(traced)
+    if trace is not None:
+        trace.effect, trace.sums = effect, sums
+        trace.measured += measured
     estimate.nis += nis
-    estimate.numbers += len(innovation)
-    if len(innovation) > 1:
-        estimate.lag = _lagging(estimate.lag, innovation, found, first, config.tick_s / LAG_S)
+    estimate.numbers += measured
+    if measured > 1:
+        estimate.lag = _lagging(estimate.lag, innovation, found.variances, first, config.tick_s / LAG_S)
     _fold(estimate, found.error, found.covariance, config)
     return True
 
 
 def _lagging(
-    lag: tuple[float, ...], innovation: tuple[float, ...], found: Update, first: int, part: float
-) -> tuple[float, ...]:
+    lag: Lag, innovation: tuple[float, ...], variances: tuple[float, ...], first: int, part: float
+) -> Lag:
     """The means with this fraction of the new innovations added, from place ``first`` on."""
     means = list(lag)
-    variances: list[float] = found.spread.diagonal().tolist()
-    for place, (number, variance) in enumerate(zip(innovation, variances, strict=True), start=first):
-        means[place] += part * number / sqrt(variance) if variance > 0.0 else inf
-    return tuple(means)
+    for place in range(len(innovation)):
+        variance = variances[place]
+        means[first + place] += part * innovation[place] / sqrt(variance) if variance > 0.0 else inf
+    m1, m2, m3, m4, m5, m6 = means
+    return (m1, m2, m3, m4, m5, m6)
 
 
-def _fold(estimate: Estimate, error: Matrix, covariance: Matrix, config: MekfConfig) -> None:
+def _fold(estimate: Estimate, error: tuple[float, ...], covariance: Matrix, config: MekfConfig) -> None:
     """Fold an error state into attitude, rate and parameters; the covariance of their errors follows them."""
     parts, parameters = config.layout, estimate.parameters
-    values: list[float] = error.tolist()
-    omega = add(estimate.omega_body_radps, (values[3], values[4], values[5]))
+    omega = add(estimate.omega_body_radps, (error[3], error[4], error[5]))
     turning = parts.delay is not None and dot(omega, omega) >= FAST_RADPS**2
     before = free_motion(estimate.omega_body_radps, parameters, config.rotor) if turning else None
     inertia_error = parameters.inertia_error_kgm2
-    turned = from_small_rotation((values[0], values[1], values[2]))
+    turned = from_small_rotation((error[0], error[1], error[2]))
     estimate.q_body_from_eci = normalise(multiply(estimate.q_body_from_eci, turned))
     estimate.omega_body_radps = omega
-    correct_parameters(parameters, values, parts)
+    correct_parameters(parameters, error, parts)
     if parts.delay is not None and before is not None:
         shift = free_motion(omega, parameters, config.rotor) - before
         covariance = with_age_along(shift, covariance, parts.delay)
     if config.unobservable is not None:
         covariance = turned_along(covariance, error, inertia_error, config.unobservable)
-        covariance = 0.5 * (covariance + covariance.T)
     estimate.covariance = covariance

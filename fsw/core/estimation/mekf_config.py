@@ -55,11 +55,11 @@ class MekfConfig:
     constant: Matrix
     moving: Matrix
     driven: Matrix
-    torque_map: Matrix | None
+    torque_map: tuple[Matrix, Matrix] | None
     field_sensitivity: Matrix
     sun_sensitivity: Matrix
-    field_map: Matrix | None
-    sun_map: Matrix | None
+    field_map: Matrix
+    sun_map: Matrix
     field_noise: Matrix
     sun_noise: Matrix
     both_noise: Matrix

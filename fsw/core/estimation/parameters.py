@@ -86,6 +86,22 @@ class Parameters:
             *self.earth_light,
         )
 
+    def total(self) -> float:
+        """The sum of all components: no number unless each is one."""
+        (b1, b2, b3), (t1, t2, t3), (d1, d2, d3) = self.mag_bias_t, self.torque_body_nm, self.dipole_body_am2
+        g11, g12, g13, g21, g22, g23, g31, g32, g33 = self.coil_error
+        xx, yy, zz, xy, xz, yz = self.inertia_error_kgm2
+        (m1, m2, m3), (c1, c2, c3), (s1, s2, s3) = self.mag_turn_rad, self.mag_scale, self.sun_turn_rad
+        total = (
+            b1 + b2 + b3 + t1 + t2 + t3 + d1 + d2 + d3 + g11 + g12 + g13 + g21 + g22 + g23 + g31 + g32 + g33
+        )
+        total += xx + yy + zz + xy + xz + yz + m1 + m2 + m3 + c1 + c2 + c3 + s1 + s2 + s3
+        total += self.delay_s[0] + self.delay_s[1]
+        for part in (self.cell_excess, self.cell_gain, self.earth_light):
+            for number in part:
+                total += number
+        return total
+
 
 NOTHING = Parameters()
 """A satellite that is as its table says, as far as is known."""
@@ -154,7 +170,7 @@ def layout(carried: set[str]) -> Layout:
     return Layout(size, known, components, *places)
 
 
-def correct_parameters(parameters: Parameters, error: list[float], places: Layout) -> None:
+def correct_parameters(parameters: Parameters, error: tuple[float, ...], places: Layout) -> None:
     """Add to the parameters their part of an error state."""
     at = ATTITUDE_AND_RATE
     if places.mag_bias is not None:
@@ -214,12 +230,12 @@ def correct_parameters(parameters: Parameters, error: list[float], places: Layou
         parameters.earth_light = _all_moved(parameters.earth_light, error, at)
 
 
-def _moved(v: Vec3, error: list[float], at: int) -> Vec3:
+def _moved(v: Vec3, error: tuple[float, ...], at: int) -> Vec3:
     x, y, z = v
     return (x + error[at], y + error[at + 1], z + error[at + 2])
 
 
-def _all_moved(values: tuple[float, ...], error: list[float], at: int) -> tuple[float, ...]:
+def _all_moved(values: tuple[float, ...], error: tuple[float, ...], at: int) -> tuple[float, ...]:
     return tuple([value + error[at + place] for place, value in enumerate(values)])
 
 

@@ -12,11 +12,11 @@ _AXES = np.eye(3)
 _SKEW = np.array([skew((x, y, z)) for x, y, z in _AXES.tolist()]).transpose(1, 2, 0)
 
 
-def sensitivity_map(parts: Layout, sensor: int, turn: slice | None, scale: slice | None) -> Matrix | None:
+def sensitivity_map(parts: Layout, sensor: int, turn: slice | None, scale: slice | None) -> Matrix:
     """The map to the entries of H, (3, n), by rows, from 18 numbers, (18, 3 n).
 
     They are the derivative by the attitude (9) and the components of the direction u as the sensor sees it,
-    of omega x u, and of -delay u; body axes. None if the filter carries nothing of the sensor but its bias.
+    of omega x u, and of -delay u; body axes.
 
     Args:
         parts: layout of the error state.
@@ -24,8 +24,6 @@ def sensitivity_map(parts: Layout, sensor: int, turn: slice | None, scale: slice
         turn: place of its misalignment.
         scale: place of its scale errors.
     """
-    if parts.delay is None and turn is None and scale is None:
-        return None
     rows = np.zeros((3, parts.size, _NUMBERS))
     rows[:, 0:3, _BY_ATTITUDE] = np.eye(9).reshape(3, 3, 9)
     if parts.delay is not None:

@@ -24,7 +24,7 @@ from typing import final
 import numpy as np
 
 from fsw.core.algebra.vector import ZERO, Vec3, skew
-from fsw.core.estimation.kalman import Matrix, product
+from fsw.core.estimation.kalman import Matrix, turn_along
 from fsw.core.estimation.parameters import (
     NOTHING,
     Layout,
@@ -86,7 +86,7 @@ def unobservable(parts: Layout, variances: list[float], rotor: Rotor) -> Unobser
     given = slice(0 if turns else FACTOR, FACTOR + 1)
     nominal = unobservable_directions(ZERO, NOTHING, rotor, parts)
     gained = []
-    for error in np.eye(parts.size).tolist():
+    for error in map(tuple, np.eye(parts.size).tolist()):
         parameters = NOTHING.copy()
         correct_parameters(parameters, error, parts)
         gained.append(unobservable_directions((error[3], error[4], error[5]), parameters, rotor, parts))
@@ -97,11 +97,9 @@ def unobservable(parts: Layout, variances: list[float], rotor: Rotor) -> Unobser
 
 
 def turned_along(
-    covariance: Matrix, error: Matrix, inertia_error_kgm2: Symmetric, directions: Unobservable
+    covariance: Matrix, error: tuple[float, ...], inertia_error_kgm2: Symmetric, directions: Unobservable
 ) -> Matrix:
     """The covariance of a corrected estimate, turned with the directions that no sample shows.
-
-    The result is not symmetric: half the sum of it and its transpose is the covariance.
 
     Args:
         covariance: after the correction, but along the directions before it, (n, n).
@@ -109,15 +107,11 @@ def turned_along(
         inertia_error_kgm2: as estimated before.
         directions: those of the filter.
     """
-    moved, along = directions.moved, directions.coordinates
     xx, yy, zz, _, _, _ = inertia_error_kgm2
-    turns = product(error[None, moved], directions.moving).reshape(-1, len(along))
-    turns[:, -1] *= 1.0 / (directions.trace_kgm2 + xx + yy + zz)
-    known = product(along, covariance)
-    known[:, moved] += product(product(known, 0.5 * along.T), turns.T)
-    turned = covariance.copy()
-    turned[moved] += 2.0 * product(turns, known)
-    return turned
+    factor = 1.0 / (directions.trace_kgm2 + xx + yy + zz)
+    return turn_along(
+        covariance, error, directions.moved.start, factor, directions.coordinates, directions.moving
+    )
 
 
 def unobservable_directions(

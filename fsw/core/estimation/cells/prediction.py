@@ -7,7 +7,7 @@ import numpy as np
 from fsw.core.algebra.quaternion import Quaternion, rotate
 from fsw.core.algebra.vector import Vec3, dot, scale
 from fsw.core.estimation.cells.cell_set import SIGMAS, CellSet, Light
-from fsw.core.estimation.kalman import Matrix, combine
+from fsw.core.estimation.kalman import Matrix, linear
 from fsw.core.estimation.measurement import sun_prediction
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
@@ -31,11 +31,11 @@ def prediction(
     normal, parts = cells.normals_body[cell], config.layout
     q, omega, known = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
     s, sensitivity = sun_prediction(q, omega, known, seen.s_eci, config)
-    shown, row = 0.0, np.zeros(parts.size)
+    shown, row, nothing = 0.0, np.zeros(parts.size), np.zeros((1, parts.size))
     direct = dot(normal, s)
     if direct > 0.0:
         gain = 1.0 + (known.cell_gain[cell] if known.cell_gain else 0.0)
-        shown, row = gain * direct, gain * combine(normal, sensitivity)
+        shown, row = gain * direct, gain * linear(nothing, normal, sensitivity)[0]
         if parts.cell_gain is not None:
             row[parts.cell_gain.start + cell] = direct
     if seen.earth > 0.0:
@@ -44,7 +44,7 @@ def prediction(
         of_one = seen.earth / cells.albedo
         earth = seen.earth + of_one * (known.earth_light[0] if known.earth_light else 0.0)
         shown += earth * view * view
-        row = row + combine(scale(earth * view, normal), e_sensitivity)
+        row = row + linear(nothing, scale(earth * view, normal), e_sensitivity)[0]
         if parts.earth_light is not None:
             row[parts.earth_light.start] = of_one * view * view
     if parts.cells is not None:

@@ -27,7 +27,7 @@ from fsw.core.algebra.quaternion import conjugate, multiply
 from fsw.core.algebra.vector import Vec3, sub
 from fsw.core.estimation.cells.cell_set import CellSet, Light
 from fsw.core.estimation.cells.prediction import earthlit, prediction, sunlit
-from fsw.core.estimation.kalman import Matrix, product
+from fsw.core.estimation.kalman import Matrix, diagonal, product
 from fsw.core.estimation.measurement import field_prediction
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
@@ -145,7 +145,7 @@ def relinearise(
         effect = estimate.trace.effect.copy()
         effect[places] += product(change, effect)
         estimate.trace.effect = effect
-    correct_parameters(estimate.parameters, left.tolist(), config.layout)
+    correct_parameters(estimate.parameters, tuple(left.tolist()), config.layout)
     estimate.covariance = 0.5 * (covariance + covariance.T)
 
 
@@ -160,7 +160,7 @@ def correction(before: Estimate, after: Estimate, config: MekfConfig) -> Matrix:
 
 def _uncertain(estimate: Estimate, lit: tuple[int, ...], config: MekfConfig) -> tuple[list[int], list[int]]:
     """Of field and lit cells, those whose bias or excess is uncertain: numbers, and places of it."""
-    parts, variances = config.layout, estimate.covariance.diagonal().tolist()
+    parts, variances = config.layout, diagonal(estimate.covariance)
     place_of: dict[int, int] = {}
     if parts.mag_bias is not None:
         place_of = {axis: parts.mag_bias.start + axis for axis in range(3)}

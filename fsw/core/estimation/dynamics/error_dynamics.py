@@ -5,14 +5,12 @@ from typing import final
 
 import numpy as np
 
-from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, skew, transform
+from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, transform
 from fsw.core.estimation.dynamics.motion import BodyFields, BodyMotion, outer
 from fsw.core.estimation.dynamics.torque_maps import torque_rows
-from fsw.core.estimation.kalman import Matrix, combine, product
+from fsw.core.estimation.kalman import Matrix, Numbers, bilinear, linear, series, system_rows
 from fsw.core.estimation.mekf_config import FilterStep, MekfConfig
 from fsw.core.estimation.parameters import Parameters, Rotor, estimated_rotor
-
-_IDENTITY = np.eye(6)
 
 
 @final
@@ -34,20 +32,18 @@ class Driven:
         return self.m_body_am2 == ZERO and self.doubted_am2 == ZERO
 
 
-def process_noise(driven: Driven, b_body_t: Vec3, config: MekfConfig, step: FilterStep) -> Matrix:
-    """The noise of a step; while a coil is driven also that of its dipole, known only to ``dipole_sigma``.
+def kicks(driven: Driven, b_body_t: Vec3, config: MekfConfig, step: FilterStep) -> Numbers:
+    """Standard deviations of what a driven dipole adds to the rate in a step, rad/s, body axes.
 
-    Its error is constant over a tick, of which the step may be a piece, and independent of those of the other
-    ticks.
+    The dipole is known only to ``dipole_sigma``, and as far as it is not doubted. Its error is constant over
+    a tick, of which the step may be a piece, and independent of those of the other ticks.
     """
     if driven.nothing:
-        return step.process_noise
-    noise = step.process_noise.copy()
-    for sigma_am2 in (scale(config.dipole_sigma, driven.m_body_am2), driven.doubted_am2):
-        turn = scale(step.tick_s * sqrt(step.pieces), cross(sigma_am2, b_body_t))
-        kick = np.array(transform(config.rotor.inertia_inverse, turn))
-        noise[3:6, 3:6] += np.outer(kick, kick)
-    return noise
+        return ()
+    h, inverse = step.tick_s * sqrt(step.pieces), config.rotor.inertia_inverse
+    by_all = scale(h, cross(scale(config.dipole_sigma, driven.m_body_am2), b_body_t))
+    by_doubt = scale(h, cross(driven.doubted_am2, b_body_t))
+    return (transform(inverse, by_all), transform(inverse, by_doubt))
 
 
 NOT_DRIVEN = Driven(ZERO)
@@ -76,37 +72,18 @@ def transition_matrix(
         config: the filter.
         step: the tick, or a piece of it.
     """
-    linear = step.constant.copy()
-    moving = linear[:, 0:6]
-    if config.torque_map is None:
-        change = combine((*motion.omega, *around.pull()), step.moving)
-        if motion.m_am2 != ZERO:
-            change += combine(outer(motion.m_am2, around.b_t), step.driven)
-        moving += change.reshape(6, 6)
+    h = step.tick_s
+    if config.torque_map is not None:
+        (j11, j12, j13), (j21, j22, j23), (j31, j32, j33) = rotor.inertia_inverse
+        inverse_h = (h * j11, h * j12, h * j13, h * j21, h * j22, h * j23, h * j31, h * j32, h * j33)
+        torque = torque_rows(motion, around, m_driven, rotor, config.torque_map)
+        rows = system_rows(step.constant, scale(-h, motion.omega), inverse_h, torque)
+    elif motion.m_am2 == ZERO:
+        rows = linear(step.constant, (motion.omega, around.pull()), step.moving)
     else:
-        moving[0:3, 0:3] = skew(scale(-step.tick_s, motion.omega))
-        inverse_h = step.tick_s * np.array(rotor.inertia_inverse)
-        by_error = torque_rows(motion, around, m_driven, rotor, config.torque_map)
-        linear[3:6, : by_error.shape[1]] = product(inverse_h, by_error)
-        moving += _IDENTITY
-    if step.pieces > 1:
-        return _to_fourth_order(linear)
-    transition = product(moving, linear)  # (1 + A h)^2: the mean of it and 1 is the series
-    moving[:] = _IDENTITY
-    transition += linear
-    transition *= 0.5
-    return transition
-
-
-def _to_fourth_order(step: Matrix) -> Matrix:
-    """The rows of exp(A h), by its series, from those of I + A h."""
-    change = step.copy()
-    change[:, 0:6] -= _IDENTITY
-    total = change
-    for order in (4.0, 3.0, 2.0):
-        total = change + product(change[:, 0:6], total) / order
-    total[:, 0:6] += _IDENTITY
-    return total
+        turning, acting = (motion.omega, around.pull()), outer(motion.m_am2, around.b_t)
+        rows = bilinear(step.constant, turning, step.moving, acting, step.driven)
+    return series(rows, 2 if step.pieces == 1 else 4)
 
 
 def free_motion(omega: Vec3, parameters: Parameters, nominal: Rotor) -> Matrix:

@@ -4,7 +4,7 @@ from typing import final
 
 from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, rotate
 from fsw.core.algebra.vector import Vec3, add, cross, dot, scale, sub, transform
-from fsw.core.estimation.parameters import Rotor
+from fsw.core.estimation.parameters import Matrix3x3, Rotor
 
 MIDPOINT_RAD = 0.03
 """Up to this rotation in a tick the motion at its middle suffices: to 2e-6 rad, 3e-8 rad a tick."""
@@ -21,7 +21,7 @@ class BodyFields:
         self.b_t = b_t
         self.gravity_per_s2 = gravity_per_s2
 
-    def pull(self) -> tuple[float, ...]:
+    def pull(self) -> Matrix3x3:
         """The dyad 3 mu/r^3 e1 e1^T by rows, 1/s^2."""
         return outer(scale(self.gravity_per_s2, self.e1), self.e1)
 
@@ -117,7 +117,7 @@ def turn(rotation_rad: Vec3) -> Quaternion:
     return (cosine, half_sinc * r1, half_sinc * r2, half_sinc * r3)
 
 
-def outer(a: Vec3, b: Vec3) -> tuple[float, ...]:
+def outer(a: Vec3, b: Vec3) -> Matrix3x3:
     """The dyad a b^T by rows."""
     a1, a2, a3 = a
     b1, b2, b3 = b

@@ -4,20 +4,23 @@ import numpy as np
 
 from fsw.core.algebra.vector import ZERO, Vec3, skew
 from fsw.core.estimation.dynamics.motion import BodyFields, BodyMotion, outer
-from fsw.core.estimation.kalman import Matrix, combine
+from fsw.core.estimation.kalman import Matrix, linear
 from fsw.core.estimation.parameters import Layout, Rotor
 
 _PULL, _ACTING, _FIELD = slice(3, 12), slice(12, 21), slice(21, 24)
-_SPIN, _ALPHA, _DRIVEN, _ONE = slice(24, 33), slice(33, 36), slice(36, 45), slice(45, 46)
+_SPIN, _ALPHA, _DRIVEN = slice(24, 33), slice(33, 36), slice(36, 45)
 """Places among the numbers that the torque's derivatives are linear in: after the rate, g e1 e1^T (g being
-3 mu/r^3), m b^T, b, omega omega^T, domega/dt, m_driven b^T and 1."""
-_NUMBERS = 46
+3 mu/r^3), m b^T, b, omega omega^T, domega/dt and m_driven b^T."""
+_NUMBERS = 45
+_NOTHING = np.zeros((12, 18))
 _MOMENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 """Rows and columns of xx, yy, zz, xy, xz, yz."""
 
 
-def torque_map(parts: Layout) -> Matrix | None:
-    """Derivatives of the torque by the error state, (46, 3 m), less those that are also linear in J.
+def torque_map(parts: Layout) -> tuple[Matrix, Matrix] | None:
+    """Derivatives of the torque by the error state, less those that are also linear in J.
+
+    Those that are constant, (3, m), and what they gain by each of 45 numbers, (45, 3 m).
 
     By the first m components of the error state; the others have no effect. None where the derivative by
     every estimated parameter is constant.
@@ -26,10 +29,11 @@ def torque_map(parts: Layout) -> Matrix | None:
         return None
     axes = np.eye(3)
     acting = (parts.torque, parts.dipole, parts.coils, parts.inertia)
-    rows = np.zeros((3, max(part.stop for part in acting if part is not None), _NUMBERS))
+    size = max(part.stop for part in acting if part is not None)
+    constant, rows = np.zeros((3, size)), np.zeros((3, size, _NUMBERS))
     rows[:, 0:6, _ACTING] = system_maps(axes, axes)[12:, 18:].T.reshape(3, 6, 9)
     if parts.torque is not None:
-        rows[:, parts.torque, _ONE] = axes[:, :, None]
+        constant[:, parts.torque] = axes
     if parts.dipole is not None:
         rows[:, parts.dipole, _FIELD] = -np.array([cross_matrix(axis) for axis in axes]).transpose(1, 2, 0)
     if parts.coils is not None:
@@ -43,11 +47,11 @@ def torque_map(parts: Layout) -> Matrix | None:
             by_moment[:, index, _ALPHA] = -change
             effects = np.hstack([np.cross(axis, change).T for axis in axes])  # e_i x (dJ e_k)
             by_moment[:, index, _PULL], by_moment[:, index, _SPIN] = effects, -effects
-    return np.ascontiguousarray(rows.reshape(-1, _NUMBERS).T)
+    return constant, np.ascontiguousarray(rows.reshape(-1, _NUMBERS).T)
 
 
 def torque_rows(
-    motion: BodyMotion, around: BodyFields, m_driven: Vec3, rotor: Rotor, by_error: Matrix
+    motion: BodyMotion, around: BodyFields, m_driven: Vec3, rotor: Rotor, by_error: tuple[Matrix, Matrix]
 ) -> Matrix:
     """The torque's derivative by the first m numbers of the error state, (3, m).
 
@@ -60,13 +64,13 @@ def torque_rows(
         rotor: inertia as estimated, and the momentum of a wheel.
         by_error: the map of the filter, as ``torque_map`` gives it.
     """
+    constant, gains = by_error
     omega, b = motion.omega, around.b_t
     pull, acting, spin = around.pull(), outer(motion.m_am2, b), outer(omega, omega)
-    numbers = (*omega, *pull, *acting, *b, *spin, *motion.alpha, *outer(m_driven, b), 1.0)
+    numbers = (omega, pull, acting, b, spin, motion.alpha, outer(m_driven, b))
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = rotor.inertia_kgm2
-    moving = combine((xx, yy, zz, xy, xz, yz), _BY_INERTIA).reshape(12, 18)
-    rows = combine(numbers, by_error).reshape(3, -1)
-    rows[:, 0:6] += combine(numbers[: _PULL.stop], moving).reshape(3, 6)
+    moving = linear(_NOTHING, (xx, yy, zz, xy, xz, yz), _BY_INERTIA)
+    rows = linear(linear(constant, numbers, gains), (omega, pull), moving)
     if rotor.wheel_body_nms != ZERO:
         rows[:, 3:6] += skew(rotor.wheel_body_nms)
     return rows

@@ -1,4 +1,6 @@
-"""Kernel and filterpy compute the same; the products beside them are those of numpy."""
+"""Kernel and filterpy compute the same, and so do kernel and numpy beside prediction and update."""
+
+import pickle
 
 import numpy as np
 import pytest
@@ -6,16 +8,8 @@ from filterpy.kalman import KalmanFilter
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fsw.core.estimation.kalman import (
-    Algebra,
-    available,
-    combine,
-    inverse,
-    predict,
-    product,
-    unexplained,
-    update,
-)
+from fsw.core.estimation import filterpy_algebra, kalman
+from fsw.core.estimation.kalman import Algebra, available, inverse, predict, product, unexplained, update
 
 SIZES = st.tuples(st.sampled_from([6, 9, 12, 41, 54]), st.sampled_from([1, 3, 6]))
 MOVING = 6
@@ -68,7 +62,7 @@ def test_a_prediction_is_that_of_filterpy(algebra, sizes, seed):
     kalman = KalmanFilter(dim_x=states, dim_z=1)
     kalman.P = p
     kalman.predict(F=f, Q=q)
-    after = predict(p, f[:MOVING], q, algebra)
+    after = predict(p, f[:MOVING], q, (), algebra)
     size = np.abs(f) @ deviations(p) @ np.abs(f).T  # of the terms that are added
     assert_near(after, kalman.P, size + np.abs(q))
     assert (after == after.T).all()
@@ -79,7 +73,7 @@ def test_a_prediction_is_that_of_filterpy(algebra, sizes, seed):
 def test_all_rows_may_move(algebra, seed):
     random = np.random.default_rng(seed)
     p, f = covariance(random, 9), random.normal(size=(9, 9))
-    after = predict(p, f, np.zeros((9, 9)), algebra)
+    after = predict(p, f, np.zeros((9, 9)), (), algebra)
     assert_near(after, f @ p @ f.T, np.abs(f) @ deviations(p) @ np.abs(f).T)
 
 
@@ -94,10 +88,11 @@ def test_an_update_is_that_of_filterpy(algebra, sizes, seed):
     kalman.update(np.array(y), noise, sensitivity)
     found = update(p, y, noise, sensitivity, None, algebra)
     sigma = np.sqrt(p.diagonal())
-    assert_near(found.error, kalman.x, 10.0 * sigma)
+    assert_near(np.array(found.error), kalman.x, 10.0 * sigma)
     assert_near(found.covariance, kalman.P, 10.0 * deviations(p))
     assert_near(found.gain, kalman.K, 10.0 * sigma[:, None])
-    assert_near(found.spread, kalman.S)
+    assert_near(np.array(found.variances), kalman.S.diagonal())
+    assert found.nis == pytest.approx(np.array(y) @ kalman.SI @ np.array(y), rel=ROUNDING)
     assert_near(found.weight, kalman.SI)
     assert (found.covariance == found.covariance.T).all()
 
@@ -111,7 +106,7 @@ def test_both_give_the_same_over_many_steps(sizes, seed):
         f = (transition(random, states, 0.01) * sigma[:, None] / sigma)[:MOVING]
         y, noise, sensitivity = measurement(random, p[BOTH[0]], measured)
         for algebra in BOTH:
-            before = predict(p[algebra], f, 0.01 * np.diag(p[algebra].diagonal()), algebra)
+            before = predict(p[algebra], f, 0.01 * np.diag(p[algebra].diagonal()), (), algebra)
             p[algebra] = update(before, y, noise, sensitivity, None, algebra).covariance
     first, second = (p[algebra] for algebra in BOTH)
     assert_near(first, second, deviations(second), 1e-9)
@@ -128,9 +123,9 @@ def test_considered_states_keep_their_values_and_the_covariance_is_that_of_the_e
     gain = np.where(np.arange(states)[:, None] < 4, best, 0.0)
     remains = np.eye(states) - gain @ sensitivity
     found = update(p, y, noise, sensitivity, slice(4, states), algebra)
-    assert not found.error[4:].any()
+    assert not any(found.error[4:])
     np.testing.assert_allclose(found.covariance[4:, 4:], p[4:, 4:], rtol=1e-12)
-    assert_near(found.error, gain @ np.array(y), 10.0 * np.sqrt(p.diagonal()))
+    assert_near(np.array(found.error), gain @ np.array(y), 10.0 * np.sqrt(p.diagonal()))
     assert_near(
         found.covariance, remains @ p @ remains.T + gain @ noise @ gain.T, 100.0 * states * deviations(p)
     )
@@ -148,7 +143,7 @@ def test_a_bad_number_reaches_the_diagonal(algebra, damage):
     p = np.eye(12)
     p[2, 9] = p[9, 2] = damage
     with np.errstate(invalid="ignore"):
-        after = predict(p, np.full((MOVING, 12), 0.5), np.eye(12), algebra)
+        after = predict(p, np.full((MOVING, 12), 0.5), np.eye(12), (), algebra)
         found = update(p, (0.1, 0.2, 0.3), np.eye(3), np.ones((3, 12)), None, algebra)
     assert not np.isfinite(after.diagonal()).all()
     assert found is None or not np.isfinite(found.covariance.diagonal()).all()
@@ -161,7 +156,7 @@ def test_arrays_that_go_in_are_not_changed(algebra):
     y, noise, sensitivity = measurement(random, p, 3)
     given_arrays = (p, f, q, noise, sensitivity)
     before = [array.copy() for array in given_arrays]
-    predict(p, f, q, algebra)
+    predict(p, f, q, (1.0, 2.0, 3.0), algebra)
     update(p, y, noise, sensitivity, slice(6, 9), algebra)
     assert all(map(np.array_equal, given_arrays, before))
 
@@ -172,8 +167,8 @@ def test_views_are_taken_as_what_they_show():
     assert_near(product(wide[:, ::2], wide.T[::2]), wide[:, ::2] @ wide.T[::2])
     p = covariance(random, 12)
     assert_near(
-        predict(p.T, wide[:6, 4:16], np.zeros((12, 12)), BOTH[0]),
-        predict(p, wide[:6, 4:16].copy(), np.zeros((12, 12)), BOTH[0]),
+        predict(p.T, wide[:6, 4:16], np.zeros((12, 12)), (), BOTH[0]),
+        predict(p, wide[:6, 4:16].copy(), np.zeros((12, 12)), (), BOTH[0]),
     )
 
 
@@ -183,7 +178,104 @@ def test_products_are_those_of_numpy(seed):
     k, m, n = random.integers(1, 30, 3)
     left, right = random.normal(size=(k, m)), random.normal(size=(m, n))
     assert_near(product(left, right), left @ right, np.abs(left) @ np.abs(right))
-    assert_near(combine(tuple(left[0].tolist()), right), left[0] @ right, np.abs(left[0]) @ np.abs(right))
+
+
+@given(seed=SEEDS)
+def test_a_kick_adds_its_square_to_the_noise_of_the_rate(seed):
+    random = np.random.default_rng(seed)
+    p, f, kicks = covariance(random, 9), random.normal(size=(MOVING, 9)), random.normal(size=(2, 3))
+    noise = np.zeros((9, 9))
+    noise[3:6, 3:6] = kicks.T @ kicks
+    for algebra in BOTH:
+        after = predict(p, f, np.zeros((9, 9)), tuple(map(tuple, kicks.tolist())), algebra)
+        assert_near(after, predict(p, f, noise, (), algebra))
+
+
+def numbers(random, *sizes):
+    """Tuples of as many numbers, some of them zero."""
+    given_numbers = random.normal(size=sum(sizes)) * random.integers(0, 2, sum(sizes))
+    parts = np.split(given_numbers, np.cumsum(sizes)[:-1])
+    return tuple(tuple(part.tolist()) for part in parts)
+
+
+def of_linear(random, states):
+    return random.normal(size=(3, states)), numbers(random, 3, 9), random.normal(size=(12, 3 * states))
+
+
+def of_two_maps(random, states):
+    constant, first, second = random.normal(size=(6, states)), numbers(random, 3, 9), numbers(random, 9)
+    return constant, first, random.normal(size=(12, 36)), second, random.normal(size=(9, 36))
+
+
+def of_system_rows(random, states):
+    torque = random.normal(size=(3, max(6, states - 5)))
+    return random.normal(size=(6, states)), *numbers(random, 3, 9), torque
+
+
+def of_series(order):
+    def arguments(random, states):
+        return np.eye(6, states) + 0.1 * random.normal(size=(6, states)), order
+
+    return arguments
+
+
+def of_stack(random, states):
+    return random.normal(size=(3, states)), random.normal(size=(2, states))
+
+
+def of_diagonal(random, states):
+    return (random.normal(size=(states, states)),)
+
+
+def of_carry_trace(random, states):
+    return random.normal(size=(states, 5)), transition(random, states)[:MOVING]
+
+
+def of_update_trace(random, states):
+    effect, sums, sensitivity = (random.normal(size=size) for size in ((states, 5), (5, 5), (3, states)))
+    gain, weight = random.normal(size=(states, 3)), symmetric(random.normal(size=(3, 3)))
+    return effect, sums, *numbers(random, 3), sensitivity, gain, weight
+
+
+def of_unexplained(random, states):
+    traced = random.normal(size=(20, states % 7 + 1))
+    return (traced.T @ traced,)
+
+
+def of_turn_along(random, states):
+    directions, moved = random.integers(1, 5), states - 4
+    coordinates = random.normal(size=(directions, states))
+    moving = random.normal(size=(moved, moved * directions))
+    return covariance(random, states), *numbers(random, states), 3, 0.7, coordinates, moving
+
+
+@pytest.mark.skipif(BOTH[0] is not Algebra.KERNEL, reason="the kernel is not built")
+@pytest.mark.parametrize(
+    ("name", "arguments"),
+    [
+        ("linear", of_linear),
+        ("linear", of_two_maps),
+        ("system_rows", of_system_rows),
+        ("series", of_series(2)),
+        ("series", of_series(4)),
+        ("stack", of_stack),
+        ("diagonal", of_diagonal),
+        ("carry_trace", of_carry_trace),
+        ("update_trace", of_update_trace),
+        ("unexplained", of_unexplained),
+        ("turn_along", of_turn_along),
+    ],
+    ids=lambda one: one if isinstance(one, str) else one.__name__,
+)
+@given(sizes=SIZES, seed=SEEDS)
+def test_the_kernel_computes_what_numpy_does_and_changes_nothing_that_goes_in(name, arguments, sizes, seed):
+    given_arguments, again = (arguments(np.random.default_rng(seed), sizes[0]) for _ in range(2))
+    ours = getattr(kalman._kernel, name)(*given_arguments)
+    theirs = getattr(filterpy_algebra, name)(*again)
+    several = (ours, theirs) if name == "update_trace" else ((ours,), (theirs,))
+    for one, other in zip(*several, strict=True):
+        assert_near(np.array(one), np.array(other), np.abs(other).max() + 1.0, 100.0 * ROUNDING)
+    assert pickle.dumps(given_arguments) == pickle.dumps(again)
 
 
 @pytest.mark.skipif(BOTH[0] is not Algebra.KERNEL, reason="the kernel is not built")
@@ -198,7 +290,7 @@ class TestWhatTheKernelRefuses:
     @pytest.mark.parametrize("shape", [(12, 11), (65, 65)])
     def test_covariances_that_are_none(self, shape):
         with pytest.raises(ValueError, match=r"square|size"):
-            predict(np.ones(shape), np.ones((6, shape[1])), np.ones(shape), Algebra.KERNEL)
+            predict(np.ones(shape), np.ones((6, shape[1])), np.ones(shape), (), Algebra.KERNEL)
 
     @pytest.mark.parametrize("states", [slice(-1, 3), slice(4, 3), slice(0, 13)])
     def test_states_that_there_are_not(self, states):
@@ -209,6 +301,34 @@ class TestWhatTheKernelRefuses:
     def test_more_or_fewer_numbers_than_an_update_takes(self, count):
         with pytest.raises(ValueError, match="1 to 6"):
             update(np.eye(9), (1.0,) * count, np.eye(count), np.ones((count, 9)), None, Algebra.KERNEL)
+
+    @pytest.mark.parametrize(
+        ("call", "arguments"),
+        [
+            ("linear", (np.ones((3, 9)), (1.0, 2.0), np.ones((3, 9)))),
+            ("linear", (np.ones((3, 9)), (1.0, 2.0), np.ones((2, 30)))),
+            ("linear", (np.ones((3, 9)), (1.0,), np.ones((1, 10)))),
+            ("system_rows", (np.ones((6, 9)), (1.0,) * 3, (1.0,) * 9, np.ones((3, 10)))),
+            ("system_rows", (np.ones((6, 9)), (1.0,) * 2, (1.0,) * 9, np.ones((3, 9)))),
+            ("series", (np.ones((6, 65)), 2)),
+            ("series", (np.ones((6, 9)), 3)),
+            ("stack", (np.ones((3, 9)), np.ones((3, 8)))),
+            ("diagonal", (np.ones((3, 2)),)),
+            ("carry_trace", (np.ones((9, 2)), np.ones((6, 8)))),
+            ("update_trace", (np.ones((9, 3)), np.ones((2, 2)), (1.0,), *[np.ones((1, 9))] * 3)),
+            ("unexplained", (np.ones((0, 0)),)),
+            ("turn_along", (np.eye(9), (1.0,) * 9, 4, 1.0, np.ones((1, 9)), np.ones((6, 6)))),
+            ("turn_along", (np.eye(9), (1.0,) * 9, 0, 1.0, np.ones((5, 9)), np.ones((6, 30)))),
+        ],
+    )
+    def test_what_does_not_fit_together(self, call, arguments):
+        with pytest.raises(ValueError, match=r"size|square|numbers|first|map|rows|states|sums"):
+            getattr(kalman._kernel, call)(*arguments)
+
+    @pytest.mark.parametrize("bad", [[1.0], ("a",), ((1.0,), None)])
+    def test_numbers_that_are_none(self, bad):
+        with pytest.raises(TypeError):
+            kalman.linear(np.ones((1, 1)), bad, np.ones((1, 1)))
 
 
 class TestInverse:

@@ -72,7 +72,7 @@ class TestLayout:
 class TestCorrection:
     def test_adds_what_the_error_state_holds_to_what_is_carried_alone(self):
         places = layout({"mag_scale", "torque_body_nm"})
-        error = [9.0] * 6 + [1e-8, -2e-8, 3e-8] + [0.001, 0.002, -0.003]
+        error = (*[9.0] * 6, 1e-8, -2e-8, 3e-8, 0.001, 0.002, -0.003)
         before = Parameters(
             torque_body_nm=(5e-8, 6e-8, 7e-8), mag_scale=(0.01, 0.02, 0.03), dipole_body_am2=(0.1, 0.2, 0.3)
         )
@@ -83,16 +83,16 @@ class TestCorrection:
         assert all(getattr(after, name) == getattr(before, name) for name in rest)
 
     def test_leaves_the_parameters_where_none_is_carried(self, full):
-        after = changed(full.parameters, correct_parameters, [1.0] * 6, layout(set()))
+        after = changed(full.parameters, correct_parameters, (1.0,) * 6, layout(set()))
         assert after == full.parameters
 
     @pytest.mark.parametrize("names", [NAMES, NAMES[::2], NAMES[1::3], NAMES[-4:]])
     def test_the_difference_that_it_makes_is_the_error_state_s(self, names, full):
         places = layout(set(names))
-        error = [0.0] * 6 + [0.5**n for n in range(places.size - 6)]
+        error = (*[0.0] * 6, *[0.5**n for n in range(places.size - 6)])
         before = Parameters(cell_excess=(0.0,) * 6, cell_gain=(0.0,) * 6, earth_light=(0.0,))
         after = changed(before, correct_parameters, error, places)
-        assert difference(before, after, places) == error[6:]
+        assert difference(before, after, places) == list(error[6:])
         assert {name for name in NAMES if getattr(after, name) != getattr(before, name)} == set(names)
         assert sum(after.floats()) == sum(error)
 

@@ -201,5 +201,5 @@ class TestAFilter:
 
     def test_no_correction_no_turn(self, full, config):
         covariance = full.covariance()
-        same = turned_along(covariance, np.zeros(full.size()), (0.0,) * 6, config.unobservable)
+        same = turned_along(covariance, (0.0,) * full.size(), (0.0,) * 6, config.unobservable)
         np.testing.assert_array_equal(same, covariance)

@@ -59,7 +59,7 @@ def added_to(estimate, error):
         estimate,
         q_body_from_eci=normalise(multiply(estimate.q_body_from_eci, from_small_rotation(turn))),
         omega_body_radps=tuple(np.add(estimate.omega_body_radps, rate)),
-        parameters=changed(estimate.parameters, correct_parameters, error, PARTS),
+        parameters=changed(estimate.parameters, correct_parameters, tuple(error), PARTS),
     )
 
 
@@ -209,7 +209,7 @@ class TestInformation:
         right = mekf.start(Q_BODY_FROM_ECI, (0.0,) * 3, config)
         error = np.sqrt(covariance.diagonal()) * random.normal(size=places.size)
         true = replace(
-            right, parameters=changed(right.parameters, correct_parameters, error.tolist(), places)
+            right, parameters=changed(right.parameters, correct_parameters, tuple(error.tolist()), places)
         )
         turn = from_small_rotation(tuple(radians(6.0) * random.normal() * field))
         q = normalise(multiply(Q_BODY_FROM_ECI, turn))

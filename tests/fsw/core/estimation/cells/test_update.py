@@ -142,7 +142,7 @@ class TestExcess:
         effect[parts.cells, 0], effect[parts.earth_light, 0] = (0.01, -0.02, 0.03, 0.01, -0.01, 0.02), 0.04
         effect[0:3, 0] = 1e-3
         traced = replace(estimate, trace=Trace((Cause(0, 0.0, 0.0),), effect, np.zeros((2, 2)), 0))
-        known = changed(estimate.parameters, correct_parameters, effect[:, 0].tolist(), parts)
+        known = changed(estimate.parameters, correct_parameters, tuple(effect[:, 0].tolist()), parts)
         before, wrong = (
             changed(traced, fade, CONFIG),
             changed(replace(estimate, parameters=known), fade, CONFIG),
