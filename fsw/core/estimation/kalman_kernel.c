@@ -18,7 +18,8 @@
 
 #define MOST_STATES 64
 #define MOST_MEASURED 6
-#define LANES 8 /* measured numbers, padded so that their sums vectorise */
+#define COLUMN_BLOCK 4 /* sums that are kept in registers side by side */
+#define ROW_BLOCK 4
 #define MOST_TURNS 4
 #define MOST_MAPPED 512 /* entries of a matrix that a map goes to */
 #define MOST_MAPS 3
@@ -37,6 +38,14 @@ static void multiply(int m, int k, int n, const double *restrict A, const double
             for (int c = 0; c < n; c++) row[c] += factor * b[c];
         }
     }
+}
+
+/* half the sum of a matrix and its transpose, in its place */
+static void symmetrise(int n, double *out)
+{
+    for (int r = 0; r < n; r++)
+        for (int c = 0; c < r; c++)
+            out[r * n + c] = out[c * n + r] = 0.5 * (out[r * n + c] + out[c * n + r]);
 }
 
 /* out = F P F^T + Q, F being the first k rows of the transition (k,n), the others those of the identity; to the
@@ -100,79 +109,115 @@ static int invert(int m, const double *M, double *inverse)
     return 0;
 }
 
-/* out (n,8) = A (n,n) B^T, B being (m,n): column i of the result in lane i, zero beyond m */
-static void times_transposed(int n, int m, const double *restrict A, const double *restrict B,
-                             double *restrict out)
+/* out (m,n) = A (m,k) B (k,n), m being known when this is compiled: the sums of some columns stay in registers */
+static inline __attribute__((always_inline)) void multiply_few(const int m, int k, int n, const double *restrict A,
+                                                              const double *restrict B, double *restrict out)
 {
-    double columns[MOST_STATES * LANES];
-    for (int k = 0; k < n; k++)
-        for (int i = 0; i < LANES; i++) columns[k * LANES + i] = i < m ? B[i * n + k] : 0.0;
-    for (int r = 0; r < n; r++) {
-        double sums[LANES] = {0.0};
-        for (int k = 0; k < n; k++) {
-            const double factor = A[r * n + k];
-            for (int i = 0; i < LANES; i++) sums[i] += factor * columns[k * LANES + i];
+    for (int c = 0; c < n; c += COLUMN_BLOCK) {
+        const int wide = n - c < COLUMN_BLOCK ? n - c : COLUMN_BLOCK;
+        double sums[MOST_MEASURED][COLUMN_BLOCK] = {{0.0}};
+        if (wide == COLUMN_BLOCK) {
+            for (int j = 0; j < k; j++)
+                for (int i = 0; i < m; i++)
+                    for (int b = 0; b < COLUMN_BLOCK; b++) sums[i][b] += A[i * k + j] * B[j * n + c + b];
+        } else {
+            for (int j = 0; j < k; j++)
+                for (int i = 0; i < m; i++)
+                    for (int b = 0; b < wide; b++) sums[i][b] += A[i * k + j] * B[j * n + c + b];
         }
-        for (int i = 0; i < LANES; i++) out[r * LANES + i] = sums[i];
+        for (int i = 0; i < m; i++)
+            for (int b = 0; b < wide; b++) out[i * n + c + b] = sums[i][b];
+    }
+}
+
+/* out (r,m) = A (r,n) B^T, B being (m,n); as above */
+static inline __attribute__((always_inline)) void times_transposed(int r, const int m, int n,
+                                                                   const double *restrict A,
+                                                                   const double *restrict B, double *restrict out)
+{
+    double columns[MOST_STATES * MOST_MEASURED];
+    for (int k = 0; k < n; k++)
+        for (int i = 0; i < m; i++) columns[k * m + i] = B[i * n + k];
+    for (int row = 0; row < r; row += ROW_BLOCK) {
+        const double *a[ROW_BLOCK];
+        double sums[ROW_BLOCK][MOST_MEASURED] = {{0.0}};
+        for (int b = 0; b < ROW_BLOCK; b++) a[b] = A + (size_t)(row + b < r ? row + b : row) * n;
+        for (int k = 0; k < n; k++)
+            for (int b = 0; b < ROW_BLOCK; b++)
+                for (int i = 0; i < m; i++) sums[b][i] += a[b][k] * columns[k * m + i];
+        for (int b = 0; b < ROW_BLOCK && row + b < r; b++)
+            for (int i = 0; i < m; i++) out[(row + b) * m + i] = sums[b][i];
     }
 }
 
 /* S = H P H^T + R, K = P H^T S^-1 with zero rows from first to last, x = K y, nis = y^T S^-1 y,
    out = (1 - K H) P (1 - K H)^T + K R K^T, expanded from the left, then from the right.
    All (n) columns of K^T lie side by side in gain (m,n). 1: S is singular */
-static int update(int n, int m, const double *restrict P, const double *restrict H, const double *restrict R,
-                  const double *restrict y, int first, int last, double *restrict out, double *restrict x,
-                  double *restrict K, double *restrict S, double *restrict SI, double *nis)
+static inline __attribute__((always_inline)) int
+update_few(int n, const int m, const double *restrict P, const double *restrict H, const double *restrict R,
+           const double *restrict y, int first, int last, double *restrict out, double *restrict x,
+           double *restrict K, double *restrict S, double *restrict SI, double *nis)
 {
-    double weighed[MOST_MEASURED];
     double ph[MOST_MEASURED * MOST_STATES], gain[MOST_MEASURED * MOST_STATES];
-    double left_ht[MOST_STATES * LANES];
-    multiply(m, n, n, H, P, ph); /* (P H^T)^T, as P is symmetric */
-    for (int i = 0; i < m; i++)
-        for (int j = 0; j < m; j++) {
-            double sum = 0.0;
-            for (int k = 0; k < n; k++) sum += H[i * n + k] * ph[j * n + k];
-            S[i * m + j] = sum + R[i * m + j];
-        }
+    double left_ht[MOST_STATES * MOST_MEASURED], weighed[MOST_MEASURED];
+    multiply_few(m, n, n, H, P, ph); /* (P H^T)^T, as P is symmetric */
+    times_transposed(m, m, n, H, ph, S);
+    for (int i = 0; i < m * m; i++) S[i] += R[i];
     if (invert(m, S, SI)) return 1;
     multiply(m, m, 1, SI, y, weighed);
     multiply(1, m, 1, y, weighed, nis);
     for (int i = 0; i < m; i++) {
         double *row = gain + i * n;
-        for (int c = 0; c < n; c++) row[c] = 0.0;
-        for (int k = 0; k < m; k++) {
-            const double factor = SI[k * m + i];
-            for (int c = 0; c < n; c++) row[c] += factor * ph[k * n + c];
+        for (int c = 0; c < n; c++) {
+            double sum = 0.0;
+            for (int k = 0; k < m; k++) sum += SI[k * m + i] * ph[k * n + c];
+            row[c] = sum;
         }
         for (int c = first; c < last; c++) row[c] = 0.0;
     }
-    for (int c = 0; c < n; c++) x[c] = 0.0;
-    for (int i = 0; i < m; i++)
-        for (int c = 0; c < n; c++) x[c] += gain[i * n + c] * y[i];
+    for (int c = 0; c < n; c++) {
+        double sum = 0.0;
+        for (int i = 0; i < m; i++) sum += gain[i * n + c] * y[i];
+        x[c] = sum;
+    }
     for (int r = 0; r < n; r++) { /* P - K H P */
-        double *row = out + r * n;
-        for (int c = 0; c < n; c++) row[c] = P[r * n + c];
-        for (int i = 0; i < m; i++) {
-            const double factor = gain[i * n + r];
-            for (int c = 0; c < n; c++) row[c] -= factor * ph[i * n + c];
+        double factors[MOST_MEASURED];
+        for (int i = 0; i < m; i++) factors[i] = gain[i * n + r];
+        for (int c = 0; c < n; c++) {
+            double left = P[r * n + c];
+            for (int i = 0; i < m; i++) left -= factors[i] * ph[i * n + c];
+            out[r * n + c] = left;
         }
     }
-    times_transposed(n, m, out, H, left_ht);
+    times_transposed(n, m, n, out, H, left_ht);
     for (int r = 0; r < n; r++) {
-        double *row = out + r * n;
+        double changes[MOST_MEASURED]; /* K R - (P - K H P) H^T */
         for (int i = 0; i < m; i++) {
-            double change = 0.0; /* K R - (P - K H P) H^T */
+            double change = 0.0;
             for (int k = 0; k < m; k++) change += gain[k * n + r] * R[k * m + i];
-            change -= left_ht[r * LANES + i];
-            for (int c = 0; c < n; c++) row[c] += change * gain[i * n + c];
+            changes[i] = change - left_ht[r * m + i];
+        }
+        for (int c = 0; c < n; c++) {
+            double right = out[r * n + c];
+            for (int i = 0; i < m; i++) right += changes[i] * gain[i * n + c];
+            out[r * n + c] = right;
         }
     }
-    for (int r = 0; r < n; r++)
-        for (int c = 0; c < r; c++)
-            out[r * n + c] = out[c * n + r] = 0.5 * (out[r * n + c] + out[c * n + r]);
+    symmetrise(n, out);
     for (int i = 0; i < m; i++)
         for (int c = 0; c < n; c++) K[c * m + i] = gain[i * n + c];
     return 0;
+}
+
+static int update(int n, int m, const double *P, const double *H, const double *R, const double *y, int first,
+                  int last, double *out, double *x, double *K, double *S, double *SI, double *nis)
+{
+    switch (m) { /* the loops over the measured numbers are unrolled for those that fly */
+    case 1: return update_few(n, 1, P, H, R, y, first, last, out, x, K, S, SI, nis);
+    case 3: return update_few(n, 3, P, H, R, y, first, last, out, x, K, S, SI, nis);
+    case 6: return update_few(n, 6, P, H, R, y, first, last, out, x, K, S, SI, nis);
+    default: return update_few(n, m, P, H, R, y, first, last, out, x, K, S, SI, nis);
+    }
 }
 
 /* out (r,n) = constant; its first w columns gain the sum of each number times its row of a map (k,r w), the sums
@@ -297,9 +342,7 @@ static void turn_along(int n, int m, int k, int first, const double *restrict P,
     multiply(m, k, n, D, known, change);
     memcpy(out, P, sizeof(double) * n * n);
     for (int c = 0; c < m * n; c++) out[first * n + c] += 2.0 * change[c];
-    for (int r = 0; r < n; r++)
-        for (int c = 0; c < r; c++)
-            out[r * n + c] = out[c * n + r] = 0.5 * (out[r * n + c] + out[c * n + r]);
+    symmetrise(n, out);
 }
 
 /* The arrays that a call holds while it computes, and numbers of its tuples. */
