@@ -6,9 +6,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
 from sim.console import current
 
 Watch = Callable[[int], None]
@@ -66,6 +63,14 @@ def _is_shown() -> bool:
 
 @contextmanager
 def _bar(what: str, total: int) -> Iterator[Watch]:
+    from rich.console import Console  # noqa: PLC0415  (slow to load)
+    from rich.progress import (  # noqa: PLC0415  (slow to load)
+        BarColumn,
+        Progress,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),

@@ -28,8 +28,8 @@ from sim.record.estimates import EstimateRecorder, Estimates
 from sim.record.run_dir import Json
 from sim.record.run_record import FlightRecord
 from sim.record.truth import Histories
-from sim.report.conclude import audit_flight
 from sim.report.figures.performance import perform
+from sim.report.flight_audit import audit_flight
 from sim.report.summary import BusTally, summarise
 from sim.scenario.assemble import effects_of, plant_config
 from sim.scenario.schema import Scenario, flight_table, load

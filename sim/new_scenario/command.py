@@ -1,10 +1,11 @@
 """``torquer new``: a commented scenario, checked as any other before it is written."""
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from fsw.input.toml_text import parse_toml
 from fsw.table.ordinary import TORQUE_NM, ordinary_dipole_am2, relative_volume
@@ -93,14 +94,19 @@ def scenario_text(satellite: NewSatellite, file: str) -> str:
     return _rendered(replace(satellite, levels_am2=levels), file)
 
 
-def _rendered(satellite: NewSatellite, file: str) -> str:
+@cache
+def _template() -> Template:
     environment = Environment(
         loader=PackageLoader("sim.new_scenario"),
         undefined=StrictUndefined,
         keep_trailing_newline=True,
         autoescape=False,
     )
-    text = environment.get_template("scenario.toml.j2").render(file=file, **_figures(satellite))
+    return environment.get_template("scenario.toml.j2")
+
+
+def _rendered(satellite: NewSatellite, file: str) -> str:
+    text = _template().render(file=file, **_figures(satellite))
     return "".join(map(_aligned, text.splitlines(keepends=True)))
 
 

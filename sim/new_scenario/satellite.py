@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import cache
 from math import pi
 
 import numpy as np
@@ -129,6 +130,7 @@ class NewSatellite:
         return self.levels_am2 or levels_for(self.body, PULSE_S)
 
 
+@cache
 def gains_for(body: Body) -> Gains:
     """Gains of the pd law with the least degree of stability on a coarse grid about the natural ones.
 

@@ -1,16 +1,14 @@
 """Conclude a run: audit, replay, summary and report; only then is the run complete."""
 
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from fsw.core.state import FlightState
 from fsw.table.config import flight_config
-from fsw.wire.messages import Sync, intact
-from sim.audit.auditor import AuditLimits, AuditReport, ViolationKind, audit
 from sim.audit.check import limits_beside
 from sim.errors import HarnessError
-from sim.faults.section import break_frames, forge_answers, forge_sync
+from sim.faults.section import forge_answers
 from sim.record import binding, run_dir
 from sim.record.candump import LogEntry, More, read_log
 from sim.record.destination import check_folder
@@ -21,6 +19,7 @@ from sim.record.truth import GrowingTruth, Histories, RowsMissingError, TruthRea
 from sim.replay.log_replay import ReplayResult, replay
 from sim.report.charts.lines import Lines
 from sim.report.figures.performance import Performance
+from sim.report.flight_audit import audit_flight
 from sim.report.history_blocks import HistoryBlocks, TruthBlocks
 from sim.report.page import write_report
 from sim.report.summary import BusTally, summarise
@@ -175,40 +174,6 @@ def _tally_entries(entries: Iterator[LogEntry], tally: BusTally) -> Iterator[Log
     for entry in entries:
         tally.take(entry)
         yield entry
-
-
-def audit_flight(
-    entries: Iterable[LogEntry], limits: AuditLimits, scenario: Scenario, expect_end: bool = False
-) -> AuditReport:
-    """The audit of a flight without what faults of its scenario send or break: no word of the board.
-
-    Args:
-        entries: the log, in simulated time.
-        limits: what to judge by.
-        scenario: of the flight.
-        expect_end: as for ``audit``.
-    """
-    report = audit(_without_forged_sync(entries, scenario), limits, expect_end)
-    if not break_frames(scenario.fault):
-        return report
-    others = tuple(violation for violation in report.violations if violation.kind is not ViolationKind.FRAME)
-    return replace(report, violations=others)
-
-
-def _without_forged_sync(entries: Iterable[LogEntry], scenario: Scenario) -> Iterable[LogEntry]:
-    """The entries; where a fault forges SYNC, without each that is not of the tick of its timestamp."""
-    if not forge_sync(scenario.fault):
-        return entries
-    epoch_s, hz = scenario.epoch_unix_s, scenario.time.tick_hz
-
-    def is_own(entry: LogEntry) -> bool:
-        if entry.frame.can_id != Sync.ID or not intact(entry.frame):
-            return True
-        sync = Sync.decode(entry.frame.data)
-        at_us = epoch_s * 1_000_000 + sync.tick * 1_000_000 // hz
-        return (entry.timestamp_us, sync.unix_time_s) == (at_us, epoch_s + sync.tick // hz)
-
-    return filter(is_own, entries)
 
 
 def _replay_json(replay_result: ReplayResult) -> Json:

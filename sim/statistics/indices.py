@@ -16,7 +16,6 @@ from math import inf, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import stdtrit
 
 from sim.statistics.order_statistics import least_part_bounded, quantile, upper_bound
 from sim.statistics.windows import mean_and_relative
@@ -137,6 +136,8 @@ def _woodruff(profiles: Array, value: float, probability: float, confidence: flo
     1 - C, may be of a kind that none of these is, and worse at all times: the bound is at P / (1 - u) at
     least, and there is none where that is beyond all times, with fewer runs than their largest value needs.
     """
+    from scipy.special import stdtrit  # noqa: PLC0415  (slow to load)
+
     runs = len(profiles)
     if runs < 2:
         return None

@@ -10,7 +10,6 @@ from math import ceil, isfinite, log
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import bdtr, betaincinv
 
 Array = NDArray[np.float64]
 
@@ -57,6 +56,8 @@ def quantile(values: Array, probability: float, middles: bool = False) -> float:
 
 def upper_bound(values: Array, probability: float, confidence: float) -> float | None:
     """The least value of the sample that bounds the quantile from above with the confidence."""
+    from scipy.special import bdtr  # noqa: PLC0415  (slow to load)
+
     count = len(values)
     enough = bdtr(np.arange(count), count, probability) >= confidence
     return float(np.sort(values)[np.argmax(enough)]) if enough.any() else None
@@ -73,6 +74,8 @@ def least_part_bounded(count: int, confidence: float, above: int = 0) -> float:
 
     It is the largest of ``count`` values but for ``above``; of all, (1 - confidence)^(1 / count).
     """
+    from scipy.special import betaincinv  # noqa: PLC0415  (slow to load)
+
     return float(betaincinv(count - above, above + 1, 1.0 - confidence)) if above < count else 0.0
 
 

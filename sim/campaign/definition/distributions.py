@@ -9,13 +9,20 @@ from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, Strict, model_validator
-from scipy.special import ndtr, ndtri
 from typing_extensions import override
 
 from sim.campaign.definition.dispersion import Array, Dispersion, Numbers, OneKey, Shape, Values
 
 LEAST_PART = 1e-6
 """Fraction of a normal distribution that must lie between its limits."""
+
+
+def _part_below(limits: Array) -> Array:
+    """The part of a standard normal distribution below each limit."""
+    from scipy.special import ndtr  # noqa: PLC0415  (slow to load)
+
+    below: Array = ndtr(limits)
+    return below
 
 
 class Normal(OneKey):
@@ -32,7 +39,7 @@ class Normal(OneKey):
         if not np.all(np.array(self.sigma) >= 0.0):
             raise ValueError(f"sigma = {self.sigma} is not allowed: allowed is a number at least 0")
         low, high = self._limits()
-        if np.any(ndtr(high) - ndtr(low) < LEAST_PART):
+        if np.any(_part_below(high) - _part_below(low) < LEAST_PART):
             raise ValueError("low to high must hold at least a millionth of the distribution")
         return self
 
@@ -50,9 +57,11 @@ class Normal(OneKey):
 
     @override
     def draw(self, random: np.random.Generator, shapes: Sequence[Shape]) -> Values:
-        low, high = self._limits()
+        from scipy.special import ndtri  # noqa: PLC0415  (slow to load)
+
+        low, high = map(_part_below, self._limits())
         part = random.uniform(size=shapes[0])
-        return [np.array(self.mean + self.sigma * ndtri(ndtr(low) + part * (ndtr(high) - ndtr(low))))]
+        return [np.array(self.mean + self.sigma * ndtri(low + part * (high - low)))]
 
     @override
     def probes(self, shapes: Sequence[Shape]) -> list[Values]:

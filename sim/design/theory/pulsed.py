@@ -23,7 +23,6 @@ from itertools import pairwise
 from math import exp, pi
 
 import numpy as np
-from scipy.linalg import expm
 
 from sim.design.theory.bodies import Body
 from sim.design.theory.floquet import degree_of_stability, product
@@ -151,6 +150,8 @@ def _quadrature(edges: tuple[float, ...], order: int = 6) -> tuple[Array, Array]
 
 def _response(free: Array, push: Array, after: float, pulse: float) -> tuple[Array, Array]:
     """The response of the state at ``after`` to the state at 0, and to a push from 0 to ``pulse``."""
+    from scipy.linalg import expm  # noqa: PLC0415  (slow to load)
+
     n = len(free)
     both = np.zeros((n + 3, n + 3))
     both[:n, :n], both[:n, n:] = free, push

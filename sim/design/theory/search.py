@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from scipy.optimize import minimize
 
 from sim.design.theory.bodies import Body
 from sim.design.theory.floquet import NEUTRAL, STEPS, degree_of_stability, monodromy
@@ -194,6 +193,8 @@ def _apart(places: list[Array]) -> list[Array]:
 
 def _descend(degree: Degree, start: Array, simplices: tuple[float, ...], bounds: Sequence[Bounds]) -> Array:
     """Logarithms (k_w, k_a) of a local minimum."""
+    from scipy.optimize import minimize  # noqa: PLC0415  (slow to load)
+
     place = start
     for size in simplices:
         simplex = place + size * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])

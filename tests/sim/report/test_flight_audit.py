@@ -8,7 +8,8 @@ from sim.audit.auditor import AuditLimits, audit
 from sim.campaign.flight import record_scenario
 from sim.record import run_dir
 from sim.record.candump import read_log
-from sim.report.conclude import audit_flight, conclude
+from sim.report.conclude import conclude
+from sim.report.flight_audit import audit_flight
 from sim.scenario.schema import load
 
 LIMITS = AuditLimits()
