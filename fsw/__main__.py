@@ -18,14 +18,17 @@ from fsw.table.table import load_flight_table
 @click.option("--disarmed", is_flag=True, help="Let no request to drive a coil get on the bus.")
 @click.option("--bench", is_flag=True, help="On a bench: no PLANT_END ends it.")
 @click.option("--parent", type=int, hidden=True)
-def main(table: str | None, bus: str, disarmed: bool, bench: bool, parent: int | None) -> None:
+@click.option("--end", type=int, hidden=True)
+def main(
+    table: str | None, bus: str, disarmed: bool, bench: bool, parent: int | None, end: int | None
+) -> None:
     """Run the flight software on a bus: answer each SYNC of a plant, by an onboard table."""
     try:
         loaded = load_flight_table(table)
     except TableError as error:
         click.echo(f"fsw: {error_text(error)}", err=True)
         sys.exit(2)
-    sys.exit(fly(loaded, bus, disarmed, bench, parent, source=table or "flight table"))
+    sys.exit(fly(loaded, bus, disarmed, bench, parent, source=table or "flight table", end=end))
 
 
 if __name__ == "__main__":

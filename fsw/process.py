@@ -4,7 +4,7 @@ import click
 
 from fsw.bus.disarmed import Disarmed
 from fsw.bus.interface import Bus, BusError
-from fsw.bus.open_bus import open_bus, resolve
+from fsw.bus.open_bus import join_bus, open_bus, resolve
 from fsw.input.error_text import error_text
 from fsw.input.schema import TableError
 from fsw.node import FlightNode
@@ -24,6 +24,7 @@ def fly(
     parent: int | None = None,
     quiet: bool = False,
     source: str = "flight table",
+    end: int | None = None,
 ) -> int:
     """Run the flight software on a bus until the run ends: the exit code.
 
@@ -35,10 +36,11 @@ def fly(
         parent: process that started this one; when it is gone the run is over.
         quiet: print failures only.
         source: of the table, for the sentence that says why it cannot be flown.
+        end: inherited descriptor of a socket that is on the bus already.
     """
     try:
         node = FlightNode(flight_config(table, source))
-        link: Bus = open_bus(spec)
+        link: Bus = open_bus(spec) if end is None else join_bus(spec, end)
         link = Disarmed(link) if disarmed else link
     except (TableError, BusError) as error:
         return _failed(error, 2)

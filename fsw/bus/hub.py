@@ -9,6 +9,7 @@ drops a record: what a slow client has not taken yet waits in memory. When the b
 import selectors
 import socket
 import sys
+from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -16,7 +17,8 @@ from threading import Thread
 from time import monotonic
 
 from fsw.bus import can_frame
-from fsw.bus.hub_listener import HubListener, NoDescriptorError
+from fsw.bus.hub_listener import HubListener, NoDescriptorError, listen
+from fsw.wire.frame import Frame
 
 MOST_CLIENTS = 64
 """Each of them gets a copy of every record: more would slow the bus for all."""
@@ -49,7 +51,7 @@ class Hub:
     Opening a bus waits for the hub's greeting: a thread that serves by ``poll`` must not open one.
 
     Args:
-        port: TCP port on 127.0.0.1; 0 takes a free one.
+        port: TCP port on 127.0.0.1; 0 takes a free one. Or a socket that listens there.
         report: called with a sentence about each client that is dropped for being slow, and about some of
             those that are refused. It must not block: the bus waits for it.
 
@@ -57,12 +59,15 @@ class Hub:
         OSError: the port is taken.
     """
 
-    def __init__(self, port: int = 0, report: Callable[[str], None] = report_on_stderr) -> None:
+    def __init__(
+        self, port: int | socket.socket = 0, report: Callable[[str], None] = report_on_stderr
+    ) -> None:
         self._clients: set[_Client] = set()
+        self._inbox: deque[Frame] | None = None
         self._thread: Thread | None = None
         self._selector = selectors.DefaultSelector()
         self._report = report
-        self._listener = HubListener(port, report)
+        self._listener = HubListener(listen(port) if isinstance(port, int) else port, report)
         self._paused_until: float | None = None
         self._waker, self._wake = socket.socketpair()
         self._stopping = False
@@ -91,8 +96,25 @@ class Hub:
     def attach(self) -> socket.socket:
         """A socket that is on the bus at once, ungreeted. Call before ``start``, or in that of ``poll``."""
         inner, outer = socket.socketpair()
-        self._admit(inner, "this process's own end")
+        self.admit(inner, "this process's own end")
         return outer
+
+    def admit(self, connection: socket.socket, name: str) -> None:
+        """Put a connection on the bus, ungreeted; by the thread that serves."""
+        connection.setblocking(False)
+        client = _Client(connection, name)
+        self._clients.add(client)
+        self._selector.register(connection, selectors.EVENT_READ, client)
+
+    def join(self, inbox: deque[Frame]) -> None:
+        """Be on the bus without a socket: what others send goes into ``inbox``, too, as it is served."""
+        self._inbox = inbox
+
+    def send(self, records: bytes) -> None:
+        """Hand records to all clients, by the thread that serves."""
+        for client in tuple(self._clients):
+            self._deliver(client, records)
+        self._shed()
 
     def start(self) -> None:
         """Serve in a daemon thread until ``close``."""
@@ -140,7 +162,7 @@ class Hub:
             return
         if accepted is not None:
             connection, port = accepted
-            self._admit(connection, f"the client on port {port}")
+            self.admit(connection, f"the client on port {port}")
 
     def _pause(self, until: float, timeout_s: float | None) -> float | None:
         """How long to wait for traffic while no client is accepted; ``timeout_s`` once that is over."""
@@ -150,12 +172,6 @@ class Hub:
         self._selector.register(self._listener, selectors.EVENT_READ, self._accept)
         self._paused_until = None
         return timeout_s
-
-    def _admit(self, connection: socket.socket, name: str) -> None:
-        connection.setblocking(False)
-        client = _Client(connection, name)
-        self._clients.add(client)
-        self._selector.register(connection, selectors.EVENT_READ, client)
 
     def _serve(self, client: _Client, events: int) -> None:
         if events & selectors.EVENT_WRITE and client in self._clients:
@@ -179,8 +195,12 @@ class Hub:
         if records and max(records[can_frame.LENGTH_OFFSET :: can_frame.SIZE]) > can_frame.MAX_DATA:
             self._drop(sender)  # not a client of ours: these are not records
             return
+        if not records:
+            return
+        if self._inbox is not None:
+            self._inbox.extend(can_frame.unpack(records))
         for client in tuple(self._clients):
-            if client is not sender and records:
+            if client is not sender:
                 self._deliver(client, records)
         self._shed()
 

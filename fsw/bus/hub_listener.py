@@ -24,15 +24,12 @@ class HubListener:
     """A listening socket on 127.0.0.1, and a spare descriptor to refuse a client when no other is left.
 
     Args:
-        port: TCP port; 0 takes a free one.
+        listener: a listening socket, as ``listen`` gives it.
         report: called with a sentence about refused clients, at the first, tenth, hundredth ... of them.
-
-    Raises:
-        OSError: the port is taken.
     """
 
-    def __init__(self, port: int, report: Callable[[str], None]) -> None:
-        self._listener = _listen(port)
+    def __init__(self, listener: socket.socket, report: Callable[[str], None]) -> None:
+        self._listener = listener
         self._spare: int | None = _descriptor()
         self._report = report
         self._refused = 0
@@ -113,7 +110,12 @@ def _descriptor() -> int | None:
         return None
 
 
-def _listen(port: int) -> socket.socket:
+def listen(port: int) -> socket.socket:
+    """A socket that listens on 127.0.0.1; 0 takes a free port.
+
+    Raises:
+        OSError: the port is taken.
+    """
     listener = socket.socket()
     try:
         if os.name == "posix":  # elsewhere this option would let two hubs share a port

@@ -30,6 +30,7 @@ class LoopLink:
         port: the hub's TCP port on 127.0.0.1.
         timeout_s: how long to try.
         may_host: whether to host the hub if there is none.
+        end: a socket that is on the bus already; None: connect to the port.
 
     Raises:
         BusError: no hub came up in time, it accepts no more clients, or another program listens there.
@@ -37,26 +38,30 @@ class LoopLink:
 
     name = "loop"
 
-    def __init__(self, port: int = DEFAULT_LOOP_PORT, timeout_s: float = 10.0, may_host: bool = True) -> None:
+    def __init__(
+        self,
+        port: int = DEFAULT_LOOP_PORT,
+        timeout_s: float = 10.0,
+        may_host: bool = True,
+        end: socket.socket | None = None,
+    ) -> None:
         self.spec = f"loop:{port}"
         self._inbox: deque[Frame] = deque()
         self._partial = b""  # beginning of a record whose end is still on its way
         self._hub: Hub | None = None
         try:
-            self._socket = self._join(port, monotonic() + timeout_s, may_host)
+            self._socket = end or self._join(port, monotonic() + timeout_s, may_host)
         except OSError as error:  # for example no descriptor or port left
             raise BusError(f"the bus {self.spec} cannot be opened: {error.strerror}") from error
-        self._socket.settimeout(SEND_PATIENCE_S)  # for sending: receiving waits in select
+        self._socket.setblocking(False)  # both ways wait in select
         atexit.register(self.close)
 
     def send(self, frames: Sequence[Frame]) -> None:
         """Send all frames at once, in order."""
+        records = memoryview(can_frame.pack_all(frames))
         try:
-            self._socket.sendall(can_frame.pack_all(frames))
-        except TimeoutError as error:
-            still = f"the bus {self.spec} accepts no more data: its hub stands still"
-            raise BusError(still) from error
-        except OSError as error:
+            self._send(records)
+        except (OSError, ValueError) as error:  # ValueError: closed on our side
             raise self._closed() from error
 
     def receive(self, timeout_s: float | None) -> Frame | None:
@@ -75,6 +80,17 @@ class LoopLink:
         if self._hub is not None:
             self._hub.close()
 
+    def _send(self, records: memoryview) -> None:
+        deadline: float | None = None
+        while records:
+            try:
+                records = records[self._socket.send(records) :]
+            except BlockingIOError:
+                deadline = deadline or monotonic() + SEND_PATIENCE_S
+                if not select.select((), (self._socket,), (), max(0.0, deadline - monotonic()))[1]:
+                    still = f"the bus {self.spec} accepts no more data: its hub stands still"
+                    raise BusError(still) from None
+
     def _fill(self, timeout_s: float | None) -> bool:
         deadline = None if timeout_s is None else monotonic() + timeout_s
         while True:
@@ -83,6 +99,8 @@ class LoopLink:
                 if not select.select((self._socket,), (), (), timeout_s)[0]:
                     return False
                 received = self._socket.recv(_CHUNK)
+            except BlockingIOError:  # ready for nothing: Linux may say so
+                continue
             except (OSError, ValueError) as error:  # ValueError: closed on our side
                 raise self._closed() from error
             if not received:

@@ -73,6 +73,29 @@ def open_bus(spec: str) -> Bus:
     return open_slcan(argument)
 
 
+def join_bus(spec: str, end: int) -> Bus:
+    """The loop bus of ``spec``, by the inherited descriptor of a socket that is on it already."""
+    from socket import socket  # noqa: PLC0415  (loaded if it is used)
+
+    from fsw.bus.link import LoopLink  # noqa: PLC0415  (loaded if it is used)
+
+    return LoopLink(int(spec.removeprefix("loop:")), end=socket(fileno=end))
+
+
+def host_bus(listener: int, *ends: int) -> Bus:
+    """The loop bus, served by this process, by inherited descriptors.
+
+    Args:
+        listener: of the socket on which others are accepted.
+        ends: of connections that are on the bus from the start.
+    """
+    from socket import socket  # noqa: PLC0415  (loaded if it is used)
+
+    from fsw.bus.host_link import HostLink  # noqa: PLC0415  (loaded if it is used)
+
+    return HostLink(socket(fileno=listener), [socket(fileno=end) for end in ends])
+
+
 def _port(argument: str, spec: str) -> int:
     if not argument and ":" not in spec:
         return DEFAULT_LOOP_PORT

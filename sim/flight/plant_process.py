@@ -10,7 +10,7 @@ from threading import Thread
 import click
 
 from fsw.bus.interface import BusError
-from fsw.bus.open_bus import open_bus
+from fsw.bus.open_bus import host_bus, open_bus
 from fsw.input import command_line
 from fsw.input.error_text import error_text
 from fsw.input.schema import TableError
@@ -26,17 +26,19 @@ from sim.signals import EndedBySignal, raise_on_signals
 @click.argument("path", metavar="RUN", type=click.Path(path_type=Path))
 @click.option("--bus", required=True)
 @click.option("--patience", type=(float, float), required=True, help="For the boot, for an answer [s].")
+@click.option("--host", type=(int, int), help="Serve the loop bus: descriptors of listener and first client.")
 @click.option("--parent", type=int, required=True, help="Process whose end ends this one.")
-def main(path: Path, bus: str, patience: tuple[float, float], parent: int) -> None:
+def main(
+    path: Path, bus: str, patience: tuple[float, float], host: tuple[int, int] | None, parent: int
+) -> None:
     """Fly the run that was begun in RUN; if the flight software fails, run.json says why."""
     _exit_with(parent)
     boot_s, answer_s = patience
     try:
         with raise_on_signals():
-            link = open_bus(bus)
-            record_flight(
-                path, run_dir.read_scenario(path), link, patience=Patience(boot_s, answer_s, answer_s)
-            )
+            scenario = run_dir.read_scenario(path)
+            link = open_bus(bus) if host is None else host_bus(*host)
+            record_flight(path, scenario, link, patience=Patience(boot_s, answer_s, answer_s))
     except CounterpartError as error:
         run_dir.update(path, ended=str(error))
         sys.exit(1)

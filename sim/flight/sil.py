@@ -1,6 +1,7 @@
 """Software in the loop: plant and flight software as two processes on a bus."""
 
 import os
+import socket
 import subprocess
 import sys
 import time
@@ -9,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from fsw.bus.hub import Hub
+from fsw.bus.hub_listener import listen
 from fsw.bus.interface import Bus
 from fsw.bus.link import LoopLink
 from fsw.bus.open_bus import open_bus, resolve
@@ -34,8 +35,8 @@ MARGIN_S = 5.0
 
 
 @contextmanager
-def serve_bus(bus: str) -> Iterator[tuple[str, Hub | None]]:
-    """A bus for two processes: its full spec, and the hub if this process hosts a loop bus.
+def serve_bus(bus: str) -> Iterator[tuple[str, socket.socket | None]]:
+    """A bus for two processes: its full spec, and the listener of a loop bus that the plant is to host.
 
     Raises:
         BusError: the bus cannot be used, or is in use by another flight.
@@ -47,15 +48,13 @@ def serve_bus(bus: str) -> Iterator[tuple[str, Hub | None]]:
         return
     port = int(spec.removeprefix("loop:"))
     try:
-        hub = Hub(0 if bus in ("loop", "auto") else port)
+        listener = listen(0 if bus in ("loop", "auto") else port)
     except OSError:  # another process hosts it, or uses the port for something else
-        _refuse_in_use(LoopLink(port, timeout_s=1.0, may_host=False), spec)
+        _refuse_in_use(LoopLink(port, may_host=False), spec)
         yield spec, None
         return
-    try:
-        yield f"loop:{hub.port}", hub
-    finally:
-        hub.close()
+    with listener:
+        yield f"loop:{listener.getsockname()[1]}", listener
 
 
 def _refuse_in_use(bus: Bus, spec: str) -> None:
@@ -69,7 +68,7 @@ def fly_processes(
     path: Path,
     scenario: Scenario,
     spec: str,
-    hub: Hub | None,
+    listener: socket.socket | None,
     watch: ProgressCallback,
     patience: Patience = PATIENCE,
 ) -> None:
@@ -80,7 +79,7 @@ def fly_processes(
     """
     with TemporaryDirectory() as scratch:
         table = write_flight_table(Path(scratch), scenario)
-        _fly_processes(path, scenario, table, spec, hub, watch, patience)
+        _fly_processes(path, scenario, table, spec, listener, watch, patience)
 
 
 def _fly_processes(
@@ -88,19 +87,22 @@ def _fly_processes(
     scenario: Scenario,
     table: Path,
     spec: str,
-    hub: Hub | None,
+    listener: socket.socket | None,
     watch: ProgressCallback,
     patience: Patience,
 ) -> None:
-    common = ("--bus", spec, "--parent", str(os.getpid()))
     waits = (str(patience.boot_s), str(patience.answer_s))
-    plant = start_node("sim.flight.plant_process", str(path), *common, "--patience", *waits)
-    fsw = start_node("fsw", "--table", str(table), *common)
+    plant, fsw = _start_nodes(
+        spec,
+        listener,
+        ("sim.flight.plant_process", str(path), "--patience", *waits),
+        ("fsw", "--table", str(table)),
+    )
     stall = _stall_detector(path, scenario, patience)
     stalled_s = 0.0
     try:
         while plant.poll() is None and fsw.poll() is None and not (stalled_s := stall.stalled_s()):
-            _serve(hub, POLL_S)
+            time.sleep(POLL_S)
             watch(last_tick(path, scenario))
         deadline = time.monotonic() + (0.0 if stalled_s else GRACE_S)
         while (
@@ -108,14 +110,14 @@ def _fly_processes(
             and time.monotonic() < deadline
             and _no_failure(plant, fsw)
         ):
-            _serve(hub, POLL_S / 10.0)
+            time.sleep(POLL_S / 10.0)
     finally:
         failed = [
             (name, process)
             for name, process in (("plant", plant), ("flight software", fsw))
             if process.poll()
         ]
-        _end((plant, fsw), hub)
+        _end((plant, fsw))
     run = run_dir.read_run(path)
     if not failed and "flown" in run:
         return
@@ -127,6 +129,28 @@ def _fly_processes(
     if run.get("second_senders"):
         why += f"; {describe_senders(run['second_senders'])}"
     raise FlightError(f"{why}: the run is not complete, its files are in {path}")
+
+
+def _start_nodes(
+    spec: str, listener: socket.socket | None, plant: Sequence[str], fsw: Sequence[str]
+) -> tuple[subprocess.Popen[bytes], subprocess.Popen[bytes]]:
+    """Start plant and flight software; the plant hosts the loop bus of ``listener``, which is closed here.
+
+    Between the two is a pair of sockets: half as long a way as over TCP. Where no process inherits
+    sockets, the first to open the bus hosts it.
+    """
+    common = ("--bus", spec, "--parent", str(os.getpid()))
+    if listener is not None and os.name != "posix":
+        listener.close()
+        listener = None
+    if listener is None:
+        return start_node(*plant, *common), start_node(*fsw, *common)
+    ends = socket.socketpair()
+    with listener, ends[0], ends[1]:
+        hosted, joined = (listener.fileno(), ends[0].fileno()), (ends[1].fileno(),)
+        host, end = ("--host", *map(str, hosted)), ("--end", *map(str, joined))
+        started = start_node(*plant, *common, *host, pass_fds=hosted)
+        return started, start_node(*fsw, *common, *end, pass_fds=joined)
 
 
 def _stall_detector(path: Path, scenario: Scenario, patience: Patience) -> StallDetector:
@@ -144,12 +168,12 @@ def last_tick(path: Path, scenario: Scenario) -> int:
     return round((float(stamps[-1]) - scenario.epoch_unix_s) * scenario.time.tick_hz)
 
 
-def start_node(module: str, *arguments: str, **pipes: int) -> subprocess.Popen[bytes]:
+def start_node(module: str, *arguments: str, **pipes: int | Sequence[int]) -> subprocess.Popen[bytes]:
     """Start a node as a process of the same code. Ctrl-C reaches this process only, which ends its nodes.
 
     Its packages are found where this process has found them, whatever the current directory holds.
 
-    ``pipes``: of ``stdin``, ``stdout`` and ``stderr``, as ``subprocess`` takes them.
+    ``pipes``: of ``stdin``, ``stdout``, ``stderr`` and ``pass_fds``, as ``subprocess`` takes them.
     """
     words = [sys.executable, "-m", module, *arguments]
     folders = [*filter(None, sys.path), HOUSE]
@@ -159,32 +183,22 @@ def start_node(module: str, *arguments: str, **pipes: int) -> subprocess.Popen[b
         words,
         env=environment,
         start_new_session=True,
-        **pipes,  # type: ignore[call-overload]  # one of three keys
+        **pipes,  # type: ignore[call-overload]  # one of four keys
     )
     return popen
-
-
-def _serve(hub: Hub | None, seconds: float) -> None:
-    """Wait; meanwhile serve the bus if this process hosts it."""
-    if hub is None:
-        time.sleep(seconds)
-        return
-    deadline = time.monotonic() + seconds
-    while (remaining_s := deadline - time.monotonic()) > 0.0:
-        hub.poll(remaining_s)
 
 
 def _no_failure(*processes: subprocess.Popen[bytes]) -> bool:
     return all(process.poll() in (None, 0) for process in processes)
 
 
-def _end(processes: Sequence[subprocess.Popen[bytes]], hub: Hub | None) -> None:
+def _end(processes: Sequence[subprocess.Popen[bytes]]) -> None:
     """Terminate processes that still run, with time to close their files; then kill them."""
     for process in processes:
         process.terminate()
     deadline = time.monotonic() + GRACE_S
     while any(process.poll() is None for process in processes) and time.monotonic() < deadline:
-        _serve(hub, POLL_S / 10.0)
+        time.sleep(POLL_S / 10.0)
     for process in processes:
         process.kill()
         process.wait()

@@ -31,8 +31,8 @@ def flight(tmp_path, monkeypatch, is_alive):
     """Flies, and stops a node once so many lines are logged: what the flight says, how long it took."""
     nodes = {}
 
-    def start(module, *arguments):
-        nodes[module] = real_start(module, *arguments)
+    def start(module, *arguments, **pipes):
+        nodes[module] = real_start(module, *arguments, **pipes)
         return nodes[module]
 
     real_start = sil.start_node

@@ -114,8 +114,8 @@ def _flight_on(bus: str, scenario: Scenario) -> Iterator[tuple[str, Flight]]:
     if bus == "virtual":
         yield bus, lambda path, watch: fly_virtual(path, scenario, watch)
         return
-    with serve_bus(bus) as (spec, hub):
-        yield spec.partition(":")[0], lambda path, watch: fly_processes(path, scenario, spec, hub, watch)
+    with serve_bus(bus) as (spec, listener):
+        yield spec.partition(":")[0], lambda path, watch: fly_processes(path, scenario, spec, listener, watch)
 
 
 @one_sentence

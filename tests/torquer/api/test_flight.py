@@ -156,8 +156,8 @@ def test_ctrl_c_ends_the_nodes_and_leaves_a_run_that_can_be_reported(bus, tmp_pa
 
 
 def test_a_flight_whose_node_ends_raises_nothing_and_tells(tmp_path, monkeypatch, command):
-    def start(module, *arguments):
-        node = start_node(module, *arguments)
+    def start(module, *arguments, **pipes):
+        node = start_node(module, *arguments, **pipes)
         if module == "fsw":
             node.kill()
         return node
