@@ -7,6 +7,8 @@ of ``fsw/flight.toml``.
 import json
 import tomllib
 import zlib
+from copy import deepcopy
+from functools import cache
 from importlib import resources
 from math import ceil
 from pathlib import Path
@@ -245,7 +247,12 @@ def epoch_unix_s(time: TimeTable, orbit: OrbitTable) -> int:
 
 
 def default_values() -> Nested:
-    """The content of ``fsw/flight.toml``."""
+    """The content of ``fsw/flight.toml``; the caller may change it."""
+    return deepcopy(_shipped_values())
+
+
+@cache
+def _shipped_values() -> Nested:
     return tomllib.loads(resources.files("fsw").joinpath("flight.toml").read_text(encoding="utf-8"))
 
 

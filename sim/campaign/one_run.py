@@ -30,6 +30,8 @@ from sim.record.pace import LOCKSTEP
 ERROR_HISTORY = "error_deg"
 """Name of the pointing error over the time of a run among its profiles."""
 LIMITS = "limits of the coils"
+COLLECT_EVERY_S = 1.0
+_uncollected_s = 0.0
 
 
 class Keep(StrEnum):
@@ -77,10 +79,19 @@ class RunTask:
             fails_again = suppress(Exception) if row.status is Status.FAILED else nullcontext()
             with fails_again:
                 keep_run(run_folder(self.folder, run), self.campaign, drawn)
-        gc.unfreeze()  # the flight has frozen what was loaded, including garbage of earlier flights
-        gc.collect()
+        _collect_garbage(time.monotonic() - began)
         worker = f"{socket.gethostname()}:{os.getpid()}"
         return replace(row, wall_s=time.monotonic() - began, worker=worker)
+
+
+def _collect_garbage(flown_s: float) -> None:
+    """Collect the garbage of flights once they add up to a second: it takes longer than a short flight."""
+    global _uncollected_s  # noqa: PLW0603  (of this process)
+    gc.unfreeze()  # the flight has frozen what was loaded, including garbage of earlier flights
+    _uncollected_s += flown_s
+    if _uncollected_s >= COLLECT_EVERY_S:
+        _uncollected_s = 0.0
+        gc.collect()
 
 
 def lost_run(campaign: Campaign, run: int, losses: int) -> RunRow:

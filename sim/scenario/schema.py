@@ -190,12 +190,29 @@ def expecting(scenario: Scenario, texts: Sequence[str], orbits: float) -> Scenar
     return validated(Scenario, values, "--expect") if expected else scenario
 
 
+_latest: tuple[Scenario, FlightTable] | None = None
+
+
 def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
-    """The onboard table that this scenario flies with.
+    """The onboard table that this scenario flies with; neither of the two ever changes.
+
+    That of the latest scenario is kept: a flight asks for it again and again. One with a law of one's own is
+    not, as the law's file may change.
 
     Raises:
         TableError: ``[flight]`` holds a key or value that the onboard table does not accept.
     """
+    global _latest  # noqa: PLW0603  (what is kept follows from the scenario alone)
+    latest = _latest
+    if latest is not None and latest[0] is scenario:
+        return latest[1]
+    table = _table_of(scenario, source)
+    if not table.control.own:
+        _latest = scenario, table
+    return table
+
+
+def _table_of(scenario: Scenario, source: str) -> FlightTable:
     shared = scenario.model_dump(
         include={
             "knowledge": True,

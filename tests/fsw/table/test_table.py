@@ -52,6 +52,13 @@ class TestDefault:
         assert table.time.tick_hz == 1
         assert table.orbit.tle == TLE
 
+    def test_who_changes_its_values_changes_no_others(self):
+        values = default_values()
+        values["time"]["tick_hz"] = 99
+        values.pop("orbit")
+        assert default_values()["time"]["tick_hz"] == 1
+        assert default_values()["orbit"] == {"tle": list(TLE)}
+
     def test_every_key_of_the_schema_is_written_in_it(self):
         """So that who reads the file sees all that can be set."""
         values = default_values()

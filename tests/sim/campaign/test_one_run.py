@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from sim.campaign import one_run
 from sim.campaign.definition.campaign_file import load_campaign
 from sim.campaign.definition.columns import cells
 from sim.campaign.flight import record_scenario
@@ -131,6 +132,18 @@ def test_a_run_that_no_worker_survives_says_so(small):
 def test_nothing_stays_frozen_after_a_run(task):
     task.fly(0)
     assert gc.get_freeze_count() == 0
+
+
+def test_garbage_is_collected_after_each_second_of_flights(task, monkeypatch):
+    collections = []
+    monkeypatch.setattr(one_run.gc, "collect", lambda: collections.append(True))
+    monkeypatch.setattr(one_run, "COLLECT_EVERY_S", 1e9)
+    task.fly(0)
+    assert collections == []
+    monkeypatch.setattr(one_run, "COLLECT_EVERY_S", 0.0)
+    task.fly(0)
+    task.fly(1)
+    assert collections == [True, True]
 
 
 def test_a_scenario_flies_with_its_faults(small):

@@ -34,6 +34,25 @@ def fault(name="microsat", **overrides):
     return sentence
 
 
+class TestFlightTable:
+    def test_that_of_the_latest_scenario_is_kept(self):
+        scenario = load("microsat")
+        assert flight_table(scenario) is flight_table(scenario)
+
+    def test_each_scenario_has_its_own(self):
+        one, other = load("microsat"), load("microsat", {"time": {"tick_hz": 5}})
+        for scenario in (one, other, one, other):
+            assert flight_table(scenario).time.tick_hz == scenario.time.tick_hz
+        same = load("microsat")
+        assert flight_table(same) == flight_table(one)
+
+    def test_a_changed_copy_has_that_of_its_own_values(self):
+        scenario = load("microsat")
+        flight_table(scenario)
+        changed = scenario.model_copy(update={"flight": {"telemetry": {"attitude_s": 7.0}}})
+        assert flight_table(changed) != flight_table(scenario)
+
+
 class TestShipped:
     def test_the_three_are_there(self):
         assert {"microsat", "cubesat3u", "posat1"} <= set(NAMES)
