@@ -153,6 +153,23 @@ def turn_along(
     return _symmetric(turn.dot(covariance).dot(turn.T))
 
 
+def fade(covariance: Matrix, prior: Matrix, first: int, last: int, keep: float) -> Matrix:
+    """The covariance with some states decayed."""
+    left = np.ones(len(covariance))
+    left[first:last] = keep
+    decayed: Matrix = np.outer(left, left) * covariance
+    own = range(first, last)
+    decayed[own, own] += (1.0 - keep * keep) * prior.diagonal()[first:last]
+    return decayed
+
+
+def shear(covariance: Matrix, change: Matrix, places: tuple[int, ...]) -> Matrix:
+    """The covariance with a change of some rows of T from those of the identity."""
+    turn = np.eye(len(covariance))
+    turn[list(places)] += change
+    return _symmetric(turn.dot(covariance).dot(turn.T))
+
+
 def _flat(numbers: Numbers) -> Matrix:
     return np.concatenate([np.atleast_1d(np.array(part, float)) for part in numbers] or [np.zeros(0)])
 

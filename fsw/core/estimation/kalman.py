@@ -208,6 +208,16 @@ def turn_along(
     return _kernel.turn_along(covariance, error, first, factor, coordinates, moving)
 
 
+def fade(covariance: Matrix, prior: Matrix, place: slice, keep: float) -> Matrix:
+    """The covariance after a decay of some states by this factor, their variances nearer to the prior's."""
+    return _kernel.fade(covariance, prior, place.start, place.stop, keep)
+
+
+def shear(covariance: Matrix, change: Matrix, places: tuple[int, ...]) -> Matrix:
+    """The covariance T P T^T, symmetric, T being 1 with a change (k, n) of its rows at these k places."""
+    return _kernel.shear(covariance, change, places)
+
+
 @final
 @dataclass(frozen=True, slots=True)
 class Cause:

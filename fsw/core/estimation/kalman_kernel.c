@@ -345,6 +345,35 @@ static void turn_along(int n, int m, int k, int first, const double *restrict P,
     symmetrise(n, out);
 }
 
+/* States from first to last decay by a factor: out = D P D, their variances gaining 1 - keep^2 of those in P0 */
+static void fade(int n, int first, int last, double keep, const double *restrict P, const double *restrict P0,
+                 double *restrict out)
+{
+    memcpy(out, P, sizeof(double) * n * n);
+    for (int i = first; i < last; i++)
+        for (int c = 0; c < n; c++) out[i * n + c] *= keep;
+    for (int r = 0; r < n; r++)
+        for (int c = first; c < last; c++) out[r * n + c] *= keep;
+    for (int i = first; i < last; i++) out[i * n + i] += (1.0 - keep * keep) * P0[i * n + i];
+}
+
+/* out = T P T^T, T = 1 + change (k,n) in the rows of these places */
+static void shear(int n, int k, const double *restrict P, const double *restrict change, const int *places,
+                  double *restrict out)
+{
+    double rows[MOST_STATES * MOST_STATES], columns[MOST_STATES * MOST_STATES];
+    multiply(k, n, n, change, P, rows);
+    memcpy(out, P, sizeof(double) * n * n);
+    for (int i = 0; i < k; i++)
+        for (int c = 0; c < n; c++) out[places[i] * n + c] += rows[i * n + c];
+    for (int i = 0; i < k; i++)
+        for (int c = 0; c < n; c++) columns[c * k + i] = change[i * n + c];
+    multiply(n, n, k, out, columns, rows);
+    for (int r = 0; r < n; r++)
+        for (int i = 0; i < k; i++) out[r * n + places[i]] += rows[r * k + i];
+    symmetrise(n, out);
+}
+
 /* The arrays that a call holds while it computes, and numbers of its tuples. */
 #define MOST_HELD 12
 typedef struct { int count; PyArrayObject *array[MOST_HELD]; } Held;
@@ -678,6 +707,46 @@ FUNCTION(turn_along)
     return returned(&held, out);
 }
 
+FUNCTION(fade)
+{
+    Held held = {0};
+    PyArrayObject *P, *P0;
+    double *out = NULL;
+    if (!takes(count, 5, "P, P a priori, first, last and what is left")) return NULL;
+    const long first = PyLong_AsLong(given[2]), last = PyLong_AsLong(given[3]);
+    const double keep = PyErr_Occurred() ? 0.0 : PyFloat_AsDouble(given[4]);
+    if (!PyErr_Occurred() && (P = square(&held, given[0], MOST_STATES, "P")) != NULL &&
+        (P0 = matrix(&held, given[1], ROWS(P), ROWS(P), "P a priori")) != NULL) {
+        if (first < 0 || first > last || last > ROWS(P))
+            PyErr_SetString(PyExc_ValueError, "the states that decay are none of P");
+        else if ((out = result(&held, ROWS(P), ROWS(P))) != NULL)
+            fade(ROWS(P), (int)first, (int)last, keep, DATA(P), DATA(P0), out);
+    }
+    return returned(&held, out);
+}
+
+FUNCTION(shear)
+{
+    Held held = {0};
+    PyArrayObject *P, *change;
+    double numbers[MOST_STATES], *out = NULL;
+    int places[MOST_STATES], k;
+    if (takes(count, 3, "P, change and places") && (k = tuple(given[2], 0, MOST_STATES, numbers, "the places")) >= 0 &&
+        (P = square(&held, given[0], MOST_STATES, "P")) != NULL &&
+        (change = matrix(&held, given[1], k, ROWS(P), "the change")) != NULL) {
+        for (int i = 0; i < k; i++)
+            if (!(numbers[i] >= 0.0 && numbers[i] < ROWS(P))) {
+                PyErr_SetString(PyExc_ValueError, "the places are none of P's states");
+                return returned(&held, NULL);
+            } else {
+                places[i] = (int)numbers[i];
+            }
+        if ((out = result(&held, ROWS(P), ROWS(P))) != NULL)
+            shear(ROWS(P), k, DATA(P), DATA(change), places, out);
+    }
+    return returned(&held, out);
+}
+
 #define METHOD(name, words) {#name, (PyCFunction)(void (*)(void))py_##name, METH_FASTCALL, words}
 
 static PyMethodDef methods[] = {
@@ -694,6 +763,8 @@ static PyMethodDef methods[] = {
     METHOD(update_trace, "update_trace(effect, sums, y, H, K, S^-1) -> (effect, sums)"),
     METHOD(unexplained, "unexplained(sums) -> what no deviation explains, NaN of damaged sums"),
     METHOD(turn_along, "turn_along(P, error, first, factor, W, map) -> P"),
+    METHOD(fade, "fade(P, P a priori, first, last, what is left) -> P"),
+    METHOD(shear, "shear(P, change, places) -> P"),
     {NULL, NULL, 0, NULL},
 };
 

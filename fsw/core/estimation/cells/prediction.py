@@ -1,6 +1,7 @@
 """What Sun cells should show, which of them Sun and Earth light, and what is the most that they can show."""
 
 from math import hypot
+from typing import final
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from fsw.core.estimation.kalman import Matrix, linear
 from fsw.core.estimation.measurement import sun_prediction
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.estimation.parameters import Parameters
 
 LEAST_COSINE = 0.2
 """Of the angle from a cell's normal to the Sun: below it an attitude error may leave the cell dark."""
@@ -21,35 +23,61 @@ CellPrediction = tuple[float, Matrix]
 """What a cell should show without its excess, and the sensitivity, (1, n)."""
 
 
-def prediction(
-    estimate: Estimate, cell: int, seen: Light, config: MekfConfig, cells: CellSet
-) -> CellPrediction:
-    """What a cell, clear of the edge of its view, should show, and how that depends on the error state.
+@final
+class Directions:
+    """Sun and Earth as the cells see them, and H of each, (3, n); the Earth's light, relative to the Sun's.
 
     Misalignment and age are those of the Sun sensor that the cells replace: common to all cells.
     """
-    normal, parts = cells.normals_body[cell], config.layout
+
+    __slots__ = ("e", "e_sensitivity", "earth", "s", "s_sensitivity")
+
+    def __init__(self, s: Vec3, s_sensitivity: Matrix, e: Vec3, e_sensitivity: Matrix, earth: float) -> None:
+        self.s = s
+        self.s_sensitivity = s_sensitivity
+        self.e = e
+        self.e_sensitivity = e_sensitivity
+        self.earth = earth
+
+
+def directions(estimate: Estimate, seen: Light, config: MekfConfig) -> Directions:
+    """Where the cells should see Sun and Earth."""
     q, omega, known = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
-    s, sensitivity = sun_prediction(q, omega, known, seen.s_eci, config)
-    shown, row, nothing = 0.0, np.zeros(parts.size), np.zeros((1, parts.size))
-    direct = dot(normal, s)
+    s, s_sensitivity = sun_prediction(q, omega, known, seen.s_eci, config)
+    e, e_sensitivity = sun_prediction(q, omega, known, seen.e_eci, config)
+    return Directions(s, s_sensitivity, e, e_sensitivity, seen.earth)
+
+
+def prediction(
+    estimate: Estimate, cell: int, seen: Light, config: MekfConfig, cells: CellSet
+) -> CellPrediction:
+    """What a cell, clear of the edge of its view, should show, and how that depends on the error state."""
+    return shown_by(cell, directions(estimate, seen, config), estimate.parameters, config, cells)
+
+
+def shown_by(
+    cell: int, towards: Directions, known: Parameters, config: MekfConfig, cells: CellSet
+) -> CellPrediction:
+    """As ``prediction``, by the directions that are common to all cells."""
+    normal, parts = cells.normals_body[cell], config.layout
+    shown, row = 0.0, np.zeros((1, parts.size))
+    direct = dot(normal, towards.s)
     if direct > 0.0:
         gain = 1.0 + (known.cell_gain[cell] if known.cell_gain else 0.0)
-        shown, row = gain * direct, gain * linear(nothing, normal, sensitivity)[0]
+        shown, row = gain * direct, gain * linear(row, normal, towards.s_sensitivity)
         if parts.cell_gain is not None:
-            row[parts.cell_gain.start + cell] = direct
-    if seen.earth > 0.0:
-        e, e_sensitivity = sun_prediction(q, omega, known, seen.e_eci, config)
-        view = 0.5 * (1.0 + dot(normal, e))
-        of_one = seen.earth / cells.albedo
-        earth = seen.earth + of_one * (known.earth_light[0] if known.earth_light else 0.0)
+            row[0, parts.cell_gain.start + cell] = direct
+    if towards.earth > 0.0:
+        view = 0.5 * (1.0 + dot(normal, towards.e))
+        of_one = towards.earth / cells.albedo
+        earth = towards.earth + of_one * (known.earth_light[0] if known.earth_light else 0.0)
         shown += earth * view * view
-        row = row + linear(nothing, scale(earth * view, normal), e_sensitivity)[0]
+        row = linear(row, scale(earth * view, normal), towards.e_sensitivity)
         if parts.earth_light is not None:
-            row[parts.earth_light.start] = of_one * view * view
+            row[0, parts.earth_light.start] = of_one * view * view
     if parts.cells is not None:
-        row[parts.cells.start + cell] = 1.0
-    return shown, row.reshape(1, -1)
+        row[0, parts.cells.start + cell] = 1.0
+    return shown, row
 
 
 def sunlit(q_body_from_eci: Quaternion, seen: Light, cells: CellSet) -> list[int]:

@@ -26,8 +26,8 @@ import numpy as np
 from fsw.core.algebra.quaternion import conjugate, multiply
 from fsw.core.algebra.vector import Vec3, sub
 from fsw.core.estimation.cells.cell_set import CellSet, Light
-from fsw.core.estimation.cells.prediction import earthlit, prediction, sunlit
-from fsw.core.estimation.kalman import Matrix, diagonal, product
+from fsw.core.estimation.cells.prediction import directions, earthlit, shown_by, sunlit
+from fsw.core.estimation.kalman import Matrix, diagonal, product, shear
 from fsw.core.estimation.measurement import field_prediction
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
@@ -94,9 +94,10 @@ def _shown(
         estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters, b_eci_t, config
     )
     values, rows = list(sub(field, estimate.parameters.mag_bias_t)), [field_rows]
-    if seen is not None:
+    if seen is not None and lit:
+        towards = directions(estimate, seen, config)
         for cell in lit:
-            value, row = prediction(estimate, cell, seen, config, cells)
+            value, row = shown_by(cell, towards, estimate.parameters, config, cells)
             values.append(value)
             rows.append(row)
     return np.array(values), np.concatenate(rows)
@@ -138,15 +139,12 @@ def relinearise(
         places
     ]
     change = (known.rows - rows)[numbers]
-    covariance = estimate.covariance.copy()
-    covariance[places] += product(change, covariance)
-    covariance[:, places] += product(covariance, change.T)
+    estimate.covariance = shear(estimate.covariance, change, tuple(places))
     if estimate.trace is not None:
         effect = estimate.trace.effect.copy()
         effect[places] += product(change, effect)
         estimate.trace.effect = effect
     correct_parameters(estimate.parameters, tuple(left.tolist()), config.layout)
-    estimate.covariance = 0.5 * (covariance + covariance.T)
 
 
 def correction(before: Estimate, after: Estimate, config: MekfConfig) -> Matrix:

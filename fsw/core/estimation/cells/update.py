@@ -11,6 +11,7 @@ from fsw.core.estimation.cells.cell_set import CellSet, Light
 from fsw.core.estimation.cells.prediction import prediction
 from fsw.core.estimation.cells.relinearise import Linear, cell_shown
 from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.kalman import fade as fade_covariance
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.wire.value import Value
@@ -112,12 +113,7 @@ def fade(estimate: Estimate, config: MekfConfig) -> None:
 
 def _fade(estimate: Estimate, place: slice, keep: float, config: MekfConfig) -> None:
     """Scale these states in covariance and trace by ``keep``, their variances nearer to the prior's."""
-    covariance = estimate.covariance.copy()
-    covariance[place] *= keep
-    covariance[:, place] *= keep
-    own = range(place.start, place.stop)
-    covariance[own, own] += (1.0 - keep * keep) * config.initial_covariance.diagonal()[place]
-    estimate.covariance = covariance
+    estimate.covariance = fade_covariance(estimate.covariance, config.initial_covariance, place, keep)
     if estimate.trace is not None:
         effect = estimate.trace.effect.copy()
         effect[place] *= keep

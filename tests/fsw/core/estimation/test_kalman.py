@@ -249,6 +249,14 @@ def of_turn_along(random, states):
     return covariance(random, states), *numbers(random, states), 3, 0.7, coordinates, moving
 
 
+def of_fade(random, states):
+    return covariance(random, states), covariance(random, states), 2, 5, 0.9
+
+
+def of_shear(random, states):
+    return covariance(random, states), random.normal(size=(3, states)), (1, 4, 5)
+
+
 @pytest.mark.skipif(BOTH[0] is not Algebra.KERNEL, reason="the kernel is not built")
 @pytest.mark.parametrize(
     ("name", "arguments"),
@@ -264,6 +272,8 @@ def of_turn_along(random, states):
         ("update_trace", of_update_trace),
         ("unexplained", of_unexplained),
         ("turn_along", of_turn_along),
+        ("fade", of_fade),
+        ("shear", of_shear),
     ],
     ids=lambda one: one if isinstance(one, str) else one.__name__,
 )
@@ -317,6 +327,10 @@ class TestWhatTheKernelRefuses:
             ("carry_trace", (np.ones((9, 2)), np.ones((6, 8)))),
             ("update_trace", (np.ones((9, 3)), np.ones((2, 2)), (1.0,), *[np.ones((1, 9))] * 3)),
             ("unexplained", (np.ones((0, 0)),)),
+            ("fade", (np.eye(9), np.eye(9), 4, 10, 0.9)),
+            ("fade", (np.eye(9), np.eye(8), 4, 5, 0.9)),
+            ("shear", (np.eye(9), np.ones((2, 9)), (1, 9))),
+            ("shear", (np.eye(9), np.ones((2, 9)), (1, 2, 3))),
             ("turn_along", (np.eye(9), (1.0,) * 9, 4, 1.0, np.ones((1, 9)), np.ones((6, 6)))),
             ("turn_along", (np.eye(9), (1.0,) * 9, 0, 1.0, np.ones((5, 9)), np.ones((6, 30)))),
         ],
