@@ -1,7 +1,7 @@
 # make sil    make the environment .venv and fly the default scenario
-# make test   the tests, but for the long ones, interpreted: some four minutes
-# make compiled   compile the flight code, as far as it is in the group: half a minute
-# make test-compiled   the golden logs by the compiled flight code
+# make test   the tests, but for the long ones: some four minutes; by the compiled flight code, those that replace parts of it interpreted
+# make compiled   does the flight code run compiled? if not, why not, and an error
+# make test-interpreted   the tests, but for the long ones, all interpreted
 # make test-long   those of over a second: many orbits, processes, waits in real time; on a CAN interface where there is one: a quarter of an hour
 # make lint   style, types, layers, generated code, pages and pictures
 # make validate   compute every claim and reference figure, into docs/validation.md: some hours; stopped, it goes on where it was
@@ -43,12 +43,15 @@ compiled := .venv/.compiled
 pip := TORQUER_INTERPRETED=1 $(bin)/pip install --quiet --disable-pip-version-check
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv compiled sil test test-compiled test-long lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate validate-recorded same-flights fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv environment compiled sil test test-interpreted test-long lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate validate-recorded same-flights fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
 
-venv: $(installed) $(kernel)
+# an edit of the flight code compiles it again, but where it is to run interpreted
+venv: environment $(if $(filter-out 0,$(TORQUER_INTERPRETED)),,$(compiled))
+
+environment: $(installed) $(kernel)
 
 $(installed): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit("torquer needs Python 3.11 or newer: make PYTHON=python3.11 ..." if sys.version_info < (3, 11) else 0)'
@@ -66,26 +69,28 @@ $(compiled): tools/compile_group.py $(shell find fsw hil_stub sim -name '*.py') 
 	@$(bin)/python tools/compile_group.py
 	@touch $@
 
-compiled: venv $(compiled)
+compiled: venv
 	@$(bin)/python tools/compile_group.py --check
 
 sil: venv
 	$(bin)/torquer sil
 
 # a worker, a core
-test test-long: export OPENBLAS_NUM_THREADS = 1
-test test-long: export TORQUER_INTERPRETED = 1
+test test-interpreted test-long: export OPENBLAS_NUM_THREADS = 1
+interpreted := TORQUER_INTERPRETED=1 $(bin)/pytest $(PYTEST_FLAGS)
 
 test: venv
 	$(bin)/pytest $(PYTEST_FLAGS)
+	$(interpreted) -m "interpreted and not long"
 
-test-compiled: compiled
-	$(bin)/pytest -q -rs tests/golden
+test-interpreted: environment
+	$(interpreted)
 
 test-long: venv
 	$(bin)/pytest $(PYTEST_FLAGS) -m long
+	$(interpreted) -m "interpreted and long"
 
-lint: venv
+lint: environment
 	$(bin)/ruff check
 	$(bin)/ruff format --check
 	$(bin)/mypy

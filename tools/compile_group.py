@@ -44,8 +44,8 @@ from fsw.compiled import (
 
 GROUP = ("fsw/core/**/*.py", "fsw/wire/*.py", "hil_stub/**/*.py", "sim/plant/**/*.py")
 """What is compiled, as one group: calls within it are direct, a call into it or out of it costs."""
-INTERPRETED = ("hil_stub/__main__.py", "sim/plant/__main__.py")
-"""Within those, what stays interpreted."""
+INTERPRETED = ("hil_stub/__main__.py", "hil_stub/process/*.py", "sim/plant/__main__.py")
+"""Within those, what stays interpreted: command lines, whose functions click decorates."""
 OPTIMISATION = ("-O2", "-g0", "-fno-fast-math", "-ffp-contract=off")
 """No contraction: a product and a sum are rounded each by itself, as Python does it."""
 UNWARNED = ("-w",)
