@@ -101,6 +101,8 @@ class Build:
         try:
             for name in (LIBRARY, STARTER):
                 sys.modules[name] = _extension(name, str(self._folder / self.manifest["library"]))
+            # by this each module derives its own file
+            sys.modules[LIBRARY].__file__ = str(self._root / self.manifest["library"])
         except ImportError as error:
             sys.modules.pop(LIBRARY, None)
             raise BuildError(f"{FOLDER}/{self.manifest['library']} cannot be loaded: {error}") from None

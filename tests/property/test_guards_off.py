@@ -57,9 +57,7 @@ GUARDS = {
     "monitors": Off(
         "coil-stuck-on-1", "stuck", ("fsw.core.supervisor.first_violation", lambda watched: None)
     ),
-    "second sender": Off(
-        "second-sender", "no request", ("fsw.core.step.watch_senders", lambda *seen: None)
-    ),
+    "second sender": Off("second-sender", "no request", ("fsw.core.step.watch_senders", lambda *seen: None)),
     "sensor health": Off(
         "mag-bias",
         "named or doubted",

@@ -2,6 +2,8 @@
 
 from dataclasses import is_dataclass, replace
 
+from fsw.core.packing import field_names
+
 
 def with_values(one, **fields):
     """The copy; what is not named is shared."""
@@ -11,5 +13,5 @@ def with_values(one, **fields):
         return one._replace(**fields)
     if hasattr(one, "replace"):
         return one.replace(**fields)
-    values = {name: getattr(one, name) for name in type(one).__slots__}
+    values = {name: getattr(one, name) for name in field_names(type(one))}
     return type(one)(**(values | fields))

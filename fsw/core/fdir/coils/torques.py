@@ -99,7 +99,8 @@ def _isolate(
     """
     weak = config.weak
     gain_nats, earlier = explanations.weigh_gains(estimate, config.mekf, weak), health.older
-    if estimate.trace is None:  # as after a retest, whose evidence waits for the first pulse
+    trace = estimate.trace
+    if trace is None:  # as after a retest, whose evidence waits for the first pulse
         first, second, third = earlier
         health.older = (Older(kept=first.kept), Older(kept=second.kept), Older(kept=third.kept))
         return

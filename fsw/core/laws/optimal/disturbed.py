@@ -224,9 +224,7 @@ def _expected_change(
         wheel_momentum(inputs, config),
     )
     shape = functions(u_rad)
-    c1, c2, c3 = (
-        sum((shape[k] * torques[3 * k + axis] for k in range(FUNCTIONS)), 0.0) for axis in range(3)
-    )
+    c1, c2, c3 = (sum((shape[k] * torques[3 * k + axis] for k in range(FUNCTIONS)), 0.0) for axis in range(3))
     learned = rotate(attitude.q_body_from_orbit, (c1, c2, c3))
     torque = add(add(cross(m_body_am2, inputs.b_body_t), inputs.torque_body_nm), learned)
     return add(free, transform(config.inertia_inverse, torque))

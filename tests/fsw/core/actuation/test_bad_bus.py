@@ -49,6 +49,7 @@ def test_a_broken_frame_beside_a_request_is_not_the_request(world, noise):
     assert world.state.modes.trips == 0
 
 
+@pytest.mark.interpreted
 def test_a_request_that_is_broken_itself_is_asked_for_again(world):
     """The damaged frame is refused, and nothing is driven."""
     refused = []

@@ -164,7 +164,7 @@ class TestRequest:
         view, message = asked(3e-4, speed_radps)
         friction = 2e-7 * speed_radps + 2e-5 * speed_radps / sqrt(speed_radps**2 + 1.0)
         assert friction_nm(speed_radps, WHEEL) == pytest.approx(friction)
-        assert message == WheelTorque(pytest.approx(3e-4 + friction), 0)
+        assert message.values() == (pytest.approx(3e-4 + friction), 0, 0)
         assert view.requested_nm == message.torque
 
     @pytest.mark.parametrize("sign", [1.0, -1.0])

@@ -157,6 +157,7 @@ def inputs_in(
         q_orbit_from_eci=from_dcm(tuple(map(tuple, c_orbit.tolist()))),
         orbit_rate_radps=orbit.rate_radps,
     )
+    before = FieldSample() if before is None else before
     sample = FieldSample(b_body, tick) if sampled else before
     return LawInput(attitude, b_body, sample, before, sun, reference, tick=tick)
 

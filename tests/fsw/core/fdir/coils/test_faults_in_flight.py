@@ -193,6 +193,7 @@ def test_a_coil_that_is_named_is_not_fired_before_its_time_or_until_the_ground_c
 class TestStuck:
     @pytest.mark.requirement("REQ-COIL-04")
     @pytest.mark.parametrize(("coil", "ampere"), [(0, 0.4), (1, -0.4), (2, 0.4), (1, 0.05)])
+    @pytest.mark.interpreted
     def test_a_coil_that_conducts_by_itself_leads_to_safe_and_its_torque_names_it(
         self, make_world, coil, ampere
     ):
@@ -219,6 +220,7 @@ class TestStuck:
         ],
         ids=["beside an output of the other sense", "of an output of the other sense", "with another gain"],
     )
+    @pytest.mark.interpreted
     def test_it_is_named_by_what_the_calibration_has_of_it(self, make_world, coils, matrix, coil, ampere):
         world = make_world(coils=coils, flight={"calibration": {"coils": {"matrix": matrix}}})
         world.fly(SETTLED)
@@ -229,6 +231,7 @@ class TestStuck:
         assert world.state.attitude.valid
         assert error_deg(world) < 4.0
 
+    @pytest.mark.interpreted
     def test_until_then_no_attitude_is_called_valid_and_after_it_the_current_is_reckoned_with(
         self, make_world
     ):
@@ -248,6 +251,7 @@ class TestStuck:
         assert error_deg(world) < 4.0
 
     @pytest.mark.requirement("REQ-COIL-04", "REQ-COIL-05")
+    @pytest.mark.interpreted
     def test_it_is_named_too_if_it_begins_in_the_pulse_of_another(self, make_world):
         world = make_world()
         world.fly(SETTLED)

@@ -70,7 +70,7 @@ def proven(q, config=CONFIG):
 
 def watched_coarse(change, step, declared, ticks):
     """As ``watched``, of cells without noise whose currents are multiples of a step; which were still."""
-    config, health, still = cell_filter(replace(CELLS, step=declared)), (), set()
+    config, health, still = cell_filter(replace(CELLS, step=declared)), [], set()
     for tick in range(ticks):
         q = attitude(tick)
         estimate = proven(q, config)
@@ -85,7 +85,7 @@ def watched_coarse(change, step, declared, ticks):
 def watched(
     change,
     ticks=ENOUGH,
-    health=(),
+    health=None,
     *,
     sure=True,
     seen=SEEN,
@@ -95,6 +95,7 @@ def watched(
     begun=False,
 ):
     """The cells after so many ticks of an estimate that is right; ``change`` makes the currents wrong."""
+    health = [] if health is None else health
     random = np.random.default_rng(3)
     for tick in range(first, first + ticks):
         q = attitude(tick) if turning else Q_BODY_FROM_ECI
@@ -164,7 +165,7 @@ def test_light_in_the_shadow_counts_where_the_shadow_is_certain(shadow, fault):
     assert faults(health) == [0, 0, fault, 0, 0, 0]
 
 
-def in_shadow(change, ticks, health=()):
+def in_shadow(change, ticks, health=None):
     return watched(change, ticks, health, seen=None, shadow=True, sure=False)
 
 
@@ -229,7 +230,7 @@ def test_an_excess_that_no_bound_allows_is_found():
     cell, excess = LIT[1], [0.0] * 6
     excess[cell] = 4.1 * CELLS.excess_sigma
     estimate = with_values(estimate, parameters=with_values(estimate.parameters, cell_excess=tuple(excess)))
-    health = ()
+    health = []
     for number in range(ENOUGH):
         currents = [one + 0.001 * (number % 7) for one in ideal()]
         _, used = cells_taken(estimate, currents, SEEN, CONFIG)
@@ -247,7 +248,7 @@ def test_none_is_accused_before_the_estimate_is_proven(cell):
 def test_where_most_are_refused_it_is_not_clear_that_a_cell_is_wrong():
     estimate = mekf.start(Q_BODY_FROM_ECI, (0.0,) * 3, CONFIG)
     currents = [one + 0.9 if cell in LIT else one for cell, one in enumerate(ideal())]
-    health = ()
+    health = []
     for _ in range(ENOUGH):
         _, used = cells_taken(estimate, currents, SEEN, CONFIG)
         assert len(used.refused) == len(LIT)
@@ -353,7 +354,7 @@ class TestGain:
         return EstimatorState(with_values(estimate, parameters=parameters, covariance=covariance))
 
     def test_is_isolated_and_its_gain_forgotten(self):
-        state, health = flown(self.learnt(), (), 1.0 + self.LEARNT, ENOUGH)
+        state, health = flown(self.learnt(), [], 1.0 + self.LEARNT, ENOUGH)
         assert health[LIT[1]].watch.fault == SensorFault.STRENGTH
         assert faults(health).count(0) == 5
         gains, place = state.estimate.parameters.cell_gain, CONFIG.layout.cell_gain.start + LIT[1]
@@ -362,20 +363,20 @@ class TestGain:
         assert state.estimate.covariance[place, place] == CONFIG.initial_covariance[place, place]
 
     def test_right_again_it_comes_back_under_the_same_estimate(self):
-        isolated = flown(self.learnt(), (), 1.0 + self.LEARNT, ENOUGH)
+        isolated = flown(self.learnt(), [], 1.0 + self.LEARNT, ENOUGH)
         assert flown(*isolated, 1.0, 60)[1][LIT[1]].watch.fault
         state, health = flown(*isolated, 1.0, 300)
         assert faults(health) == [0] * 6
         assert faults(flown(state, health, 1.0, 60)[1]) == [0] * 6, "and stays"
 
     def test_as_wrong_as_before_it_does_not(self):
-        isolated = flown(self.learnt(), (), 1.0 + self.LEARNT, ENOUGH)
+        isolated = flown(self.learnt(), [], 1.0 + self.LEARNT, ENOUGH)
         assert flown(*isolated, 1.0 + self.LEARNT, 600)[1][LIT[1]].watch.fault == SensorFault.STRENGTH
 
     def test_while_parameters_are_frozen_nothing_is_forgotten(self):
         frozen = with_values(self.learnt(), frozen=True)
         before = frozen.estimate
-        _, health = flown(frozen, (), 1.0 + self.LEARNT, ENOUGH)
+        _, health = flown(frozen, [], 1.0 + self.LEARNT, ENOUGH)
         assert health[LIT[1]].watch.fault
         assert frozen.estimate is before
 
@@ -394,4 +395,4 @@ def test_cells_that_are_forgotten_are_readmitted():
 
 
 def test_without_cells_there_is_no_health_of_them():
-    assert judge([], CellEvidence((), None, None, None, False, False, True)) == []
+    assert judge([], CellEvidence((), NO_CELLS, None, None, False, False, True)) == []

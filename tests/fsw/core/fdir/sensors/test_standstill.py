@@ -8,11 +8,12 @@ import pytest
 from with_values import with_values
 
 from fsw.core.algebra.quaternion import from_small_rotation, multiply, normalise, rotate
-from fsw.core.algebra.vector import scale, sub
+from fsw.core.algebra.vector import add, scale, sub
 from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.sensors.standstill import Displacement, ReadingMotion, Steps, is_frozen, update_motion
+from fsw.core.orbit.ephemeris import Reference
 
 STEPS = Steps(field_t=2e-7, sun=4e-3, tick_s=0.5)
 OMEGA = (0.002, -0.003, 0.001)
@@ -45,12 +46,19 @@ def estimated(q=Q_BODY_FROM_ECI, sigma_radps=1e-9):
     return mekf.start(q, OMEGA, tuning(sigma_radps))
 
 
-class At:
+def reference_at(time_s):
     """The models so many seconds on."""
-
-    def __init__(self, time_s):
-        self.b_eci_t = tuple(np.add(Models.b_eci_t, scale(time_s, Models.b_rate_eci_tps)))
-        self.sun_eci, self.b_rate_eci_tps = Models.sun_eci, Models.b_rate_eci_tps
+    b_eci_t = add(Models.b_eci_t, scale(time_s, Models.b_rate_eci_tps))
+    return Reference(
+        r_eci_m=(7e6, 0.0, 0.0),
+        radius_m=7e6,
+        b_eci_t=b_eci_t,
+        sun_eci=Models.sun_eci,
+        lit=True,
+        q_orbit_from_eci=(1.0, 0.0, 0.0, 0.0),
+        orbit_rate_radps=1e-3,
+        b_rate_eci_tps=Models.b_rate_eci_tps,
+    )
 
 
 def attitude(time_s):
@@ -63,7 +71,7 @@ def after(ticks, motion=None, still=BOTH, steps=STEPS, **estimate):
     motion = ReadingMotion() if motion is None else motion
     for tick in range(ticks):
         time_s = (tick + 0.5) * steps.tick_s
-        update_motion(motion, *still, estimated(attitude(time_s), **estimate), At(time_s), steps)
+        update_motion(motion, *still, estimated(attitude(time_s), **estimate), reference_at(time_s), steps)
     return motion
 
 
@@ -80,7 +88,7 @@ def test_the_motion_is_the_difference_of_what_is_measured_at_both_ends():
     motion = after(ticks)
     time_s = ticks * STEPS.tick_s
     q = attitude(time_s)
-    of_field = sub(rotate(q, At(time_s).b_eci_t), rotate(Q_BODY_FROM_ECI, Models.b_eci_t))
+    of_field = sub(rotate(q, reference_at(time_s).b_eci_t), rotate(Q_BODY_FROM_ECI, Models.b_eci_t))
     of_sun = sub(rotate(q, Models.sun_eci), rotate(Q_BODY_FROM_ECI, Models.sun_eci))
     np.testing.assert_allclose(motion.of_field.by_body, of_field, atol=0.02 * np.linalg.norm(of_field))
     np.testing.assert_allclose(motion.of_sun.by_body, of_sun, atol=0.02 * np.linalg.norm(of_sun))
@@ -89,25 +97,25 @@ def test_the_motion_is_the_difference_of_what_is_measured_at_both_ends():
 def test_its_error_is_the_rate_s_for_all_the_time():
     motion = after(8, sigma_radps=3e-4)
     sigma_rad = sqrt(3.0) * 3e-4 * 8 * STEPS.tick_s
-    strengths = [np.linalg.norm(At((tick + 0.5) * STEPS.tick_s).b_eci_t) for tick in range(8)]
+    strengths = [np.linalg.norm(reference_at((tick + 0.5) * STEPS.tick_s).b_eci_t) for tick in range(8)]
     assert motion.of_field.sigma == pytest.approx(sigma_rad * np.mean(strengths))
     assert motion.of_sun.sigma == pytest.approx(sigma_rad)
 
 
 def test_a_reading_that_changes_begins_anew():
     motion = after(5)
-    update_motion(motion, False, True, estimated(), Models, STEPS)
+    update_motion(motion, False, True, estimated(), reference_at(0.0), STEPS)
     assert motion.of_field == Displacement()
     assert motion.of_sun != Displacement()
     motion = after(5)
-    update_motion(motion, True, False, estimated(), Models, STEPS)
+    update_motion(motion, True, False, estimated(), reference_at(0.0), STEPS)
     assert motion.of_field != Displacement()
     assert motion.of_sun == Displacement()
 
 
 def test_what_is_not_known_counts_as_rest():
     motion = after(5)
-    update_motion(motion, *BOTH, None, Models, STEPS)
+    update_motion(motion, *BOTH, None, reference_at(0.0), STEPS)
     assert motion == after(5)
 
 

@@ -92,7 +92,7 @@ class TestFlights:
 
     def test_the_body_turns_to_its_pitch_in_the_orbit_plane(self, run):
         """The gravity gradient holds it back by a fraction of a degree."""
-        pitch_deg = np.degrees([pitch(c) for c in run.c_body_from_orbit[-1000:]])
+        pitch_deg = np.degrees([pitch(tuple(map(tuple, c.tolist()))) for c in run.c_body_from_orbit[-1000:]])
         np.testing.assert_allclose(pitch_deg, np.degrees(0.5), atol=0.5)
 
 

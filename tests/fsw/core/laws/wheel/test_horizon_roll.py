@@ -23,13 +23,17 @@ def test_roll_turns_the_momentum_and_its_rate_is_braked():
     assert np.cross(m, B)[1] == pytest.approx(-1e6 * B[2] ** 2 * 1e-3)
 
 
+def rows(matrix):
+    return tuple(map(tuple, matrix.tolist()))
+
+
 @pytest.mark.parametrize("roll_deg", [-70.0, -3.0, 3.0, 70.0])
 def test_the_sensor_shows_the_turn_about_axis_2(turned, roll_deg):
-    assert np.degrees(horizon_roll_angle(turned((0, 1, 0), roll_deg))) == pytest.approx(roll_deg)
+    assert np.degrees(horizon_roll_angle(rows(turned((0, 1, 0), roll_deg)))) == pytest.approx(roll_deg)
 
 
 def test_the_sensor_does_not_see_yaw(turned):
-    assert horizon_roll_angle(turned((1, 0, 0), 20.0)) == pytest.approx(0.0, abs=1e-12)
+    assert horizon_roll_angle(rows(turned((1, 0, 0), 20.0))) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_the_filter_follows_a_steady_rate_exactly_and_smooths_a_jump():
