@@ -1,8 +1,7 @@
 """What is told of the first ticks, of an orbit without a position, and of a second sender."""
 
-from types import SimpleNamespace
-
 import pytest
+from cell_samples import REFERENCE
 from flight_states import altered
 from gate_samples import measured
 
@@ -52,7 +51,7 @@ def test_a_second_sender_is_told_once_with_the_identifier_that_named_it(state):
 
 @pytest.mark.parametrize(
     ("reference", "eclipse"),
-    [(None, 1), (SimpleNamespace(lit=False), 1), (SimpleNamespace(lit=True), 0)],
+    [(None, 1), (REFERENCE.replace(lit=False), 1), (REFERENCE.replace(lit=True), 0)],
 )
 def test_where_the_orbit_has_no_position_no_light_is_claimed(state, reference, eclipse):
     used = Used(field=True, sun=False, blanked=False)

@@ -25,7 +25,7 @@ def test_left_out_it_counts_for_nothing():
     assert plain.crc == 0 ^ flight_table({"calibration": {}}, "table.toml").crc
     assert flight_config(plain).calibration is NO_CALIBRATION
     assert flight_config(plain).own_field is None
-    assert flight_config(plain).coils.pulses.coil_axes is AXES
+    assert flight_config(plain).coils.pulses.coil_axes == AXES
 
 
 def test_identity_costs_nothing():

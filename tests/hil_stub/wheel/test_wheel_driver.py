@@ -217,7 +217,7 @@ class TestClock:
         assert events == [WheelEventCode.DEAD_MAN]
 
 
-WRONG = (("tick_hz", (0, True)), ("max_torque_nm", (0.0, nan, 0.5)), ("max_speed_radps", (-1.0, 2048.0)))
+WRONG = (("tick_hz", (0, -1)), ("max_torque_nm", (0.0, nan, 0.5)), ("max_speed_radps", (-1.0, 2048.0)))
 
 
 @pytest.mark.parametrize(("name", "value"), [(name, value) for name, values in WRONG for value in values])

@@ -43,14 +43,9 @@ FIELD, SUN, TOOK_BOTH = Used(True, False, False), Used(False, True, False), Used
 NEITHER = Used(False, False, False)
 
 
-class Models:
-    """Field and Sun of every tick."""
-
-    b_eci_t, sun_eci = (1.7e-5, -2.3e-5, 3.1e-5), (0.6, 0.0, 0.8)
-    b_rate_eci_tps = (2e-6, 0.0, -1e-6)
-
-
-B, S = (rotate(ESTIMATE.q_body_from_eci, v) for v in (Models.b_eci_t, Models.sun_eci))
+MODELLED = REFERENCE.replace(sun_eci=(0.6, 0.0, 0.8), b_rate_eci_tps=(2e-6, 0.0, -1e-6))
+"""Field and Sun of every tick."""
+B, S = (rotate(ESTIMATE.q_body_from_eci, v) for v in (MODELLED.b_eci_t, MODELLED.sun_eci))
 SEEN = Findings(0, 0, B, S, True, False)
 
 
@@ -58,7 +53,7 @@ def after(health, used, ticks=1, findings=SEEN, estimate=ESTIMATE):
     """A copy of the health after these ticks."""
     health = deepcopy(health)
     for _ in range(ticks):
-        judge_sensors(health, findings, used, estimate, Models, CONFIG)
+        judge_sensors(health, findings, used, estimate, MODELLED, CONFIG)
     return health
 
 
@@ -184,7 +179,7 @@ class TestReadmitted:
     def test_by_the_field_where_the_satellite_was_when_the_sample_was_taken(self):
         """As the filter compares it, whose samples are a second old here; the field of now is another."""
         old = with_values(ESTIMATE, parameters=with_values(ESTIMATE.parameters, delay_s=(1.0, 0.0)))
-        b_then = rotate(old.q_body_from_eci, sub(Models.b_eci_t, Models.b_rate_eci_tps))
+        b_then = rotate(old.q_body_from_eci, sub(MODELLED.b_eci_t, MODELLED.b_rate_eci_tps))
         then = with_values(SEEN, field=b_then)
         assert faults(after(self.FIELD_OUT, SUN, 129, then, old)) == (0, 0)
         assert faults(after(self.FIELD_OUT, SUN, 1000, SEEN, old)) == (SensorFault.STRENGTH, 0)

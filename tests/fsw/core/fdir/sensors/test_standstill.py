@@ -5,6 +5,7 @@ from math import hypot, sqrt
 
 import numpy as np
 import pytest
+from cell_samples import REFERENCE
 from with_values import with_values
 
 from fsw.core.algebra.quaternion import from_small_rotation, multiply, normalise, rotate
@@ -13,7 +14,6 @@ from fsw.core.estimation import mekf
 from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.sensors.standstill import Displacement, ReadingMotion, Steps, is_frozen, update_motion
-from fsw.core.orbit.ephemeris import Reference
 
 STEPS = Steps(field_t=2e-7, sun=4e-3, tick_s=0.5)
 OMEGA = (0.002, -0.003, 0.001)
@@ -49,16 +49,7 @@ def estimated(q=Q_BODY_FROM_ECI, sigma_radps=1e-9):
 def reference_at(time_s):
     """The models so many seconds on."""
     b_eci_t = add(Models.b_eci_t, scale(time_s, Models.b_rate_eci_tps))
-    return Reference(
-        r_eci_m=(7e6, 0.0, 0.0),
-        radius_m=7e6,
-        b_eci_t=b_eci_t,
-        sun_eci=Models.sun_eci,
-        lit=True,
-        q_orbit_from_eci=(1.0, 0.0, 0.0, 0.0),
-        orbit_rate_radps=1e-3,
-        b_rate_eci_tps=Models.b_rate_eci_tps,
-    )
+    return REFERENCE.replace(b_eci_t=b_eci_t, sun_eci=Models.sun_eci, b_rate_eci_tps=Models.b_rate_eci_tps)
 
 
 def attitude(time_s):
