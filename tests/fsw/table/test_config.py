@@ -1,12 +1,11 @@
 """From the onboard table to what the core flies on: degrees, nanotesla and seconds to SI and ticks."""
 
+from dataclasses import asdict, astuple
 from math import cos, log, pi, radians, sqrt
 
 import numpy as np
 import pytest
 
-from fsw.core.actuation.read_back import ReadBackConfig
-from fsw.core.fdir.sensors.plausibility import PlausibilityConfig
 from fsw.core.laws.interface import Setpoint
 from fsw.core.modes import TABLE
 from fsw.core.orbit.propagation import CircularKeplerOrbit, TleOrbit
