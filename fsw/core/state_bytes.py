@@ -244,7 +244,7 @@ def _write_estimate(out: BytesWriter, value: Estimate) -> None:
         _write_trace(out, trace)
     write_f64_le(out, value.nis)
     write_i64_le(out, value.numbers)
-    _write_floats(out, value.lag)
+    _write_float_6(out, value.lag)
 
 
 def _write_float_4(out: BytesWriter, value: tuple[float, float, float, float]) -> None:

@@ -1,5 +1,7 @@
 """Errors that end the plant."""
 
+from typing import ClassVar
+
 
 class PlantError(ValueError):
     """The plant cannot continue: a model ends, or the integration diverges; the message is a clause.
@@ -7,4 +9,4 @@ class PlantError(ValueError):
     ``exit_code`` is that of a process which this error ends in flight.
     """
 
-    exit_code = 1
+    exit_code: ClassVar[int] = 1

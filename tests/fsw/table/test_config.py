@@ -80,6 +80,8 @@ class TestTicks:
                 "angle_rad": radians(0.9 + 0.3 + edge * 0.2) + 0.007,
                 "sun_norm": edge * radians(0.2),
                 "late_ticks": 3,
+                "cells": None,
+                "steps": None,
             }
         )
 

@@ -73,7 +73,7 @@ def test_no_axis_of_the_magnetometer_is_turned_and_skewed_by_more_than_its_bound
             non_orthogonality_rad=config.non_orthogonality_rad,
         )
         sensor = MagnetometerPhysics(skewed, seed)
-        columns = [sensor.measure(axis, (0.0, 0.0, 0.0))[0] for axis in np.eye(3)]
+        columns = [sensor.measure(tuple(axis), (0.0, 0.0, 0.0))[0] for axis in np.eye(3).tolist()]
         cosines = np.diagonal(columns) / np.linalg.norm(columns, axis=0)
         angles_deg.append(np.degrees(np.arccos(cosines.min())))
     most_deg = factor * POPULATIONS[kind].tolerances.magnetometer_misalignment_deg

@@ -18,6 +18,7 @@ from fsw.core.fdir.sensors.health import SensorHealth, Watch
 from fsw.core.fdir.sensors.pair import Pair, Standing
 from fsw.core.fdir.sensors.plausibility import Findings
 from fsw.core.orbit.ephemeris import reference_at
+from fsw.core.packing import copy_state
 
 FROZEN, SILENT = SensorFault.FROZEN, SensorFault.SILENT
 OPEN, WEAK = CoilFault.OPEN, CoilFault.WEAK
@@ -96,7 +97,7 @@ class TestJudgement:
         evidence = Evidence(state.tick, findings, state.coil, reference, used)
 
         def judge(health, estimator=state.estimator):
-            health, estimator = deepcopy(health), estimator.copy()
+            health, estimator = copy_state(health), estimator.copy()
             attitude = fdir.judge(health, estimator, state.attitude, evidence, config.fdir)
             return (health, estimator, attitude), state
 
@@ -231,7 +232,7 @@ class TestJudgement:
         monkeypatch.setattr(fdir.sensor_health, "judge_sensors", None)
 
         def judge(health):
-            health, estimator = deepcopy(health), state.estimator.copy()
+            health, estimator = copy_state(health), state.estimator.copy()
             attitude = fdir.judge(health, estimator, state.attitude, evidence, config.fdir)
             return (health, estimator, attitude), state
 

@@ -116,6 +116,7 @@ def loops():
         yield body, Gains(0.8 * scale, 0.3 * scale * body.rate_radps)
 
 
+@pytest.mark.interpreted  # compiled, the rigid body takes no complex numbers
 @pytest.mark.parametrize(("body", "gains"), list(loops()), ids=lambda it: getattr(it, "name", ""))
 @pytest.mark.parametrize("u", [0.0, 0.4, 2.1, 5.5])
 def test_it_is_the_derivative_of_the_plants_right_hand_side(body, gains, u):

@@ -197,7 +197,7 @@ class TestDaily:
 
     def test_without_it_the_torque_is_the_constant_one_itself(self):
         constant = DisturbanceConfig((3e-8, -2e-8, 1e-8))
-        assert bias_torque(constant, 7777.0) is constant.torque_body_nm
+        assert bias_torque(constant, 7777.0) == constant.torque_body_nm
 
     @pytest.mark.parametrize("part", [-0.1, 1.1, float("nan")])
     def test_a_part_that_is_none_is_refused(self, part):
