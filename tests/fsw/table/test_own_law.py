@@ -7,13 +7,14 @@ from time import process_time
 import numpy as np
 import pytest
 
-import fsw.own_law
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.laws.entry import Aim
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
 from fsw.core.laws.plan.pulse_model import Pulse
 from fsw.core.laws.table import LAWS
 from fsw.input.schema import TableError
+from fsw.own_law import Demand as OwnDemand
+from fsw.own_law import Pulse as OwnPulse
 from fsw.table import own_law
 from fsw.table.config import flight_config
 from fsw.table.own_law import GuardedLaw, LawError, declared, named, withheld
@@ -174,26 +175,27 @@ def returning(answer):
 
 class TestInFlight:
     def test_numbers_of_numpy_become_floats(self):
-        demand = answer_of(returning(Demand(np.array([1.0, 2.0, 3.0]), np.float32([1, 2, 3]), [np.int64(4)])))
+        answer = OwnDemand(np.array([1.0, 2.0, 3.0]), np.float32([1, 2, 3]), [np.int64(4)])
+        demand = answer_of(returning(answer))
         assert demand == Demand((1.0, 2.0, 3.0), (1.0, 2.0, 3.0), (4.0,))
         assert type(demand.m_body_am2[0]) is float
         assert type(demand.memory) is tuple
 
     def test_the_torque_of_a_wheel_is_passed_on(self):
-        demand = answer_of(returning(Demand((1.0, 0.0, 0.0), wheel_torque_nm=np.float32(0.25))))
+        demand = answer_of(returning(OwnDemand((1.0, 0.0, 0.0), wheel_torque_nm=np.float32(0.25))))
         assert demand == Demand((1.0, 0.0, 0.0), wheel_torque_nm=0.25)
         assert type(demand.wheel_torque_nm) is float
-        assert answer_of(returning(Demand(wheel_torque_nm=0.0))).wheel_torque_nm == 0.0
+        assert answer_of(returning(OwnDemand(wheel_torque_nm=0.0))).wheel_torque_nm == 0.0
 
     def test_a_pulse_stays_one(self):
-        demand = answer_of(returning(Demand(pulse=(np.int64(2), True))))
+        demand = answer_of(returning(OwnDemand(pulse=(np.int64(2), True))))
         assert demand == Demand(pulse=Pulse(2, 1))
         assert (type(demand.pulse.coil), type(demand.pulse.level)) == (int, int)
-        assert answer_of(returning(Demand(pulse=Pulse(2, 1)))) == demand
+        assert answer_of(returning(OwnDemand(pulse=Pulse(2, 1)))) == demand
 
     def test_a_demand_of_the_law_s_own_is_one_of_the_flight_software(self):
         """Its numbers and sequences may be of any kind."""
-        own = fsw.own_law.Demand([1, 2, 3], memory=range(2), pulse=fsw.own_law.Pulse(2, -1))
+        own = OwnDemand([1, 2, 3], memory=range(2), pulse=OwnPulse(2, -1))
         assert answer_of(returning(own)) == Demand((1.0, 2.0, 3.0), None, (0.0, 1.0), Pulse(2, -1))
 
     @pytest.mark.parametrize(
@@ -201,23 +203,23 @@ class TestInFlight:
         [
             (None, "it returns nothing, not a Demand"),
             ((0.0, 0.0, 0.0), "it returns a tuple, not a Demand"),
-            (Demand((0.0, float("nan"), 0.0)), "m_body_am2 is not finite: 0, nan, 0"),
-            (Demand((0.0, 0.0)), "m_body_am2 has 2 numbers, not 3"),
-            (Demand("abc"), "m_body_am2[0] is a str, not a number"),
-            (Demand(None), "m_body_am2 is nothing"),
-            (Demand(np.zeros((3, 3))), "m_body_am2[0] is a ndarray, not a number"),
-            (Demand(impulse_body_nms=(1.0, float("inf"), 0.0)), "impulse_body_nms is not finite"),
-            (Demand(wheel_torque_nm=float("nan")), "wheel_torque_nm is not finite: nan"),
-            (Demand(wheel_torque_nm=10**400), "wheel_torque_nm is a int, not a number"),
-            (Demand(wheel_torque_nm=(1.0,)), "wheel_torque_nm is a tuple, not a number"),
-            (Demand(pulse=(3, 1)), "pulse is not a coil 0 to 2 and a level -3 to 3"),
-            (Demand(pulse=(0, 4)), "pulse is not a coil 0 to 2 and a level -3 to 3"),
-            (Demand(pulse=(0.0, 1)), "pulse is not a coil 0 to 2 and a level -3 to 3"),
-            (Demand(pulse="01"), "pulse is not a coil 0 to 2 and a level -3 to 3"),
-            (Demand(memory=range(2000)), "memory has more than 1000 numbers"),
-            (Demand(memory=(1, 0.5, "x")), "memory[2] is a str, not a number"),
-            (Demand(memory=(10**400,)), "memory[0] is a int, not a number"),
-            (Demand(memory=3.5), "memory is a float, not a sequence of numbers"),
+            (OwnDemand((0.0, float("nan"), 0.0)), "m_body_am2 is not finite: 0, nan, 0"),
+            (OwnDemand((0.0, 0.0)), "m_body_am2 has 2 numbers, not 3"),
+            (OwnDemand("abc"), "m_body_am2[0] is a str, not a number"),
+            (OwnDemand(None), "m_body_am2 is nothing"),
+            (OwnDemand(np.zeros((3, 3))), "m_body_am2[0] is a ndarray, not a number"),
+            (OwnDemand(impulse_body_nms=(1.0, float("inf"), 0.0)), "impulse_body_nms is not finite"),
+            (OwnDemand(wheel_torque_nm=float("nan")), "wheel_torque_nm is not finite: nan"),
+            (OwnDemand(wheel_torque_nm=10**400), "wheel_torque_nm is a int, not a number"),
+            (OwnDemand(wheel_torque_nm=(1.0,)), "wheel_torque_nm is a tuple, not a number"),
+            (OwnDemand(pulse=(3, 1)), "pulse is not a coil 0 to 2 and a level -3 to 3"),
+            (OwnDemand(pulse=(0, 4)), "pulse is not a coil 0 to 2 and a level -3 to 3"),
+            (OwnDemand(pulse=(0.0, 1)), "pulse is not a coil 0 to 2 and a level -3 to 3"),
+            (OwnDemand(pulse="01"), "pulse is not a coil 0 to 2 and a level -3 to 3"),
+            (OwnDemand(memory=range(2000)), "memory has more than 1000 numbers"),
+            (OwnDemand(memory=(1, 0.5, "x")), "memory[2] is a str, not a number"),
+            (OwnDemand(memory=(10**400,)), "memory[0] is a int, not a number"),
+            (OwnDemand(memory=3.5), "memory is a float, not a sequence of numbers"),
         ],
     )
     def test_only_a_whole_demand_gets_further(self, answer, what):

@@ -252,6 +252,7 @@ def test_a_board_that_restarts_and_is_heard_refuses_nothing_and_fires_again(sear
     assert all(proof.wait(coil) <= longest for coil in range(3))
 
 
+@pytest.mark.interpreted
 @pytest.mark.parametrize("shared", BOTH, ids=["shared", "per coil"])
 def test_a_scheduler_that_does_not_hear_of_the_restart_is_refused(search, small, shared):
     def without_the_boot(update_view, view, measurements, *rest):
@@ -384,6 +385,7 @@ def test_a_planted_bug_is_seen(search, small, bug, shared):
         demand_exactness(setup, search(setup))
 
 
+@pytest.mark.interpreted
 def test_a_planting_that_changes_nothing_passes(search, small):
     """What is found is the bug, not the planting."""
     nothing = (

@@ -6,6 +6,7 @@ all axes, parameters that are all nonzero and unequal. Rotations are exact here,
 
 from dataclasses import dataclass, replace
 from math import radians
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -27,7 +28,7 @@ LAYOUTS = {
     "both": ("mag_bias_t", "torque_body_nm"),
     "all": NAMES,
 }
-PRIORS = Parameters(
+PRIORS = SimpleNamespace(
     mag_bias_t=Prior((3e-7, 4e-7, 5e-7), (1e-10, 2e-10, 3e-10)),
     torque_body_nm=Prior((1e-7, 8e-8, 9e-8), (3e-10, 4e-10, 5e-10)),
     dipole_body_am2=Prior((0.02, 0.03, 0.025), (1e-6, 2e-6, 3e-6)),
