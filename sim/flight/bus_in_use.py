@@ -7,7 +7,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, SENDERS, PlantBoot, Sync, TickDone, intact
 
 LISTEN_S = 1.3
-"""A plant that waits for its flight software sends every second."""
+"""A plant that waits for its flight software sends more often."""
 ASK_S = 0.5
 """Flight software that waits for its plant answers PLANT_BOOT at once."""
 

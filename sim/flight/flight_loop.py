@@ -90,7 +90,7 @@ def fly(
         uplink: the telecommands of a tick.
         patience: how long to wait for the flight software; None: the default.
         overhear: called in each tick with the frames of other nodes; None: there are none.
-        waiting: called every second until the flight software boots, with the time waited [s].
+        waiting: called at each request until the flight software boots, with the time waited [s].
 
     Raises:
         CounterpartError: the flight software is silent, or another plant sends.

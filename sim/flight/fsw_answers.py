@@ -10,7 +10,8 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, SENDERS, FswBoot, PlantBoot, TickDone, intact
 from sim.errors import FlightError
 
-BOOT_REQUEST_S = 1.0
+BOOT_REQUEST_S = 0.25
+"""Between two requests. One that comes soon after a boot has no answer: the next one must not take long."""
 ANSWER_TIMEOUT_S = 20.0
 REPEAT_SYNC_S = 2.0
 """In lockstep: silence after which SYNC is repeated; flight software that rejected the first accepts that."""

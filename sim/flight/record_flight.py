@@ -73,7 +73,7 @@ def record_flight(
         bus: to fly on; it is closed.
         watch: called with the tick every ``WATCH_TICKS`` ticks.
         patience: how long to wait for the flight software; None: without limit until it boots.
-        waiting: called every second until the flight software boots, with the time waited [s].
+        waiting: called at each request until the flight software boots, with the time waited [s].
         alone: no other node can be on the bus, so that second senders need not be looked for.
 
     Raises:
