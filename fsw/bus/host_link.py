@@ -15,6 +15,7 @@ class HostLink:
     """A :class:`~fsw.bus.interface.Bus` whose hub is in this process: a frame takes one way, not two.
 
     The others wait while this node computes. That suits the plant, for whose tick all of them wait anyway.
+    What they send before this end is used for the first time is not for it.
 
     Args:
         listener: socket on which the hub accepts clients.
@@ -28,15 +29,14 @@ class HostLink:
         self.spec = f"loop:{self._hub.port}"
         self._inbox: deque[Frame] = deque()
         self._open = True
+        self._used = False
         for client in clients:
             self._hub.admit(client, "a node of this flight")
-        self._hub.poll(0.0)  # what was sent before this end was there is not for it
-        self._hub.join(self._inbox)
 
     def send(self, frames: Sequence[Frame]) -> None:
         """Send all frames at once, in order."""
         records = can_frame.pack_all(frames)
-        self._check_open()
+        self._use()
         self._hub.send(records)
 
     def receive(self, timeout_s: float | None) -> Frame | None:
@@ -52,7 +52,7 @@ class HostLink:
             self._hub.close()
 
     def _fill(self, timeout_s: float | None) -> bool:
-        self._check_open()
+        self._use()
         deadline = None if timeout_s is None else monotonic() + timeout_s
         left_s = timeout_s
         while True:
@@ -62,6 +62,10 @@ class HostLink:
             if deadline is not None and (left_s := deadline - monotonic()) <= 0.0:
                 return False
 
-    def _check_open(self) -> None:
+    def _use(self) -> None:
         if not self._open:
             raise BusClosed(f"the bus {self.spec} is closed: this end has been closed")
+        if not self._used:
+            self._used = True
+            self._hub.poll(0.0)
+            self._hub.join(self._inbox)

@@ -19,11 +19,12 @@ PATIENCE_S = 10.0
 
 @pytest.fixture
 def bus():
-    """The host, and a node that is on its bus from the start."""
+    """The host, in use, and a node that is on its bus from the start."""
     listener = listen(0)
     ours, theirs = socket.socketpair()
     host = HostLink(listener, [ours])
     node = LoopLink(int(host.spec.removeprefix("loop:")), end=theirs)
+    assert host.receive(0.0) is None
     yield host, node
     host.close()
     node.close()
@@ -72,13 +73,16 @@ class TestDelivery:
             assert take(node, 3) == [*numbered(2, 7), *numbered(1, 8)]
             assert host.receive(0.0) == numbered(2, 7)[1]
 
-    def test_what_was_sent_before_the_host_was_there_is_for_the_others_alone(self, numbered):
+    def test_what_was_sent_before_the_first_use_is_for_the_others_alone(self, numbered):
+        """A boot, say, from long before the plant asks for it."""
         (ours, theirs), (other, end) = socket.socketpair(), socket.socketpair()
         with theirs, end:
-            theirs.sendall(can_frame.pack_all(numbered(3)))
+            theirs.sendall(can_frame.pack_all(numbered(2)))
             host = HostLink(listen(0), [ours, other])
+            theirs.sendall(can_frame.pack_all(numbered(1)))
+            host.send([])
             assert host.receive(0.02) is None
-            assert end.recv(1000) == can_frame.pack_all(numbered(3))
+            assert end.recv(1000) == can_frame.pack_all([*numbered(2), *numbered(1)])
             theirs.sendall(can_frame.pack_all(numbered(1)))
             assert host.receive(PATIENCE_S) == numbered(1)[0]
             host.close()
@@ -162,6 +166,7 @@ def test_processes_inherit_it_by_descriptors(numbered, take):
     host = host_bus(listener.detach(), ours.detach())
     node = join_bus("loop:1", theirs.detach())
     assert (node.name, node.spec) == (host.name, "loop:1")
+    assert host.receive(0.0) is None
     node.send(numbered(3))
     assert take(host, 3) == numbered(3)
     host.close()
