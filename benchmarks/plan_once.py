@@ -14,10 +14,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from fsw.core.laws.interface import ControlConfig, LawInput
-from fsw.core.laws.plan.pulse_model import Pulse, PulseModel
-from fsw.core.laws.plan.riccati import Schedule
-from fsw.core.laws.predictive import pulse_mpc
+from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
+from fsw.core.laws.table import LAWS
 from sim.flight.record_flight import ticks_of
 from sim.flight.virtual import fly_virtual
 from sim.record import run_dir
@@ -28,15 +26,17 @@ from sim.scenario.schema import load
 def main(scenario_name: str, orbits: float) -> None:
     """Fly, and print the figures."""
     scenario = load(scenario_name, {"control": {"law": "pulse_mpc"}})
-    plan, plans_ms = pulse_mpc._planned, list[float]()
+    entry, plans_ms = LAWS["pulse_mpc"], list[float]()
 
-    def timed(inputs: LawInput, pulses: PulseModel, schedule: Schedule, config: ControlConfig) -> Pulse:
+    def timed(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
         begin_s = time.perf_counter()
-        pulse = plan(inputs, pulses, schedule, config)
-        plans_ms.append(1e3 * (time.perf_counter() - begin_s))
-        return pulse
+        demand = entry.point(inputs, memory, setpoint, config)
+        passed_s = time.perf_counter() - begin_s
+        if demand.memory != memory and demand.memory[0] > inputs.tick:  # when the next plan is made: one was
+            plans_ms.append(1e3 * passed_s)
+        return demand
 
-    pulse_mpc._planned = timed
+    LAWS["pulse_mpc"] = entry._replace(point=timed)
     with TemporaryDirectory() as folder:
         path = Path(folder, "run")
         run_dir.begin(path, scenario, 1, ticks_of(scenario, orbits), "virtual", LOCKSTEP)

@@ -198,6 +198,7 @@ CLAIMS = {
 
 
 @pytest.mark.long
+@pytest.mark.interpreted
 @pytest.mark.parametrize(("claim", "shared"), cases(CLAIMS))
 def test_no_reachable_state_breaks_a_limit(search, small, claim, shared, record_testsuite_property):
     setup = claim(small[shared])
