@@ -168,7 +168,9 @@ class TestRunning:
         innovation = rows @ np.subtract([1e-9 * b for b in clipped.values()[1:4]], predicted)
         spread = (rows @ sensitivity) @ before @ (rows @ sensitivity).T + rows @ MEKF.field_noise @ rows.T
         gain = before @ (rows @ sensitivity).T @ np.linalg.inv(spread)
-        turned = multiply(estimate.q_body_from_eci, from_small_rotation((gain @ innovation)[0:3].tolist()))
+        turned = multiply(
+            estimate.q_body_from_eci, from_small_rotation(tuple((gain @ innovation)[0:3].tolist()))
+        )
         left = before - gain @ (rows @ sensitivity) @ before
         assert angle_rad(state.estimate.q_body_from_eci, turned) < 0.02 * angle_rad(
             estimate.q_body_from_eci, turned

@@ -58,7 +58,7 @@ def flown(dcm, omega, seconds, inertia=J, torque_nm=(0.0, 0.0, 0.0)):
 
 def _error_rad(q_body_from_eci, dcm):
     """The rotation vector between an estimated attitude and a true one, body axes."""
-    estimated = np.array([rotate(q_body_from_eci, axis) for axis in np.eye(3).tolist()]).T
+    estimated = np.array([rotate(q_body_from_eci, tuple(axis)) for axis in np.eye(3).tolist()]).T
     return Rotation.from_matrix(estimated @ dcm.T).as_rotvec()
 
 

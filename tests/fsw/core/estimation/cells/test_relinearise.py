@@ -57,7 +57,7 @@ def added_to(estimate, error):
     turn, rate = error[:3], error[3:6]
     return replace(
         estimate,
-        q_body_from_eci=normalise(multiply(estimate.q_body_from_eci, from_small_rotation(turn))),
+        q_body_from_eci=normalise(multiply(estimate.q_body_from_eci, from_small_rotation(tuple(turn)))),
         omega_body_radps=tuple(np.add(estimate.omega_body_radps, rate)),
         parameters=changed(estimate.parameters, correct_parameters, tuple(error), PARTS),
     )

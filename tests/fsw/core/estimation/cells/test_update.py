@@ -60,7 +60,7 @@ class TestUpdate:
         level = mekf.start(Q_BODY_FROM_ECI, (0.0,) * 3, CONFIG)
         after, used = cells_taken(level, shown(), SEEN, CONFIG)
         assert (used.taken, used.refused) == (tuple(LIT), ())
-        assert norm(np.subtract(after.q_body_from_eci, level.q_body_from_eci)) < 1e-9
+        assert np.linalg.norm(np.subtract(after.q_body_from_eci, level.q_body_from_eci)) < 1e-9
         assert after.covariance.diagonal()[0:3].max() < level.covariance.diagonal()[0:3].max()
 
     def test_each_is_gated_by_itself(self):

@@ -63,6 +63,7 @@ def test_nothing_is_kept_before_the_first_sample():
     assert batch == SampleBatch()
 
 
+@pytest.mark.interpreted
 def test_discarded_samples_leave_nothing():
     batch = filled(30.0)
     batch.search = "under way"
@@ -108,6 +109,7 @@ def test_the_oldest_are_dropped():
     assert filled(3000.0).span_s <= MOST_S
 
 
+@pytest.mark.interpreted
 def test_while_a_search_is_under_way_none_is_dropped():
     batch = filled(MOST_S)
     full, batch.search = batch.samples, "under way"
@@ -147,6 +149,7 @@ class TestDue:
         assert not search_due(changed(filled(LEAST_S), pass_tick, ZERO, 1.0))
         assert not search_due(SampleBatch())
 
+    @pytest.mark.interpreted
     def test_not_while_a_search_is_under_way(self):
         assert not search_due(replace(filled(LEAST_S), search="under way"))
 
@@ -186,6 +189,7 @@ class TestTicks:
         assert batch == SampleBatch()
 
 
+@pytest.mark.interpreted
 def test_every_number_of_a_batch_counts(blind_places):
     batch = filled(60.0, SUN)
     assert len(batch.samples) == 4
