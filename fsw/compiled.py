@@ -18,6 +18,7 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Final, NamedTuple
+from zlib import crc32
 
 ROOT: Final = Path(__file__).resolve().parents[1]
 """The folder that holds the packages."""
@@ -80,7 +81,7 @@ class Build:
             if self.manifest["abi"] != ABI:
                 raise BuildError(f"built for {self.manifest['abi']}, and this Python loads {ABI}")
             library = self._folder / self.manifest["library"]
-            if not library.is_file() or library.stat().st_size != self.manifest["library_bytes"]:
+            if not library.is_file() or crc32(library.read_bytes()) != self.manifest["library_crc"]:
                 raise BuildError(f"{FOLDER}/{library.name} is not what was built")
             changed = [
                 path

@@ -26,6 +26,7 @@ from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
+from zlib import crc32
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
@@ -177,7 +178,7 @@ def build(say: Callable[[str], None], root: Path = ROOT) -> int:
         "mypy": mypy_version(),
         "compiler": compiler_words(),
         "library": library,
-        "library_bytes": (scratch / library).stat().st_size,
+        "library_crc": crc32((scratch / library).read_bytes()),
         "modules": [_module(source) for source in sources],
         "sources": digests,
     })  # fmt: skip

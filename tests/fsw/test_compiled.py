@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from zlib import crc32
 
 import pytest
 
@@ -112,9 +113,15 @@ class TestWhatIsBuilt:
         assert said.startswith("interpreted: built for .cpython-39-other.so, and this Python loads ")
         assert loader == "SourceFileLoader"
 
-    def test_nor_where_the_library_is_cut(self, tree):
+    @pytest.mark.parametrize(
+        "damage",
+        [lambda whole: whole[:-1], lambda whole: whole[: len(whole) // 2].ljust(len(whole), b"\0")],
+        ids=["cut short", "of the same length"],
+    )
+    def test_nor_where_the_library_is_damaged(self, tree, damage):
         library = tree / FOLDER / manifest_of(tree)["library"]
-        library.write_bytes(library.read_bytes()[:-1])
+        whole = library.read_bytes()
+        library.write_bytes(damage(whole))
         assert answer(tree) == (
             f"interpreted: {FOLDER}/{library.name} is not what was built",
             "SourceFileLoader",
@@ -122,7 +129,8 @@ class TestWhatIsBuilt:
 
     def test_nor_where_it_cannot_be_loaded(self, tree):
         library = tree / FOLDER / manifest_of(tree)["library"]
-        library.write_bytes(bytes(library.stat().st_size))
+        library.write_bytes(b"no library")
+        rewrite(tree, library_crc=crc32(b"no library"))
         said, loader = answer(tree)
         assert said.startswith(f"interpreted: {FOLDER}/{library.name} cannot be loaded")
         assert loader == "SourceFileLoader"
