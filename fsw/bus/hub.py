@@ -28,6 +28,8 @@ BACKLOG_LIMIT = 64 * 2**20
 
 _PAUSE_S = 0.1
 _CHUNK = 2**16
+_PIECE = 2**16
+"""Bytes. A backlog that is one block would be moved as it grows, and leave holes of all sizes behind."""
 _BOTH = selectors.EVENT_READ | selectors.EVENT_WRITE
 
 
@@ -36,7 +38,24 @@ class _Client:
     socket: socket.socket
     name: str
     partial: bytes = b""  # beginning of a record whose end is still on its way
-    backlog: bytearray = field(default_factory=bytearray)
+    backlog: deque[bytearray] = field(default_factory=deque)
+    waiting: int = 0
+    """Bytes of the backlog."""
+
+    def keep(self, records: bytes) -> None:
+        """Add to the backlog."""
+        if not self.backlog or len(self.backlog[-1]) >= _PIECE:
+            self.backlog.append(bytearray())
+        self.backlog[-1] += records
+        self.waiting += len(records)
+
+    def discard(self, count: int) -> None:
+        """Remove so many bytes of the first piece."""
+        first = self.backlog[0]
+        del first[:count]
+        if not first:
+            self.backlog.popleft()
+        self.waiting -= count
 
 
 def report_on_stderr(sentence: str) -> None:
@@ -210,20 +229,21 @@ class Hub:
             if not records or client not in self._clients:
                 return
             self._selector.modify(client.socket, _BOTH, client)
-        client.backlog += records
+        client.keep(records)
 
     def _shed(self) -> None:
         """Drop the slowest clients until the backlog is within its limit."""
-        while sum(len(client.backlog) for client in self._clients) > BACKLOG_LIMIT:
-            slowest = max(self._clients, key=lambda client: len(client.backlog))
+        while sum(client.waiting for client in self._clients) > BACKLOG_LIMIT:
+            slowest = max(self._clients, key=lambda client: client.waiting)
             self._report(
                 f"{slowest.name} is dropped from the loop bus on port {self.port}: it reads too slowly, "
-                f"{len(slowest.backlog) / 2**20:.1f} MiB wait for it"
+                f"{slowest.waiting / 2**20:.1f} MiB wait for it"
             )
             self._drop(slowest)
 
     def _catch_up(self, client: _Client) -> None:
-        del client.backlog[: self._send(client, client.backlog)]
+        while client.backlog and (sent := self._send(client, client.backlog[0])):
+            client.discard(sent)
         if not client.backlog and client in self._clients:
             self._selector.modify(client.socket, selectors.EVENT_READ, client)
 
