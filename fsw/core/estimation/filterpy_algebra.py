@@ -3,6 +3,8 @@
 The functions are those of ``_kalman_kernel``; what they compute is told in ``kalman``.
 """
 
+from math import inf
+
 import numpy as np
 from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
@@ -111,6 +113,18 @@ def stack(above: Matrix, below: Matrix) -> Matrix:
 def diagonal(m: Matrix) -> tuple[float, ...]:
     """Numbers on the diagonal."""
     return tuple(m.diagonal().tolist())
+
+
+def total_variance(covariance: Matrix, uncertain: int) -> float:
+    """Sum of the variances, infinite where one is impossible."""
+    variances = covariance.diagonal()
+    impossible = (variances < 0.0).any() or not variances[:uncertain].all()
+    return inf if impossible else float(variances.sum())
+
+
+def largest_variance(covariance: Matrix, first: int, last: int) -> float:
+    """Largest variance of some states."""
+    return float(max(covariance.diagonal()[first:last]))
 
 
 def carry_trace(effect: Matrix, transition: Matrix) -> Matrix:

@@ -150,6 +150,16 @@ def diagonal(m: Matrix) -> tuple[float, ...]:
     return _kernel.diagonal(m)
 
 
+def total_variance(covariance: Matrix, uncertain: int) -> float:
+    """The sum of the variances; infinite where one is negative, or one of the first ``uncertain`` zero."""
+    return _kernel.total_variance(covariance, uncertain)
+
+
+def largest_variance(covariance: Matrix, first: int, last: int) -> float:
+    """The largest variance of the states from first to last."""
+    return _kernel.largest_variance(covariance, first, last)
+
+
 def linear(constant: Matrix, numbers: Numbers, rows: Matrix) -> Matrix:
     """A matrix that is linear in some numbers, (r, n), in its first w columns.
 

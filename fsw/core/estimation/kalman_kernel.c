@@ -18,61 +18,80 @@
 
 #define MOST_STATES 64
 #define MOST_MEASURED 6
-#define COLUMN_BLOCK 4 /* sums that are kept in registers side by side */
-#define ROW_BLOCK 4
 #define MOST_TURNS 4
 #define MOST_MAPPED 512 /* entries of a matrix that a map goes to */
 #define MOST_MAPS 3
 #define MOVING 6 /* attitude and rate: the rows of the transition that are not the identity's */
 
-/* out (m,n) = A (m,k) B (k,n) */
-static void multiply(int m, int k, int n, const double *restrict A, const double *restrict B,
-                     double *restrict out)
+/* Compiled for wider registers too, which the processor's kind chooses: as many sums at a time as fit in, each to
+   the same bits. */
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
+#define WIDE __attribute__((target_clones("avx2", "default")))
+#else
+#define WIDE
+#endif
+
+/* row (n) gains the sum of each of these factors times its row of B (count,n), count being known when this is
+   compiled: the sums of some columns stay in registers */
+static inline __attribute__((always_inline)) void add_rows(const int count, int n, const double *restrict factors,
+                                                          const double *restrict B, double *restrict row)
 {
-    for (int i = 0; i < m; i++) {
-        double *row = out + (size_t)i * n;
-        for (int c = 0; c < n; c++) row[c] = 0.0;
-        for (int j = 0; j < k; j++) {
-            const double factor = A[(size_t)i * k + j];
-            const double *b = B + (size_t)j * n;
-            for (int c = 0; c < n; c++) row[c] += factor * b[c];
-        }
+    for (int c = 0; c < n; c++) {
+        double sum = row[c];
+        for (int j = 0; j < count; j++) sum += factors[j] * B[(size_t)j * n + c];
+        row[c] = sum;
     }
+}
+
+/* out (m,n) = A (m,k) B (k,n) */
+WIDE static void multiply(int m, int k, int n, const double *restrict A, const double *restrict B,
+                          double *restrict out)
+{
+    for (int i = 0; i < m; i++, A += k, out += n) {
+        int j = 0;
+        for (int c = 0; c < n; c++) out[c] = 0.0;
+        for (; j + 8 <= k; j += 8) add_rows(8, n, A + j, B + (size_t)j * n, out);
+        if (j + 4 <= k) add_rows(4, n, A + j, B + (size_t)j * n, out), j += 4;
+        for (; j < k; j++) add_rows(1, n, A + j, B + (size_t)j * n, out);
+    }
+}
+
+/* out (n,m) = M^T, M being (m,n) */
+static void transpose(int m, int n, const double *restrict M, double *restrict out)
+{
+    for (int i = 0; i < m; i++)
+        for (int c = 0; c < n; c++) out[(size_t)c * m + i] = M[(size_t)i * n + c];
 }
 
 /* half the sum of a matrix and its transpose, in its place */
 static void symmetrise(int n, double *out)
 {
-    for (int r = 0; r < n; r++)
-        for (int c = 0; c < r; c++)
-            out[r * n + c] = out[c * n + r] = 0.5 * (out[r * n + c] + out[c * n + r]);
+    for (int r = 1; r < n; r++) {
+        double *left = out + (size_t)r * n, *above = out + r;
+        for (int c = 0; c < r; c++, left++, above += n) *left = *above = 0.5 * (*left + *above);
+    }
 }
 
 /* out = F P F^T + Q, F being the first k rows of the transition (k,n), the others those of the identity; to the
    block of the rate in Q, v v^T is added for each of these kicks v (kicks,3) */
-static void predict(int n, int k, int kicks, const double *restrict P, const double *restrict F,
-                    const double *restrict given, const double *restrict v, double *restrict out)
+WIDE static void predict(int n, int k, int kicks, const double *restrict P, const double *restrict F,
+                         const double *restrict Q, const double *restrict v, double *restrict out)
 {
-    double rows[MOST_STATES * MOST_STATES], Q[MOST_STATES * MOST_STATES];
-    memcpy(Q, given, sizeof(double) * n * n);
-    for (int kick = 0; kick < kicks; kick++)
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++) Q[(3 + i) * n + 3 + j] += v[3 * kick + i] * v[3 * kick + j];
+    double rows[MOST_STATES * MOST_STATES], columns[MOST_STATES * MOST_STATES], block[MOST_STATES * MOST_STATES];
     multiply(k, n, n, F, P, rows);
+    transpose(k, n, F, columns);
+    multiply(k, n, k, rows, columns, block);
     for (int i = 0; i < k; i++) {
         for (int j = 0; j <= i; j++) {
-            double sum = 0.0;
-            for (int c = 0; c < n; c++) sum += rows[i * n + c] * F[j * n + c];
-            out[i * n + j] = sum + Q[i * n + j];
-            out[j * n + i] = out[i * n + j];
+            double noise = Q[i * n + j];
+            if (j >= 3 && i < 6)
+                for (int kick = 0; kick < kicks; kick++) noise += v[3 * kick + i - 3] * v[3 * kick + j - 3];
+            out[i * n + j] = out[j * n + i] = block[i * k + j] + noise;
         }
-        for (int c = k; c < n; c++) {
-            out[i * n + c] = rows[i * n + c] + Q[i * n + c];
-            out[c * n + i] = out[i * n + c];
-        }
+        for (int c = k; c < n; c++) out[i * n + c] = out[c * n + i] = rows[i * n + c] + Q[i * n + c];
     }
-    for (int i = k; i < n; i++)
-        for (int c = k; c < n; c++) out[i * n + c] = P[i * n + c] + Q[i * n + c];
+    for (size_t i = k, at = i * n; i < (size_t)n; i++, at += n)
+        for (size_t c = at + k; c < at + n; c++) out[c] = P[c] + Q[c];
 }
 
 /* Gauss-Jordan with partial pivoting; 1: M (m,m) is singular */
@@ -109,107 +128,71 @@ static int invert(int m, const double *M, double *inverse)
     return 0;
 }
 
-/* out (m,n) = A (m,k) B (k,n), m being known when this is compiled: the sums of some columns stay in registers */
-static inline __attribute__((always_inline)) void multiply_few(const int m, int k, int n, const double *restrict A,
-                                                              const double *restrict B, double *restrict out)
-{
-    for (int c = 0; c < n; c += COLUMN_BLOCK) {
-        const int wide = n - c < COLUMN_BLOCK ? n - c : COLUMN_BLOCK;
-        double sums[MOST_MEASURED][COLUMN_BLOCK] = {{0.0}};
-        if (wide == COLUMN_BLOCK) {
-            for (int j = 0; j < k; j++)
-                for (int i = 0; i < m; i++)
-                    for (int b = 0; b < COLUMN_BLOCK; b++) sums[i][b] += A[i * k + j] * B[j * n + c + b];
-        } else {
-            for (int j = 0; j < k; j++)
-                for (int i = 0; i < m; i++)
-                    for (int b = 0; b < wide; b++) sums[i][b] += A[i * k + j] * B[j * n + c + b];
-        }
-        for (int i = 0; i < m; i++)
-            for (int b = 0; b < wide; b++) out[i * n + c + b] = sums[i][b];
-    }
-}
-
-/* out (r,m) = A (r,n) B^T, B being (m,n); as above */
-static inline __attribute__((always_inline)) void times_transposed(int r, const int m, int n,
-                                                                   const double *restrict A,
-                                                                   const double *restrict B, double *restrict out)
-{
-    double columns[MOST_STATES * MOST_MEASURED];
-    for (int k = 0; k < n; k++)
-        for (int i = 0; i < m; i++) columns[k * m + i] = B[i * n + k];
-    for (int row = 0; row < r; row += ROW_BLOCK) {
-        const double *a[ROW_BLOCK];
-        double sums[ROW_BLOCK][MOST_MEASURED] = {{0.0}};
-        for (int b = 0; b < ROW_BLOCK; b++) a[b] = A + (size_t)(row + b < r ? row + b : row) * n;
-        for (int k = 0; k < n; k++)
-            for (int b = 0; b < ROW_BLOCK; b++)
-                for (int i = 0; i < m; i++) sums[b][i] += a[b][k] * columns[k * m + i];
-        for (int b = 0; b < ROW_BLOCK && row + b < r; b++)
-            for (int i = 0; i < m; i++) out[(row + b) * m + i] = sums[b][i];
-    }
-}
-
 /* S = H P H^T + R, K = P H^T S^-1 with zero rows from first to last, x = K y, nis = y^T S^-1 y,
    out = (1 - K H) P (1 - K H)^T + K R K^T, expanded from the left, then from the right.
-   All (n) columns of K^T lie side by side in gain (m,n). 1: S is singular */
+   Columns of H that are zero, of states that are not measured, are left out. All (n) columns of K^T lie side by
+   side in gain (m,n), and those of other matrices whose transpose is computed. 1: S is singular */
 static inline __attribute__((always_inline)) int
 update_few(int n, const int m, const double *restrict P, const double *restrict H, const double *restrict R,
            const double *restrict y, int first, int last, double *restrict out, double *restrict x,
-           double *restrict K, double *restrict S, double *restrict SI, double *nis)
+           double *restrict K, double *restrict S, double *restrict SI, double *restrict nis)
 {
-    double ph[MOST_MEASURED * MOST_STATES], gain[MOST_MEASURED * MOST_STATES];
-    double left_ht[MOST_STATES * MOST_MEASURED], weighed[MOST_MEASURED];
-    multiply_few(m, n, n, H, P, ph); /* (P H^T)^T, as P is symmetric */
-    times_transposed(m, m, n, H, ph, S);
+    double h[MOST_MEASURED * MOST_STATES], rows[MOST_STATES * MOST_STATES], columns[MOST_STATES * MOST_MEASURED];
+    double ph[MOST_MEASURED * MOST_STATES], gain[MOST_MEASURED * MOST_STATES], changes[MOST_MEASURED * MOST_STATES];
+    double weighed[MOST_MEASURED];
+    int places[MOST_STATES], count = 0;
+    for (int c = 0; c < n; c++) {
+        int shows = 0;
+        for (int i = 0; i < m; i++) shows |= H[i * n + c] != 0.0;
+        if (shows) places[count++] = c;
+    }
+    for (int j = 0; j < count; j++) {
+        for (int i = 0; i < m; i++) h[i * count + j] = H[i * n + places[j]];
+        memcpy(rows + (size_t)j * n, P + (size_t)places[j] * n, sizeof(double) * n);
+    }
+    multiply(m, count, n, h, rows, ph); /* (P H^T)^T, as P is symmetric */
+    for (int j = 0; j < count; j++)
+        for (int i = 0; i < m; i++) columns[j * m + i] = ph[i * n + places[j]];
+    multiply(m, count, m, h, columns, S);
     for (int i = 0; i < m * m; i++) S[i] += R[i];
     if (invert(m, S, SI)) return 1;
     multiply(m, m, 1, SI, y, weighed);
     multiply(1, m, 1, y, weighed, nis);
-    for (int i = 0; i < m; i++) {
-        double *row = gain + i * n;
+    transpose(m, m, SI, columns);
+    multiply(m, m, n, columns, ph, gain);
+    for (int i = 0; i < m; i++)
+        for (int c = first; c < last; c++) gain[i * n + c] = 0.0;
+    multiply(1, m, n, y, gain, x);
+    for (int r = 0; r < n; r++) { /* (P - K H P)^T */
+        const double *before = P + (size_t)r * n;
+        double *row = out + (size_t)r * n, factors[MOST_MEASURED];
+        for (int i = 0; i < m; i++) factors[i] = ph[i * n + r];
         for (int c = 0; c < n; c++) {
-            double sum = 0.0;
-            for (int k = 0; k < m; k++) sum += SI[k * m + i] * ph[k * n + c];
-            row[c] = sum;
+            double left = before[c];
+            for (int i = 0; i < m; i++) left -= gain[(size_t)i * n + c] * factors[i];
+            row[c] = left;
         }
-        for (int c = first; c < last; c++) row[c] = 0.0;
     }
-    for (int c = 0; c < n; c++) {
-        double sum = 0.0;
-        for (int i = 0; i < m; i++) sum += gain[i * n + c] * y[i];
-        x[c] = sum;
-    }
-    for (int r = 0; r < n; r++) { /* P - K H P */
-        double factors[MOST_MEASURED];
+    for (int j = 0; j < count; j++) memcpy(rows + (size_t)j * n, out + (size_t)places[j] * n, sizeof(double) * n);
+    multiply(m, count, n, h, rows, ph); /* ((P - K H P) H^T)^T */
+    transpose(m, m, R, columns);
+    multiply(m, m, n, columns, gain, changes);
+    for (int c = 0; c < m * n; c++) changes[c] -= ph[c]; /* (K R - (P - K H P) H^T)^T */
+    for (int r = 0; r < n; r++) {
+        double *row = out + (size_t)r * n, factors[MOST_MEASURED];
         for (int i = 0; i < m; i++) factors[i] = gain[i * n + r];
         for (int c = 0; c < n; c++) {
-            double left = P[r * n + c];
-            for (int i = 0; i < m; i++) left -= factors[i] * ph[i * n + c];
-            out[r * n + c] = left;
-        }
-    }
-    times_transposed(n, m, n, out, H, left_ht);
-    for (int r = 0; r < n; r++) {
-        double changes[MOST_MEASURED]; /* K R - (P - K H P) H^T */
-        for (int i = 0; i < m; i++) {
-            double change = 0.0;
-            for (int k = 0; k < m; k++) change += gain[k * n + r] * R[k * m + i];
-            changes[i] = change - left_ht[r * m + i];
-        }
-        for (int c = 0; c < n; c++) {
-            double right = out[r * n + c];
-            for (int i = 0; i < m; i++) right += changes[i] * gain[i * n + c];
-            out[r * n + c] = right;
+            double right = row[c];
+            for (int i = 0; i < m; i++) right += changes[(size_t)i * n + c] * factors[i];
+            row[c] = right;
         }
     }
     symmetrise(n, out);
-    for (int i = 0; i < m; i++)
-        for (int c = 0; c < n; c++) K[c * m + i] = gain[i * n + c];
+    transpose(m, n, gain, K);
     return 0;
 }
 
-static int update(int n, int m, const double *P, const double *H, const double *R, const double *y, int first,
+WIDE static int update(int n, int m, const double *P, const double *H, const double *R, const double *y, int first,
                   int last, double *out, double *x, double *K, double *S, double *SI, double *nis)
 {
     switch (m) { /* the loops over the measured numbers are unrolled for those that fly */
@@ -224,7 +207,7 @@ static int update(int n, int m, const double *P, const double *H, const double *
    of several maps being added first */
 typedef struct { int k; const double *numbers, *rows; } Map;
 
-static void linear(int r, int n, int w, int maps, const Map *map, const double *restrict constant,
+WIDE static void linear(int r, int n, int w, int maps, const Map *map, const double *restrict constant,
                    double *restrict sum, double *restrict part, double *restrict out)
 {
     memcpy(out, constant, sizeof(double) * r * n);
@@ -245,7 +228,7 @@ static void linear(int r, int n, int w, int maps, const Map *map, const double *
 
 /* The rows of attitude and rate of 1 + A h, out (6,n): [turn x], turn being -h omega; h domega/dt by all, J^-1 h
    (3,3) times the torque's derivative by the first w numbers (3,w); all else, and of the attitude, as constant */
-static void system_rows(int n, int w, const double *restrict constant, const double *restrict turn,
+WIDE static void system_rows(int n, int w, const double *restrict constant, const double *restrict turn,
                         const double *restrict inverse_h, const double *restrict torque, double *restrict out)
 {
     double rate[3 * MOST_STATES];
@@ -260,7 +243,7 @@ static void system_rows(int n, int w, const double *restrict constant, const dou
 }
 
 /* The rows of attitude and rate of exp(A h), out (6,n), from those of 1 + A h, to second or to fourth order */
-static void series(int n, int order, const double *restrict linear, double *restrict out)
+WIDE static void series(int n, int order, const double *restrict linear, double *restrict out)
 {
     double moving[MOVING * MOVING], change[MOVING * MOST_STATES], sums[MOVING * MOST_STATES];
     memcpy(change, linear, sizeof(double) * MOVING * n);
@@ -285,17 +268,15 @@ static void series(int n, int order, const double *restrict linear, double *rest
 
 /* A trace over an update: t = H effect, its last column y; sums += t^T S^-1 t, effect -= K t. Returned to sums_out
    (k,k) and out (n,k) */
-static void trace_update(int n, int m, int k, const double *restrict effect, const double *restrict sums,
+WIDE static void trace_update(int n, int m, int k, const double *restrict effect, const double *restrict sums,
                          const double *restrict y, const double *restrict H, const double *restrict K,
                          const double *restrict SI, double *restrict out, double *restrict sums_out)
 {
     double t[MOST_MEASURED * MOST_STATES], weighed[MOST_MEASURED * MOST_STATES];
     double transposed[MOST_STATES * MOST_MEASURED];
     multiply(m, n, k, H, effect, t);
-    for (int i = 0; i < m; i++) {
-        t[i * k + k - 1] = y[i];
-        for (int c = 0; c < k; c++) transposed[c * m + i] = t[i * k + c];
-    }
+    for (int i = 0; i < m; i++) t[i * k + k - 1] = y[i];
+    transpose(m, k, t, transposed);
     multiply(m, m, k, SI, t, weighed);
     multiply(k, m, k, transposed, weighed, sums_out);
     for (int c = 0; c < k * k; c++) sums_out[c] = sums[c] + sums_out[c];
@@ -322,7 +303,7 @@ static double unexplained(int k, const double *restrict sums)
 
 /* out = T P T^T, T = 1 + D W (n,n): D (m,k) in the rows from first on is linear in the error e there, by moving
    (m,m k), its last column times a factor; W (k,n) */
-static void turn_along(int n, int m, int k, int first, const double *restrict P, const double *restrict e,
+WIDE static void turn_along(int n, int m, int k, int first, const double *restrict P, const double *restrict e,
                        double factor, const double *restrict W, const double *restrict moving,
                        double *restrict out)
 {
@@ -330,8 +311,7 @@ static void turn_along(int n, int m, int k, int first, const double *restrict P,
     double known[MOST_TURNS * MOST_STATES], own[MOST_TURNS * MOST_TURNS], change[MOST_STATES * MOST_STATES];
     multiply(1, m, m * k, e + first, moving, D);
     for (int i = 0; i < m; i++) D[i * k + k - 1] *= factor;
-    for (int i = 0; i < m; i++)
-        for (int c = 0; c < k; c++) transposed[c * m + i] = D[i * k + c];
+    transpose(m, k, D, transposed);
     for (int i = 0; i < k; i++)
         for (int c = 0; c < n; c++) half[c * k + i] = 0.5 * W[i * n + c];
     multiply(k, n, n, W, P, known); /* W P + half of W P W^T D^T: half of the terms, twice of which are all */
@@ -340,13 +320,15 @@ static void turn_along(int n, int m, int k, int first, const double *restrict P,
     for (int i = 0; i < k; i++)
         for (int c = 0; c < m; c++) known[i * n + first + c] += change[i * m + c];
     multiply(m, k, n, D, known, change);
-    memcpy(out, P, sizeof(double) * n * n);
-    for (int c = 0; c < m * n; c++) out[first * n + c] += 2.0 * change[c];
+    const size_t from = (size_t)first * n, to = from + (size_t)m * n;
+    for (size_t c = 0; c < from; c++) out[c] = P[c];
+    for (size_t c = from; c < to; c++) out[c] = P[c] + 2.0 * change[c - from];
+    for (size_t c = to; c < (size_t)n * n; c++) out[c] = P[c];
     symmetrise(n, out);
 }
 
 /* States from first to last decay by a factor: out = D P D, their variances gaining 1 - keep^2 of those in P0 */
-static void fade(int n, int first, int last, double keep, const double *restrict P, const double *restrict P0,
+WIDE static void fade(int n, int first, int last, double keep, const double *restrict P, const double *restrict P0,
                  double *restrict out)
 {
     memcpy(out, P, sizeof(double) * n * n);
@@ -358,7 +340,7 @@ static void fade(int n, int first, int last, double keep, const double *restrict
 }
 
 /* out = T P T^T, T = 1 + change (k,n) in the rows of these places */
-static void shear(int n, int k, const double *restrict P, const double *restrict change, const int *places,
+WIDE static void shear(int n, int k, const double *restrict P, const double *restrict change, const int *places,
                   double *restrict out)
 {
     double rows[MOST_STATES * MOST_STATES], columns[MOST_STATES * MOST_STATES];
@@ -366,12 +348,23 @@ static void shear(int n, int k, const double *restrict P, const double *restrict
     memcpy(out, P, sizeof(double) * n * n);
     for (int i = 0; i < k; i++)
         for (int c = 0; c < n; c++) out[places[i] * n + c] += rows[i * n + c];
-    for (int i = 0; i < k; i++)
-        for (int c = 0; c < n; c++) columns[c * k + i] = change[i * n + c];
-    multiply(n, n, k, out, columns, rows);
+    transpose(n, n, out, columns);
+    multiply(k, n, n, change, columns, rows);
     for (int r = 0; r < n; r++)
-        for (int i = 0; i < k; i++) out[r * n + places[i]] += rows[r * k + i];
+        for (int i = 0; i < k; i++) out[r * n + places[i]] += rows[i * n + r];
     symmetrise(n, out);
+}
+
+/* The sum of the variances; infinite where one is negative, or one of the first few is zero */
+static double total_variance(int n, int uncertain, const double *P)
+{
+    double total = 0.0;
+    for (int i = 0; i < n; i++) {
+        const double variance = P[i * n + i];
+        if (variance < 0.0 || (variance == 0.0 && i < uncertain)) return INFINITY;
+        total += variance;
+    }
+    return total;
 }
 
 /* The arrays that a call holds while it computes, and numbers of its tuples. */
@@ -633,6 +626,40 @@ FUNCTION(diagonal)
     return found;
 }
 
+FUNCTION(total_variance)
+{
+    Held held = {0};
+    PyArrayObject *P;
+    PyObject *found = NULL;
+    const long uncertain = count == 2 ? PyLong_AsLong(given[1]) : 0;
+    if (takes(count, 2, "P, and how many are uncertain") && !PyErr_Occurred() &&
+        (P = square(&held, given[0], MOST_STATES, "P")) != NULL)
+        found = PyFloat_FromDouble(total_variance(ROWS(P), (int)uncertain, DATA(P)));
+    release(&held);
+    return found;
+}
+
+FUNCTION(largest_variance)
+{
+    Held held = {0};
+    PyArrayObject *P;
+    PyObject *found = NULL;
+    if (!takes(count, 3, "P, first and last")) return NULL;
+    const long first = PyLong_AsLong(given[1]), last = PyLong_AsLong(given[2]);
+    if (!PyErr_Occurred() && (P = square(&held, given[0], MOST_STATES, "P")) != NULL) {
+        if (first < 0 || first >= last || last > ROWS(P)) {
+            PyErr_SetString(PyExc_ValueError, "these are none of P's states");
+        } else {
+            double most = DATA(P)[first * ROWS(P) + first];
+            for (long i = first + 1; i < last; i++)
+                if (DATA(P)[i * ROWS(P) + i] > most) most = DATA(P)[i * ROWS(P) + i];
+            found = PyFloat_FromDouble(most);
+        }
+    }
+    release(&held);
+    return found;
+}
+
 FUNCTION(carry_trace)
 {
     Held held = {0};
@@ -759,6 +786,8 @@ static PyMethodDef methods[] = {
     METHOD(series, "series(1 + A h, 2 or 4) -> exp(A h) to this order"),
     METHOD(stack, "stack(A, B) -> the rows of A, then those of B"),
     METHOD(diagonal, "diagonal(M) -> its numbers"),
+    METHOD(total_variance, "total_variance(P, k) -> the sum of the variances; inf: one is negative, or of the first k zero"),
+    METHOD(largest_variance, "largest_variance(P, first, last) -> that of these states"),
     METHOD(carry_trace, "carry_trace(effect, F) -> effect"),
     METHOD(update_trace, "update_trace(effect, sums, y, H, K, S^-1) -> (effect, sums)"),
     METHOD(unexplained, "unexplained(sums) -> what no deviation explains, NaN of damaged sums"),

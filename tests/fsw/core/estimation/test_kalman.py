@@ -1,6 +1,7 @@
 """Kernel and filterpy compute the same, and so do kernel and numpy beside prediction and update."""
 
 import pickle
+from math import inf
 
 import numpy as np
 import pytest
@@ -227,6 +228,14 @@ def of_diagonal(random, states):
     return (random.normal(size=(states, states)),)
 
 
+def of_total_variance(random, states):
+    return covariance(random, states), 6
+
+
+def of_largest_variance(random, states):
+    return covariance(random, states), states % 3, states - 2
+
+
 def of_carry_trace(random, states):
     return random.normal(size=(states, 5)), transition(random, states)[:MOVING]
 
@@ -268,6 +277,8 @@ def of_shear(random, states):
         ("series", of_series(4)),
         ("stack", of_stack),
         ("diagonal", of_diagonal),
+        ("total_variance", of_total_variance),
+        ("largest_variance", of_largest_variance),
         ("carry_trace", of_carry_trace),
         ("update_trace", of_update_trace),
         ("unexplained", of_unexplained),
@@ -324,6 +335,9 @@ class TestWhatTheKernelRefuses:
             ("series", (np.ones((6, 9)), 3)),
             ("stack", (np.ones((3, 9)), np.ones((3, 8)))),
             ("diagonal", (np.ones((3, 2)),)),
+            ("total_variance", (np.ones((3, 2)), 1)),
+            ("largest_variance", (np.eye(9), 4, 10)),
+            ("largest_variance", (np.eye(9), 4, 4)),
             ("carry_trace", (np.ones((9, 2)), np.ones((6, 8)))),
             ("update_trace", (np.ones((9, 3)), np.ones((2, 2)), (1.0,), *[np.ones((1, 9))] * 3)),
             ("unexplained", (np.ones((0, 0)),)),
@@ -343,6 +357,30 @@ class TestWhatTheKernelRefuses:
     def test_numbers_that_are_none(self, bad):
         with pytest.raises(TypeError):
             kalman.linear(np.ones((1, 1)), bad, np.ones((1, 1)))
+
+
+@pytest.mark.parametrize("algebra", [kalman._kernel, filterpy_algebra], ids=["kernel", "filterpy"])
+@pytest.mark.parametrize(
+    ("variances", "total"),
+    [((1.0, 2.0, 4.0), 7.0), ((1.0, 2.0, 0.0), 3.0), ((1.0, 0.0, 4.0), inf), ((1.0, 2.0, -1e-9), inf)],
+    ids=["sound", "exact", "exact too early", "negative"],
+)
+def test_variances_that_cannot_be_have_no_finite_sum(algebra, variances, total):
+    assert algebra.total_variance(np.diag(variances), 2) == total
+
+
+@pytest.mark.skipif(BOTH[0] is not Algebra.KERNEL, reason="the kernel is not built")
+def test_a_measurement_leaves_out_states_that_it_does_not_show():
+    """As if their columns were not there: to the same bits."""
+    random = np.random.default_rng(3)
+    p = covariance(random, 12)
+    y, noise, sensitivity = measurement(random, p, 3)
+    sensitivity[:, 5:9] = 0.0
+    whole = update(p, y, noise, sensitivity, None, BOTH[0])
+    shown = [*range(5), *range(9, 12)]
+    part = update(p[np.ix_(shown, shown)], y, noise, sensitivity[:, shown], None, BOTH[0])
+    assert np.array_equal(whole.covariance[np.ix_(shown, shown)], part.covariance)
+    assert [whole.error[place] for place in shown] == list(part.error)
 
 
 class TestInverse:
