@@ -8,7 +8,7 @@ never evidence about a coil.
 from math import sqrt
 
 from fsw.core.actuation.actuator import ActuatorConfig, CoilView, requested_level
-from fsw.core.actuation.pulses import PulseConfig, dipole_am2
+from fsw.core.actuation.pulses import dipole_am2
 from fsw.core.algebra.vector import Vec3, add, scale, sub
 from fsw.core.estimation.dynamics.error_dynamics import Driven
 
@@ -32,20 +32,23 @@ def driven(
         ticks: those since the tick before, the last of which ends now.
         config: the coils.
     """
+    together, stray_am2 = 1.0, sub(m_body_am2, view.driven_am2)
     if config.dipoles is None:
-        *skipped, asked_am2 = [_requested_am2(view, tick, config.pulses) for tick in ticks]
         together = sqrt(config.pulses.pulse_ticks)
     else:
-        *skipped, asked_am2 = [view.requested.over(tick) for tick in ticks]
-        reported, together = view.requested.reported, 1.0
+        reported = view.requested.reported
+    over: list[Driven] = []
+    for tick in range(ticks.start, ticks.stop - 1):
+        asked_am2 = _requested_am2(view, tick, config)
+        over.append(Driven(add(asked_am2, stray_am2), scale(together, asked_am2)))
+    asked_am2 = _requested_am2(view, ticks.stop - 1, config)
     doubted_am2 = sub(asked_am2, view.driven_am2) if reported else asked_am2
-    stray_am2 = sub(m_body_am2, view.driven_am2)
-    return [
-        *[Driven(add(one_am2, stray_am2), scale(together, one_am2)) for one_am2 in skipped],
-        Driven(m_body_am2, scale(together, doubted_am2)),
-    ]
+    over.append(Driven(m_body_am2, scale(together, doubted_am2)))
+    return over
 
 
-def _requested_am2(view: CoilView, tick: int, config: PulseConfig) -> Vec3:
-    level = requested_level(view, tick, config)
-    return scale(dipole_am2(level, config.levels_am2), config.coil_axes[view.fired.coil])
+def _requested_am2(view: CoilView, tick: int, config: ActuatorConfig) -> Vec3:
+    if config.dipoles is not None:
+        return view.requested.over(tick)
+    level, pulses = requested_level(view, tick, config.pulses), config.pulses
+    return scale(dipole_am2(level, pulses.levels_am2), pulses.coil_axes[view.fired.coil])

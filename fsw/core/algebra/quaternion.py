@@ -71,13 +71,15 @@ def dcm(q: Quaternion) -> Mat3:
 def from_dcm(c: Mat3) -> Quaternion:
     """The quaternion of a direction cosine matrix, scalar part >= 0 (Shepperd 1978: the largest pivot)."""
     (c11, c12, c13), (c21, c22, c23), (c31, c32, c33) = c
-    pivots = (1.0 + c11 + c22 + c33, 1.0 + c11 - c22 - c33, 1.0 - c11 + c22 - c33, 1.0 - c11 - c22 + c33)
-    largest = max(pivots)
-    if largest == pivots[0]:
+    p0, p1 = 1.0 + c11 + c22 + c33, 1.0 + c11 - c22 - c33
+    p2, p3 = 1.0 - c11 + c22 - c33, 1.0 - c11 - c22 + c33
+    one, other = max(p0, p1), max(p2, p3)
+    largest = max(one, other)
+    if largest == p0:
         q = (largest, c23 - c32, c31 - c13, c12 - c21)
-    elif largest == pivots[1]:
+    elif largest == p1:
         q = (c23 - c32, largest, c12 + c21, c13 + c31)
-    elif largest == pivots[2]:
+    elif largest == p2:
         q = (c31 - c13, c12 + c21, largest, c23 + c32)
     else:
         q = (c12 - c21, c13 + c31, c23 + c32, largest)

@@ -27,6 +27,11 @@ def scale(factor: float, a: Vec3) -> Vec3:
     return (factor * a[0], factor * a[1], factor * a[2])
 
 
+def is_zero(a: Vec3) -> bool:
+    """Whether all its components are zero."""
+    return a[0] == 0.0 and a[1] == 0.0 and a[2] == 0.0
+
+
 def dot(a: Vec3, b: Vec3) -> float:
     """A . b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -10,8 +10,14 @@ from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.cells.relinearise import Linear, linear_about, relinearise
 from fsw.core.estimation.cells.update import NO_CELLS, CellsUsed, fade, update_cells
-from fsw.core.estimation.dynamics.error_dynamics import FAST_RADPS, KNOWN_RADPS, SLOW_RADPS, Driven
-from fsw.core.estimation.kalman import diagonal
+from fsw.core.estimation.dynamics.error_dynamics import (
+    FAST_SQUARE,
+    KNOWN_VARIANCE,
+    SLOW_RADPS,
+    SLOW_SQUARE,
+    Driven,
+)
+from fsw.core.estimation.kalman import largest_variance
 from fsw.core.estimation.measurement import field_sampled
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
@@ -236,12 +242,11 @@ def _settle(state: EstimatorState, estimate: Estimate, seen: bool, config: MekfC
     field and Sun, ``seen`` in this tick: with one alone the covariance of a start would not shrink.
     """
     square = dot(estimate.omega_body_radps, estimate.omega_body_radps)
-    variances = diagonal(estimate.covariance)
-    known = max(variances[3], variances[4], variances[5]) < KNOWN_RADPS**2
-    if state.turning is Turning.NO and known and square > FAST_RADPS**2:
+    known = largest_variance(estimate.covariance, 3, 6) < KNOWN_VARIANCE
+    if state.turning is Turning.NO and known and square > FAST_SQUARE:
         state.turning = Turning.FAST
     after = state.turning
-    if known and square <= SLOW_RADPS**2:
+    if known and square <= SLOW_SQUARE:
         after = Turning.NO
     elif known and state.turning is not Turning.NO and config.layout.delay is not None:
         after = Turning.KNOWN

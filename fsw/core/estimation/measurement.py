@@ -1,7 +1,7 @@
 """What each sensor should measure, and how that depends on every part of the error state."""
 
 from fsw.core.algebra.quaternion import Quaternion, rotate
-from fsw.core.algebra.vector import ZERO, Vec3, add, cross, dot, scale, sub
+from fsw.core.algebra.vector import Vec3, add, cross, dot, is_zero, scale, sub
 from fsw.core.estimation.kalman import Matrix, linear
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import Matrix3x3, Parameters
@@ -74,7 +74,7 @@ def _since(u: Vec3, omega: Vec3, delay_s: float) -> Matrix3x3:
 
 def _turned(v: Vec3, turn_rad: Vec3) -> Vec3:
     """The vector in axes rotated by a small angle, to second order: to first order it would grow longer."""
-    if turn_rad == ZERO:
+    if is_zero(turn_rad):
         return v
     x, y, z = v
     x1, y1, z1 = first = cross(v, turn_rad)
@@ -83,5 +83,8 @@ def _turned(v: Vec3, turn_rad: Vec3) -> Vec3:
 
 
 def _scaled(v: Vec3, errors: Vec3) -> Vec3:
-    (x, y, z), (s1, s2, s3) = v, errors
-    return v if errors == ZERO else (x + s1 * x, y + s2 * y, z + s3 * z)
+    if is_zero(errors):
+        return v
+    x, y, z = v
+    s1, s2, s3 = errors
+    return (x + s1 * x, y + s2 * y, z + s3 * z)

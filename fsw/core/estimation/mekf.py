@@ -20,12 +20,12 @@ Schmidt 1966.
 
 from dataclasses import dataclass
 from math import inf, isfinite, sqrt
-from typing import final
+from typing import Final, final
 
 from fsw.core.algebra.quaternion import Quaternion, from_small_rotation, multiply, normalise
-from fsw.core.algebra.vector import ZERO, Vec3, add, dot, sub
+from fsw.core.algebra.vector import ZERO, Vec3, add, dot, is_zero, sub
 from fsw.core.estimation.dynamics.error_dynamics import (
-    FAST_RADPS,
+    FAST_SQUARE,
     Driven,
     free_motion,
     kicks,
@@ -37,8 +37,8 @@ from fsw.core.estimation.kalman import (
     Matrix,
     Trace,
     carry_trace,
-    diagonal,
     stack,
+    total_variance,
     unexplained,
     update_trace,
 )
@@ -55,11 +55,11 @@ from fsw.core.estimation.parameters import (
 )
 from fsw.core.estimation.unobservable import turned_along
 
-LAG_S = 60.0
+LAG_S: Final = 60.0
 """Time over which innovations are averaged."""
 Lag = tuple[float, float, float, float, float, float]
 NO_LAG: Lag = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-MAX_VARIANCE = 1e6
+MAX_VARIANCE: Final = 1e6
 """Beyond it (1000 rad) an estimate is worthless, and the algebra nears overflow."""
 
 
@@ -121,15 +121,11 @@ def healthy(estimate: Estimate) -> bool:
     Only a component of a parameter may be exact, with zero variance. To be checked after a prediction, which
     moves a bad number onto the diagonal of the covariance.
     """
-    variances, total = diagonal(estimate.covariance), 0.0
-    for place in range(len(variances)):
-        variance = variances[place]
-        if variance < 0.0 or (variance == 0.0 and place < ATTITUDE_AND_RATE):
-            return False
-        total += variance
-    (q0, q1, q2, q3), (w1, w2, w3) = estimate.q_body_from_eci, estimate.omega_body_radps
+    q0, q1, q2, q3 = estimate.q_body_from_eci
+    w1, w2, w3 = estimate.omega_body_radps
     b1, b2, b3, s1, s2, s3 = estimate.lag
     numbers = q0 + q1 + q2 + q3 + w1 + w2 + w3 + b1 + b2 + b3 + s1 + s2 + s3 + estimate.nis
+    total = total_variance(estimate.covariance, ATTITUDE_AND_RATE)
     return total < MAX_VARIANCE and isfinite(numbers + estimate.parameters.total())
 
 
@@ -177,7 +173,7 @@ def predict_step(
     if parts.inertia is not None:
         rotor = estimated_rotor(rotor, parameters)
     torque = parameters.torque_body_nm
-    if config.reaction_body_nm != ZERO:
+    if not is_zero(config.reaction_body_nm):
         torque = add(torque, config.reaction_body_nm)
     acting = Acting(e1_eci, b_eci_t, gravity_per_s2, m, torque, rotor)
     around_mid, motion = middle(q, omega, acting, h)
@@ -192,7 +188,8 @@ def predict_step(
     if estimate.trace is not None:
         carry_trace(estimate.trace, transition)
     estimate.nis, estimate.numbers = 0.0, 0
-    left, (b1, b2, b3, s1, s2, s3) = 1.0 - h / LAG_S, estimate.lag
+    left = 1.0 - h / LAG_S
+    b1, b2, b3, s1, s2, s3 = estimate.lag
     estimate.lag = (left * b1, left * b2, left * b3, left * s1, left * s2, left * s3)
 
 
@@ -252,7 +249,9 @@ def update_both(
     q, omega, parameters = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
     b_predicted, b_sensitivity = field_prediction(q, omega, parameters, b_eci_t, config)
     s_predicted, s_sensitivity = sun_prediction(q, omega, parameters, s_eci, config)
-    innovation = (*sub(b_body_t, b_predicted), *sub(s_body, s_predicted))
+    b1, b2, b3 = sub(b_body_t, b_predicted)
+    s1, s2, s3 = sub(s_body, s_predicted)
+    innovation = (b1, b2, b3, s1, s2, s3)
     sensitivity = stack(b_sensitivity, s_sensitivity)
     noise = config.both_noise
     if open_body is not None:
@@ -301,20 +300,30 @@ def take(
 def _lagging(
     lag: Lag, innovation: tuple[float, ...], variances: tuple[float, ...], first: int, part: float
 ) -> Lag:
-    """The means with this fraction of the new innovations added, from place ``first`` on."""
-    means = list(lag)
-    for place in range(len(innovation)):
-        variance = variances[place]
-        means[first + place] += part * innovation[place] / sqrt(variance) if variance > 0.0 else inf
-    m1, m2, m3, m4, m5, m6 = means
-    return (m1, m2, m3, m4, m5, m6)
+    """The means with this fraction of the new innovations added, from place ``first`` on (0 or 3)."""
+    b1, b2, b3, s1, s2, s3 = lag
+    y, v = innovation, variances
+    if first == 0:
+        b1 += _weighed(part * y[0], v[0])
+        b2 += _weighed(part * y[1], v[1])
+        b3 += _weighed(part * y[2], v[2])
+    if first == 3 or len(y) == 6:
+        s1 += _weighed(part * y[3 - first], v[3 - first])
+        s2 += _weighed(part * y[4 - first], v[4 - first])
+        s3 += _weighed(part * y[5 - first], v[5 - first])
+    return (b1, b2, b3, s1, s2, s3)
+
+
+def _weighed(innovation: float, variance: float) -> float:
+    """An innovation in its standard deviations."""
+    return innovation / sqrt(variance) if variance > 0.0 else inf
 
 
 def _fold(estimate: Estimate, error: tuple[float, ...], covariance: Matrix, config: MekfConfig) -> None:
     """Fold an error state into attitude, rate and parameters; the covariance of their errors follows them."""
     parts, parameters = config.layout, estimate.parameters
     omega = add(estimate.omega_body_radps, (error[3], error[4], error[5]))
-    turning = parts.delay is not None and dot(omega, omega) >= FAST_RADPS**2
+    turning = parts.delay is not None and dot(omega, omega) >= FAST_SQUARE
     before = free_motion(estimate.omega_body_radps, parameters, config.rotor) if turning else None
     inertia_error = parameters.inertia_error_kgm2
     turned = from_small_rotation((error[0], error[1], error[2]))

@@ -3,7 +3,7 @@
 from fsw.core.algebra.quaternion import canonical, conjugate, multiply, normalise, rotate
 from fsw.core.algebra.vector import scale, sub
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.estimation.kalman import diagonal
+from fsw.core.estimation.kalman import largest_variance
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.ephemeris import Reference
@@ -16,8 +16,8 @@ def orbital_attitude(estimate: Estimate | None, reference: Reference, valid_sigm
     q = canonical(multiply(conjugate(reference.q_orbit_from_eci), estimate.q_body_from_eci))
     e3_body = rotate(q, (0.0, 0.0, 1.0))
     omega = sub(estimate.omega_body_radps, scale(reference.orbit_rate_radps, e3_body))
-    variances = diagonal(estimate.covariance)
-    sigma_attitude, sigma_rate = max(variances[0:3]) ** 0.5, max(variances[3:6]) ** 0.5
+    sigma_attitude = largest_variance(estimate.covariance, 0, 3) ** 0.5
+    sigma_rate = largest_variance(estimate.covariance, 3, 6) ** 0.5
     return Attitude(q, omega, 3.0 * sigma_attitude, 3.0 * sigma_rate, sigma_attitude <= valid_sigma_rad)
 
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, fields, replace
 from math import nan
-from typing import Any, ClassVar, final
+from typing import Any, ClassVar, Final, final
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, symmetric_inverse
 from fsw.wire.value import Value
@@ -12,8 +12,8 @@ Symmetric = tuple[float, float, float, float, float, float]
 
 UNCHANGED_COILS: Matrix3x3 = (0.0,) * 9
 UNCHANGED_INERTIA: Symmetric = (0.0,) * 6
-MOST_CELLS = 6
-ATTITUDE_AND_RATE = 6
+MOST_CELLS: Final = 6
+ATTITUDE_AND_RATE: Final = 6
 """How many numbers of the error state come before the parameters."""
 NO_NUMBERS: Mat3 = ((nan, nan, nan),) * 3
 
@@ -70,37 +70,40 @@ class Parameters:
         )
 
     def floats(self) -> tuple[float, ...]:
-        """Every component, in the order of its number on the bus; for the checksum of the state too."""
-        return (
-            *self.mag_bias_t,
-            *self.torque_body_nm,
-            *self.dipole_body_am2,
-            *self.coil_error,
-            *self.inertia_error_kgm2,
-            *self.mag_turn_rad,
-            *self.mag_scale,
-            *self.sun_turn_rad,
-            *self.delay_s,
-            *self.cell_excess,
-            *self.cell_gain,
-            *self.earth_light,
-        )
+        """Every component, in the order of its number on the bus."""
+        b1, b2, b3 = self.mag_bias_t
+        t1, t2, t3 = self.torque_body_nm
+        d1, d2, d3 = self.dipole_body_am2
+        g11, g12, g13, g21, g22, g23, g31, g32, g33 = self.coil_error
+        xx, yy, zz, xy, xz, yz = self.inertia_error_kgm2
+        m1, m2, m3 = self.mag_turn_rad
+        c1, c2, c3 = self.mag_scale
+        s1, s2, s3 = self.sun_turn_rad
+        of_field, of_sun = self.delay_s
+        first = (b1, b2, b3, t1, t2, t3, d1, d2, d3, g11, g12, g13, g21, g22, g23, g31, g32, g33)
+        others = (xx, yy, zz, xy, xz, yz, m1, m2, m3, c1, c2, c3, s1, s2, s3, of_field, of_sun)
+        return first + others + self.cell_excess + self.cell_gain + self.earth_light
 
     def total(self) -> float:
         """The sum of all components: no number unless each is one."""
-        (b1, b2, b3), (t1, t2, t3), (d1, d2, d3) = self.mag_bias_t, self.torque_body_nm, self.dipole_body_am2
         g11, g12, g13, g21, g22, g23, g31, g32, g33 = self.coil_error
         xx, yy, zz, xy, xz, yz = self.inertia_error_kgm2
-        (m1, m2, m3), (c1, c2, c3), (s1, s2, s3) = self.mag_turn_rad, self.mag_scale, self.sun_turn_rad
-        total = (
-            b1 + b2 + b3 + t1 + t2 + t3 + d1 + d2 + d3 + g11 + g12 + g13 + g21 + g22 + g23 + g31 + g32 + g33
-        )
-        total += xx + yy + zz + xy + xz + yz + m1 + m2 + m3 + c1 + c2 + c3 + s1 + s2 + s3
+        total = _sum(self.mag_bias_t) + _sum(self.torque_body_nm) + _sum(self.dipole_body_am2)
+        total += g11 + g12 + g13 + g21 + g22 + g23 + g31 + g32 + g33 + xx + yy + zz + xy + xz + yz
+        total += _sum(self.mag_turn_rad) + _sum(self.mag_scale) + _sum(self.sun_turn_rad)
         total += self.delay_s[0] + self.delay_s[1]
-        for part in (self.cell_excess, self.cell_gain, self.earth_light):
-            for number in part:
-                total += number
-        return total
+        return total + _sum_of(self.cell_excess) + _sum_of(self.cell_gain) + _sum_of(self.earth_light)
+
+
+def _sum(v: Vec3) -> float:
+    return v[0] + v[1] + v[2]
+
+
+def _sum_of(numbers: tuple[float, ...]) -> float:
+    total = 0.0
+    for place in range(len(numbers)):
+        total += numbers[place]
+    return total
 
 
 NOTHING = Parameters()

@@ -4,11 +4,12 @@ The inertial frame ``eci`` is TEME of date; ``ecef`` follows from it by one turn
 """
 
 from math import cos, pi, sin
+from typing import Final
 
 from fsw.core.algebra.vector import Vec3
 
-MU_M3PS2 = 3.986004418e14
-RADIUS_M = 6378137.0
+MU_M3PS2: Final = 3.986004418e14
+RADIUS_M: Final = 6378137.0
 DIPOLE_TM3 = 7.812e15
 """mu_e of the direct dipole, whose axis is the rotation axis."""
 

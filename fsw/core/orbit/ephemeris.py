@@ -6,7 +6,7 @@ around a tick does not depend on earlier ticks.
 
 from dataclasses import dataclass, replace
 from math import cos, isfinite, sin
-from typing import final
+from typing import Final, final
 
 from fsw.core.algebra.quaternion import Quaternion, conjugate, from_dcm, rotate
 from fsw.core.algebra.vector import ZERO, Vec3, cross, dot, norm, scale, sub
@@ -193,16 +193,18 @@ def reference_at(window: EphemerisWindow, tick: int, model: EphemerisModel) -> R
 
 def plausible(reference: Reference) -> bool:
     """Whether the values are possible; a window with a damaged node is computed anew."""
+    q0, q1, q2, q3 = reference.q_orbit_from_eci
     return (
         LEAST_RADIUS_M < reference.radius_m < MOST_RADIUS_M
         and norm(reference.b_eci_t) < MOST_FIELD_T
         and 0.9 < norm(reference.sun_eci) < 1.1
-        and isfinite(sum(reference.q_orbit_from_eci, 0.0) + reference.orbit_rate_radps)
+        and isfinite(q0 + q1 + q2 + q3 + reference.orbit_rate_radps)
     )
 
 
-LEAST_RADIUS_M, MOST_RADIUS_M = 6.3e6, 1e9
-MOST_FIELD_T = 1e-4
+LEAST_RADIUS_M: Final = 6.3e6
+MOST_RADIUS_M: Final = 1e9
+MOST_FIELD_T: Final = 1e-4
 """The Earth's field is nowhere stronger than 0.07 mT."""
 
 

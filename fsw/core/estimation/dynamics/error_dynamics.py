@@ -1,11 +1,11 @@
 """The error dynamics of the filter: transition over a tick, process noise, errors of a sample's age."""
 
 from math import radians, sqrt
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
-from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale, transform
+from fsw.core.algebra.vector import ZERO, Vec3, add, cross, is_zero, scale, transform
 from fsw.core.estimation.dynamics.motion import BodyFields, BodyMotion, outer
 from fsw.core.estimation.dynamics.torque_maps import torque_rows
 from fsw.core.estimation.kalman import Matrix, Numbers, bilinear, linear, series, system_rows
@@ -29,7 +29,7 @@ class Driven:
     @property
     def nothing(self) -> bool:
         """Whether it is certain that no coil was driven."""
-        return self.m_body_am2 == ZERO and self.doubted_am2 == ZERO
+        return is_zero(self.m_body_am2) and is_zero(self.doubted_am2)
 
 
 def kicks(driven: Driven, b_body_t: Vec3, config: MekfConfig, step: FilterStep) -> Numbers:
@@ -49,11 +49,15 @@ def kicks(driven: Driven, b_body_t: Vec3, config: MekfConfig, step: FilterStep) 
 NOT_DRIVEN = Driven(ZERO)
 
 
-FAST_RADPS, SLOW_RADPS = radians(0.5), radians(0.3)
-"""Above the first a turn is fast: products of the errors of rate, inertia and age matter. Below the second it
-has ended."""
-KNOWN_RADPS = 0.05 * FAST_RADPS
+FAST_RADPS: Final = radians(0.5)
+"""Above it a turn is fast: products of the errors of rate, inertia and age matter."""
+SLOW_RADPS: Final = radians(0.3)
+"""Below it a fast turn has ended."""
+KNOWN_RADPS: Final = 0.05 * FAST_RADPS
 """The rate of a fast turn is known when its standard deviation is below this."""
+FAST_SQUARE: Final = FAST_RADPS**2
+SLOW_SQUARE: Final = SLOW_RADPS**2
+KNOWN_VARIANCE: Final = KNOWN_RADPS**2
 
 
 def transition_matrix(
@@ -78,7 +82,7 @@ def transition_matrix(
         inverse_h = (h * j11, h * j12, h * j13, h * j21, h * j22, h * j23, h * j31, h * j32, h * j33)
         torque = torque_rows(motion, around, m_driven, rotor, config.torque_map)
         rows = system_rows(step.constant, scale(-h, motion.omega), inverse_h, torque)
-    elif motion.m_am2 == ZERO:
+    elif is_zero(motion.m_am2):
         rows = linear(step.constant, (motion.omega, around.pull()), step.moving)
     else:
         turning, acting = (motion.omega, around.pull()), outer(motion.m_am2, around.b_t)

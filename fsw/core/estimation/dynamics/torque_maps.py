@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from fsw.core.algebra.vector import ZERO, Vec3, skew
+from fsw.core.algebra.vector import Vec3, is_zero, skew
 from fsw.core.estimation.dynamics.motion import BodyFields, BodyMotion, outer
 from fsw.core.estimation.kalman import Matrix, linear
 from fsw.core.estimation.parameters import Layout, Rotor
@@ -71,7 +71,7 @@ def torque_rows(
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = rotor.inertia_kgm2
     moving = linear(_NOTHING, (xx, yy, zz, xy, xz, yz), _BY_INERTIA)
     rows = linear(linear(constant, numbers, gains), (omega, pull), moving)
-    if rotor.wheel_body_nms != ZERO:
+    if not is_zero(rotor.wheel_body_nms):
         rows[:, 3:6] += skew(rotor.wheel_body_nms)
     return rows
 

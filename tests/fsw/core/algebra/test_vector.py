@@ -27,6 +27,13 @@ def test_vector_algebra(a, b, factor):
     close(vector.norm(a), np.linalg.norm(u))
 
 
+@pytest.mark.parametrize(
+    ("a", "zero"), [((0.0, -0.0, 0.0), True), ((0.0, 1e-300, 0.0), False), ((float("nan"), 0.0, 0.0), False)]
+)
+def test_zero_is_every_component(a, zero):
+    assert vector.is_zero(a) is zero
+
+
 @given(matrices, matrices, vectors)
 def test_matrix_algebra(m, n, a):
     close(vector.transform(m, a), np.array(m) @ np.array(a))
