@@ -1,17 +1,17 @@
 """The flight loop as one function, from what the boards sent to what is sent and reported."""
 
-from dataclasses import replace
-
 from fsw.core import telemetry
 from fsw.core.actuation import own_field, pulses, read_back, wheel
 from fsw.core.actuation.actuator import actuate, update_view, wait_ticks
 from fsw.core.actuation.driven import driven
 from fsw.core.actuation.wheel import WheelView
 from fsw.core.algebra.quaternion import rotate
+from fsw.core.algebra.vector import ZERO
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
 from fsw.core.estimation.estimator import discard_estimate, predict, update
+from fsw.core.estimation.mekf_config import WheelMotion
 from fsw.core.estimation.orbital_attitude import orbital_attitude, perfect_attitude
 from fsw.core.estimation.parameters import NOTHING
 from fsw.core.estimation.samples import sun_direction, usable_field
@@ -67,9 +67,10 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> Outbox:
     model = with_orbit(config.ephemeris, state.orbit)
     measurements = _gate(state, tick, frames, config)
     state.time_error_s = inbox.unix_time_s - (config.epoch_unix_s + tick // config.tick_hz)
-    config = _with_wheel(state, before.tick, config)
-    reference = _predict(state, model, before.tick, config)
-    observation = _update(state, measurements, reference, config)
+    ticks = tick - before.tick if before.tick >= 0 else 1
+    motion = wheel.wheel_motion(state.wheel, tick, ticks, config.wheel)
+    reference = _predict(state, model, before.tick, motion, config)
+    observation = _update(state, measurements, reference, motion, config)
     _judge(state, observation, config)
     violated = supervise(state, config)
     acks = command(state, observation.measurements, violated, config)
@@ -124,17 +125,8 @@ def _gate(state: FlightState, tick: int, frames: tuple[Frame, ...], config: Flig
     return measurements
 
 
-def _with_wheel(state: FlightState, before: int, config: FlightConfig) -> FlightConfig:
-    """The tables with an estimator that accounts for the driven wheel, if there is one."""
-    if state.wheel is None:
-        return config
-    ticks = state.tick - before if before >= 0 else 1
-    seen = wheel.estimating(config.estimator, state.wheel, state.tick, ticks, config.wheel)
-    return replace(config, estimator=seen)
-
-
 def _predict(
-    state: FlightState, model: EphemerisModel, before: int, config: FlightConfig
+    state: FlightState, model: EphemerisModel, before: int, motion: WheelMotion | None, config: FlightConfig
 ) -> Reference | None:
     """Carry ephemeris and estimate to this tick; the reference is None where the orbit has no position."""
     tick = state.tick
@@ -149,12 +141,16 @@ def _predict(
         driven_am2 = fdir.driven_am2(state.health, state.coil, config.fdir)
         ticks, reported = range(before + 1, tick + 1), state.status_tick == tick
         drives = driven(state.coil, driven_am2, reported, ticks, config.coils)
-        predict(state.estimator, reference, drives, config.estimator)
+        predict(state.estimator, reference, drives, config.estimator, motion)
     return reference
 
 
 def _update(
-    state: FlightState, measurements: Measurements, reference: Reference | None, config: FlightConfig
+    state: FlightState,
+    measurements: Measurements,
+    reference: Reference | None,
+    motion: WheelMotion | None,
+    config: FlightConfig,
 ) -> Observation:
     """Update the estimate by the samples that may be trusted."""
     if reference is None:
@@ -165,7 +161,8 @@ def _update(
     known = state.estimator.estimate if state.attitude.valid else None
     findings = fdir.examine(measurements, state.health, reference, config.fdir, known)
     fdir.judge_samples(measurements, state.health, findings)
-    used = update(state.estimator, measurements, reference, config.estimator)
+    momentum_nms = ZERO if motion is None else motion.momentum_nms
+    used = update(state.estimator, measurements, reference, config.estimator, momentum_nms)
     attitude = orbital_attitude(state.estimator.estimate, reference, config.estimator.valid_sigma_rad)
     return Observation(measurements, reference, state.estimator, attitude, used, findings)
 

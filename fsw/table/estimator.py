@@ -54,6 +54,7 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
             tick_s,
             priors(known, table.body.inertia),
             wheel_body_nms=table.body.wheel_nms,
+            driven_wheel=table.wheel is not None,
             magnetometer_sigma_t=field_noise_nt(tuning) * NT,
             sun_sigma_rad=_sun_sigma_rad(table),
             attitude_sigma_rad=START_SIGMA_RAD

@@ -8,13 +8,12 @@ The filter gets the measured momentum, and the torque on the body from its chang
 refused request need no model there. Where a report is missing, the change comes with the next.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import isfinite, sqrt
 from typing import final
 
 from fsw.core.algebra.vector import scale
-from fsw.core.estimation.estimator import EstimatorConfig
-from fsw.core.estimation.mekf_config import with_wheel
+from fsw.core.estimation.mekf_config import WheelMotion
 from fsw.core.gate.measurements import Measurements
 from fsw.core.laws.interface import Demand, Wheel
 from fsw.wire.messages import WheelTorque
@@ -85,28 +84,23 @@ def momentum_nms(view: WheelView | None, wheel: Wheel | None) -> float | None:
     return wheel.inertia_kgm2 * view.speed_radps
 
 
-def estimating(
-    estimator: EstimatorConfig, view: WheelView | None, tick: int, ticks: int, wheel: Wheel | None
-) -> EstimatorConfig:
-    """The estimator configuration that accounts for the wheel over the ticks that end now.
+def wheel_motion(view: WheelView | None, tick: int, ticks: int, wheel: Wheel | None) -> WheelMotion | None:
+    """How the wheel moves over the ticks that end now, for the filter; None: there is none.
 
     Args:
-        estimator: as the table has it.
         view: of this tick.
         tick: this one.
         ticks: how many since the last step.
         wheel: None: there is none.
     """
     if view is None or wheel is None:
-        return estimator
+        return None
     middle_nms = wheel.inertia_kgm2 * view.speed_radps - 0.5 * view.change_nms
     rate_nm = view.change_nms / (max(ticks, 1) * wheel.tick_s)
     reported = view.tick == tick
     doubted_nms = CHANGE_SIGMA * abs(view.change_nms) if reported else abs(view.requested_nm) * wheel.tick_s
     axis = wheel.axis_body
-    parts = (scale(middle_nms, axis), scale(-rate_nm, axis), scale(doubted_nms, axis))
-    mekf = with_wheel(estimator.mekf, *parts)
-    return replace(estimator, mekf=mekf)
+    return WheelMotion(scale(middle_nms, axis), scale(-rate_nm, axis), scale(doubted_nms, axis))
 
 
 def request(view: WheelView, demand: Demand | None, tick: int, wheel: Wheel) -> WheelTorque | None:

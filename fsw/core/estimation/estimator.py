@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import ClassVar, final
 
-from fsw.core.algebra.vector import Vec3, dot, norm
+from fsw.core.algebra.vector import ZERO, Vec3, dot, norm
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.cells.relinearise import Linear, linear_about, relinearise
@@ -20,7 +20,7 @@ from fsw.core.estimation.dynamics.error_dynamics import (
 from fsw.core.estimation.kalman import largest_variance
 from fsw.core.estimation.measurement import field_sampled
 from fsw.core.estimation.mekf import Estimate
-from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.estimation.mekf_config import MekfConfig, WheelMotion
 from fsw.core.estimation.parameters import Parameters
 from fsw.core.estimation.samples import saturated_field, sensed_sun, usable_cells, usable_field, usable_sun
 from fsw.core.estimation.start.batch import SampleBatch, discard_samples, pass_tick
@@ -127,6 +127,7 @@ def predict(
     reference: Reference,
     driven: Sequence[Driven],
     config: EstimatorConfig,
+    wheel: WheelMotion | None = None,
 ) -> None:
     """Carry the estimate, if there is one, to this tick; drop it if it is too old or no longer sound.
 
@@ -135,6 +136,7 @@ def predict(
         reference: field, Sun and orbit at this tick.
         driven: over each tick since ``state``, the last of which ends now; several where a SYNC was lost.
         config: tuning.
+        wheel: how a driven wheel moves over these ticks, if there is one.
     """
     if state.estimate is None:
         for one in driven:
@@ -143,21 +145,31 @@ def predict(
     if len(driven) * config.mekf.tick_s > MAX_ELAPSED_S + 1e-6:
         restart(state)
         return
-    _predict(state.estimate, reference, driven, config.mekf)
+    _predict(state.estimate, reference, driven, config.mekf, wheel)
     if not mekf.healthy(state.estimate):
         restart(state)
 
 
-def _predict(estimate: Estimate, reference: Reference, driven: Sequence[Driven], config: MekfConfig) -> None:
+def _predict(
+    estimate: Estimate,
+    reference: Reference,
+    driven: Sequence[Driven],
+    config: MekfConfig,
+    wheel: WheelMotion | None,
+) -> None:
     gravity = 3.0 * MU_M3PS2 / reference.radius_m**3
     for left, one in enumerate(driven, 1 - len(driven)):
         e1_eci, b_eci_t = earlier(reference, -left * config.tick_s)
-        mekf.predict(estimate, e1_eci, b_eci_t, gravity, one.m_body_am2, config, one.doubted_am2)
+        mekf.predict(estimate, e1_eci, b_eci_t, gravity, one.m_body_am2, config, one.doubted_am2, wheel)
         fade(estimate, config)
 
 
 def update(
-    state: EstimatorState, measurements: Measurements, reference: Reference, config: EstimatorConfig
+    state: EstimatorState,
+    measurements: Measurements,
+    reference: Reference,
+    config: EstimatorConfig,
+    wheel_nms: Vec3 = ZERO,
 ) -> Used:
     """Take the samples of this tick, or start from them; which of them were taken.
 
@@ -166,6 +178,7 @@ def update(
         measurements: what the boards sent.
         reference: field, Sun and orbit at this tick.
         config: tuning.
+        wheel_nms: momentum of a driven wheel, body axes.
     """
     field, sun, cells = usable_field(measurements), usable_sun(measurements), config.mekf.cells
     currents = usable_cells(measurements, cells)
@@ -188,12 +201,12 @@ def update(
     took_field = took_sun = False
     if field is not None and sun is not None:
         took_field = took_sun = mekf.update_both(
-            estimate, field, b, sun, reference.sun_eci, config.mekf, open_body, frozen
+            estimate, field, b, sun, reference.sun_eci, config.mekf, open_body, frozen, wheel_nms
         )
     if field is not None and not took_field:
-        took_field = mekf.update_field(estimate, field, b, config.mekf, open_body, frozen)
+        took_field = mekf.update_field(estimate, field, b, config.mekf, open_body, frozen, wheel_nms)
     if sun is not None and not took_sun:
-        took_sun = mekf.update_sun(estimate, sun, reference.sun_eci, config.mekf, frozen)
+        took_sun = mekf.update_sun(estimate, sun, reference.sun_eci, config.mekf, frozen, wheel_nms)
     rejected = (field is not None and not took_field) + (sun is not None and not took_sun)
     by_cell = NO_CELLS
     if cells is not None and known is not None:

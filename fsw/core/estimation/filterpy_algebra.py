@@ -34,8 +34,10 @@ def update(
     sensitivity: Matrix,
     first: int,
     last: int,
-) -> tuple[tuple[float, ...], Matrix, Matrix, Matrix, tuple[float, ...], float] | None:
-    """Error, covariance, gain, weight, variances and NIS; None where the spread is singular.
+    effect: Matrix | None,
+    sums: Matrix | None,
+) -> tuple[tuple[float, ...], Matrix, tuple[float, ...], float, Matrix | None, Matrix | None] | None:
+    """Error, covariance, variances, NIS, effect and sums; None where the spread is singular.
 
     filterpy considers no states; with some, the covariance is Joseph's with the gain that is left.
     """
@@ -51,7 +53,11 @@ def update(
         error, remains = gain.dot(y), np.eye(len(covariance)) - gain.dot(sensitivity)
         after = remains.dot(covariance).dot(remains.T) + gain.dot(noise).dot(gain.T)
     nis = float(y.dot(kalman.SI).dot(y))
-    return tuple(error.tolist()), _symmetric(after), gain, kalman.SI, diagonal(kalman.S), nis
+    if effect is not None and sums is not None:
+        traced = sensitivity.dot(effect)
+        traced[:, -1] = innovation
+        effect, sums = effect - gain.dot(traced), sums + traced.T.dot(kalman.SI).dot(traced)
+    return tuple(error.tolist()), _symmetric(after), diagonal(kalman.S), nis, effect, sums
 
 
 def product(left: Matrix, right: Matrix) -> Matrix:
@@ -84,6 +90,25 @@ def linear(
     return result
 
 
+def sensitivity(
+    constant: Matrix, directions: Numbers, omega: Numbers, ages_s: Numbers, places: tuple[int, ...]
+) -> Matrix:
+    """Rows of H of sensors that see directions."""
+    rows, rate = constant.copy(), _flat(omega)
+    for sensor, (u, age_s) in enumerate(zip(_flat(directions).reshape(-1, 3), ages_s, strict=True)):
+        own, (age, turn, scale) = rows[3 * sensor : 3 * sensor + 3], places[3 * sensor : 3 * sensor + 3]
+        since = age_s * rate
+        own[:, 0:3] += _skew(u) + np.outer(since, u) - u.dot(since) * np.eye(3)
+        if age >= 0:
+            own[:, age] += np.cross(rate, u)
+            own[:, 3:6] -= age_s * _skew(u)
+        if turn >= 0:
+            own[:, turn : turn + 3] += _skew(u)
+        if scale >= 0:
+            own[:, scale : scale + 3] += np.diag(u)
+    return rows
+
+
 def system_rows(constant: Matrix, turn: Numbers, inverse_h: Numbers, torque: Matrix) -> Matrix:
     """Rows of attitude and rate of 1 + A h."""
     rows = constant.copy()
@@ -103,11 +128,6 @@ def series(rows: Matrix, order: int) -> Matrix:
         total = change + change[:, 0:MOVING].dot(total) / place
     result: Matrix = total + identity
     return result
-
-
-def stack(above: Matrix, below: Matrix) -> Matrix:
-    """The rows of both."""
-    return np.concatenate((above, below))
 
 
 def diagonal(m: Matrix) -> tuple[float, ...]:
@@ -134,20 +154,6 @@ def carry_trace(effect: Matrix, transition: Matrix) -> Matrix:
     return after
 
 
-def update_trace(
-    effect: Matrix,
-    sums: Matrix,
-    innovation: tuple[float, ...],
-    sensitivity: Matrix,
-    gain: Matrix,
-    weight: Matrix,
-) -> tuple[Matrix, Matrix]:
-    """Effect and sums after an update."""
-    traced = sensitivity.dot(effect)
-    traced[:, -1] = innovation
-    return effect - gain.dot(traced), sums + traced.T.dot(weight).dot(traced)
-
-
 def unexplained(sums: Matrix) -> float:
     """The summed NIS that no deviation explains."""
     evidence = sums[:-1, -1]
@@ -167,6 +173,13 @@ def turn_along(
     return _symmetric(turn.dot(covariance).dot(turn.T))
 
 
+def move_along(covariance: Matrix, change: Numbers, first: int) -> Matrix:
+    """The covariance with the mean of two states carried along a change of the first six."""
+    turn = np.eye(len(covariance))
+    turn[0:MOVING, first : first + 2] += 0.5 * _flat(change)[:, None]
+    return _symmetric(turn.dot(covariance).dot(turn.T))
+
+
 def fade(covariance: Matrix, prior: Matrix, first: int, last: int, keep: float) -> Matrix:
     """The covariance with some states decayed."""
     left = np.ones(len(covariance))
@@ -182,6 +195,10 @@ def shear(covariance: Matrix, change: Matrix, places: tuple[int, ...]) -> Matrix
     turn = np.eye(len(covariance))
     turn[list(places)] += change
     return _symmetric(turn.dot(covariance).dot(turn.T))
+
+
+def _skew(u: Matrix) -> Matrix:
+    return np.cross(u, np.eye(3)).T
 
 
 def _flat(numbers: Numbers) -> Matrix:

@@ -54,29 +54,28 @@ class Update:
     Attributes:
         error: x, the error state, (n).
         covariance: P, (n, n).
-        gain: K, (n, m).
-        weight: S^-1, (m, m).
         variances: of the innovation, the diagonal of S, (m).
         nis: the normalised innovation squared, y^T S^-1 y.
+        effect, sums: of a trace that goes with it; None without one.
     """
 
-    __slots__ = ("covariance", "error", "gain", "nis", "variances", "weight")
+    __slots__ = ("covariance", "effect", "error", "nis", "sums", "variances")
 
     def __init__(
         self,
         error: tuple[float, ...],
         covariance: Matrix,
-        gain: Matrix,
-        weight: Matrix,
         variances: tuple[float, ...],
         nis: float,
+        effect: Matrix | None,
+        sums: Matrix | None,
     ) -> None:
         self.error = error
         self.covariance = covariance
-        self.gain = gain
-        self.weight = weight
         self.variances = variances
         self.nis = nis
+        self.effect = effect
+        self.sums = sums
 
 
 def predict(
@@ -88,7 +87,7 @@ def predict(
         covariance: before, (n, n).
         transition: the first rows of F, (k, n); the others are those of the identity.
         noise: Q, (n, n), without the kicks.
-        kicks: vectors v, at most two, each of which adds v v^T to the block of the rate in Q.
+        kicks: vectors v, at most three, each of which adds v v^T to the block of the rate in Q.
         algebra: what computes it.
     """
     if algebra is Algebra.KERNEL:
@@ -105,6 +104,7 @@ def update(
     sensitivity: Matrix,
     considered: slice | None,
     algebra: Algebra,
+    trace: "Trace | None" = None,
 ) -> Update | None:
     """The update by a measurement; None where the covariance of its innovation is singular.
 
@@ -116,18 +116,23 @@ def update(
         considered: states that keep their values: their rows of K are zero, and P remains the covariance of
             the errors (Schmidt 1966).
         algebra: what computes it.
+        trace: to be carried along, u - K t and sums + t^T S^-1 t, t being H u and, last, the innovation; it
+            stays as it is.
     """
-    first, last = (considered.start, considered.stop) if considered is not None else (0, 0)
+    first, last = 0, 0
+    if considered is not None:
+        first, last = considered.start, considered.stop
+    effect, sums = (None, None) if trace is None else (trace.effect, trace.sums)
     if algebra is Algebra.KERNEL:
-        found = _kernel.update(covariance, innovation, noise, sensitivity, first, last)
+        found = _kernel.update(covariance, innovation, noise, sensitivity, first, last, effect, sums)
     else:
         from fsw.core.estimation import filterpy_algebra  # noqa: PLC0415  (slow to load, and seldom flown)
 
-        found = filterpy_algebra.update(covariance, innovation, noise, sensitivity, first, last)
+        found = filterpy_algebra.update(covariance, innovation, noise, sensitivity, first, last, effect, sums)
     if found is None:
         return None
-    error, after, gain, weight, variances, nis = found
-    return Update(error, after, gain, weight, variances, nis)
+    error, after, variances, nis, effect, sums = found
+    return Update(error, after, variances, nis, effect, sums)
 
 
 def product(left: Matrix, right: Matrix) -> Matrix:
@@ -138,11 +143,6 @@ def product(left: Matrix, right: Matrix) -> Matrix:
 def inverse(m: Matrix) -> Matrix:
     """The inverse; NaN where it is singular."""
     return _kernel.inverse(m)
-
-
-def stack(above: Matrix, below: Matrix) -> Matrix:
-    """The rows of two matrices of as many columns."""
-    return _kernel.stack(above, below)
 
 
 def diagonal(m: Matrix) -> tuple[float, ...]:
@@ -174,6 +174,25 @@ def linear(constant: Matrix, numbers: Numbers, rows: Matrix) -> Matrix:
 def bilinear(constant: Matrix, numbers: Numbers, rows: Matrix, others: Numbers, other_rows: Matrix) -> Matrix:
     """As ``linear``, by two groups of numbers, each with its rows."""
     return _kernel.linear(constant, numbers, rows, others, other_rows)
+
+
+def sensitivity(
+    constant: Matrix, directions: Numbers, omega: Vec3, ages_s: tuple[float, ...], places: tuple[int, ...]
+) -> Matrix:
+    """H of sensors that see directions u, (3 s, n), to first order in their ages.
+
+    By the attitude when the sample was taken it is [u x]. By the attitude now, w being the rotation since,
+    [u x] (1 + [w x]) = [u x] + w u^T - (u . w) 1. Along the rate it is exactly minus the derivative by the
+    age, omega x u: no sample can tell the two apart.
+
+    Args:
+        constant: its constant part.
+        directions: as each of the s sensors sees it, body axes.
+        omega: rate, body axes.
+        ages_s: of their samples.
+        places: three for each sensor, as in ``MekfConfig``.
+    """
+    return _kernel.sensitivity(constant, directions, omega, ages_s, places)
 
 
 def system_rows(constant: Matrix, turn: Vec3, inverse_h: Numbers, torque: Matrix) -> Matrix:
@@ -216,6 +235,14 @@ def turn_along(
             rows, (m, m k).
     """
     return _kernel.turn_along(covariance, error, first, factor, coordinates, moving)
+
+
+def move_along(covariance: Matrix, change: Numbers, first: int) -> Matrix:
+    """The covariance with d e^T added to the error state's first rows, d being a change of them, (6).
+
+    e is the mean of two states, at the place ``first`` and the next, that stay what they are.
+    """
+    return _kernel.move_along(covariance, change, first)
 
 
 def fade(covariance: Matrix, prior: Matrix, place: slice, keep: float) -> Matrix:
@@ -269,16 +296,6 @@ class Trace:
 def carry_trace(trace: Trace, transition: Matrix) -> None:
     """Carry the trace over a prediction with this transition, (k, n): the first rows of F."""
     trace.effect = _kernel.carry_trace(trace.effect, transition)
-
-
-def update_trace(
-    trace: Trace, innovation: tuple[float, ...], sensitivity: Matrix, found: Update
-) -> tuple[Matrix, Matrix]:
-    """Effect and sums after an update, u - K t and sums + t^T S^-1 t, t being H u and, last, the innovation.
-
-    The trace itself stays as it is.
-    """
-    return _kernel.update_trace(trace.effect, trace.sums, innovation, sensitivity, found.gain, found.weight)
 
 
 def unexplained(sums: Matrix) -> float:

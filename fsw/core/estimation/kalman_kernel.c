@@ -19,6 +19,7 @@
 #define MOST_STATES 64
 #define MOST_MEASURED 6
 #define MOST_TURNS 4
+#define MOST_KICKS 3
 #define MOST_MAPPED 512 /* entries of a matrix that a map goes to */
 #define MOST_MAPS 3
 #define MOVING 6 /* attitude and rate: the rows of the transition that are not the identity's */
@@ -135,11 +136,10 @@ static int invert(int m, const double *M, double *inverse)
 static inline __attribute__((always_inline)) int
 update_few(int n, const int m, const double *restrict P, const double *restrict H, const double *restrict R,
            const double *restrict y, int first, int last, double *restrict out, double *restrict x,
-           double *restrict K, double *restrict S, double *restrict SI, double *restrict nis)
+           double *restrict gain, double *restrict S, double *restrict SI, double *restrict nis)
 {
     double h[MOST_MEASURED * MOST_STATES], rows[MOST_STATES * MOST_STATES], columns[MOST_STATES * MOST_MEASURED];
-    double ph[MOST_MEASURED * MOST_STATES], gain[MOST_MEASURED * MOST_STATES], changes[MOST_MEASURED * MOST_STATES];
-    double weighed[MOST_MEASURED];
+    double ph[MOST_MEASURED * MOST_STATES], changes[MOST_MEASURED * MOST_STATES], weighed[MOST_MEASURED];
     int places[MOST_STATES], count = 0;
     for (int c = 0; c < n; c++) {
         int shows = 0;
@@ -188,18 +188,17 @@ update_few(int n, const int m, const double *restrict P, const double *restrict 
         }
     }
     symmetrise(n, out);
-    transpose(m, n, gain, K);
     return 0;
 }
 
 WIDE static int update(int n, int m, const double *P, const double *H, const double *R, const double *y, int first,
-                  int last, double *out, double *x, double *K, double *S, double *SI, double *nis)
+                  int last, double *out, double *x, double *gain, double *S, double *SI, double *nis)
 {
     switch (m) { /* the loops over the measured numbers are unrolled for those that fly */
-    case 1: return update_few(n, 1, P, H, R, y, first, last, out, x, K, S, SI, nis);
-    case 3: return update_few(n, 3, P, H, R, y, first, last, out, x, K, S, SI, nis);
-    case 6: return update_few(n, 6, P, H, R, y, first, last, out, x, K, S, SI, nis);
-    default: return update_few(n, m, P, H, R, y, first, last, out, x, K, S, SI, nis);
+    case 1: return update_few(n, 1, P, H, R, y, first, last, out, x, gain, S, SI, nis);
+    case 3: return update_few(n, 3, P, H, R, y, first, last, out, x, gain, S, SI, nis);
+    case 6: return update_few(n, 6, P, H, R, y, first, last, out, x, gain, S, SI, nis);
+    default: return update_few(n, m, P, H, R, y, first, last, out, x, gain, S, SI, nis);
     }
 }
 
@@ -224,6 +223,42 @@ WIDE static void linear(int r, int n, int w, int maps, const Map *map, const dou
     }
     for (int i = 0; i < r; i++)
         for (int c = 0; c < w; c++) out[i * n + c] += sum[i * w + c];
+}
+
+/* out (3,n) gains [a x] in three of its columns */
+static void add_skew(int n, const double *a, double *out)
+{
+    out[1] -= a[2], out[2] += a[1];
+    out[n] += a[2], out[n + 2] -= a[0];
+    out[2 * n] -= a[1], out[2 * n + 1] += a[0];
+}
+
+/* H of sensors that see directions u (sensors,3), out (3 sensors,n): by attitude, rate, and where there are such
+   places, age, misalignment and scale errors of each; all else as constant */
+static void sensitivity(int n, int sensors, const double *constant, const double *u, const double *omega,
+                        const double *age, const int *places, double *out)
+{
+    memcpy(out, constant, sizeof(double) * 3 * sensors * n);
+    for (int sensor = 0; sensor < sensors; sensor++, u += 3, age++, places += 3, out += 3 * n) {
+        const double w[3] = {*age * omega[0], *age * omega[1], *age * omega[2]};
+        const double along = u[0] * w[0] + u[1] * w[1] + u[2] * w[2];
+        const double by_attitude[3][3] = {
+            {w[0] * u[0] - along, w[0] * u[1] - u[2], w[0] * u[2] + u[1]},
+            {w[1] * u[0] + u[2], w[1] * u[1] - along, w[1] * u[2] - u[0]},
+            {w[2] * u[0] - u[1], w[2] * u[1] + u[0], w[2] * u[2] - along},
+        };
+        for (int i = 0; i < 3; i++)
+            for (int c = 0; c < 3; c++) out[i * n + c] += by_attitude[i][c];
+        if (places[0] >= 0) {
+            const double since[3] = {-*age * u[0], -*age * u[1], -*age * u[2]};
+            add_skew(n, since, out + 3);
+            out[places[0]] += omega[1] * u[2] - omega[2] * u[1];
+            out[n + places[0]] += omega[2] * u[0] - omega[0] * u[2];
+            out[2 * n + places[0]] += omega[0] * u[1] - omega[1] * u[0];
+        }
+        if (places[1] >= 0) add_skew(n, u, out + places[1]);
+        for (int i = 0; i < 3 && places[2] >= 0; i++) out[i * n + places[2] + i] += u[i];
+    }
 }
 
 /* The rows of attitude and rate of 1 + A h, out (6,n): [turn x], turn being -h omega; h domega/dt by all, J^-1 h
@@ -266,21 +301,22 @@ WIDE static void series(int n, int order, const double *restrict linear, double 
     for (int i = 0; i < MOVING; i++) out[i * n + i] += 1.0;
 }
 
-/* A trace over an update: t = H effect, its last column y; sums += t^T S^-1 t, effect -= K t. Returned to sums_out
-   (k,k) and out (n,k) */
+/* A trace over an update: t = H effect, its last column y; sums += t^T S^-1 t, effect -= K t, gain (m,n) being
+   K^T. Returned to sums_out (k,k) and out (n,k) */
 WIDE static void trace_update(int n, int m, int k, const double *restrict effect, const double *restrict sums,
-                         const double *restrict y, const double *restrict H, const double *restrict K,
-                         const double *restrict SI, double *restrict out, double *restrict sums_out)
+                              const double *restrict y, const double *restrict H, const double *restrict gain,
+                              const double *restrict SI, double *restrict out, double *restrict sums_out)
 {
     double t[MOST_MEASURED * MOST_STATES], weighed[MOST_MEASURED * MOST_STATES];
-    double transposed[MOST_STATES * MOST_MEASURED];
+    double columns[MOST_STATES * MOST_MEASURED];
     multiply(m, n, k, H, effect, t);
     for (int i = 0; i < m; i++) t[i * k + k - 1] = y[i];
-    transpose(m, k, t, transposed);
     multiply(m, m, k, SI, t, weighed);
-    multiply(k, m, k, transposed, weighed, sums_out);
+    transpose(m, k, t, columns);
+    multiply(k, m, k, columns, weighed, sums_out);
     for (int c = 0; c < k * k; c++) sums_out[c] = sums[c] + sums_out[c];
-    multiply(n, m, k, K, t, out);
+    transpose(m, n, gain, columns);
+    multiply(n, m, k, columns, t, out);
     for (int c = 0; c < n * k; c++) out[c] = effect[c] - out[c];
 }
 
@@ -325,6 +361,27 @@ WIDE static void turn_along(int n, int m, int k, int first, const double *restri
     for (size_t c = from; c < to; c++) out[c] = P[c] + 2.0 * change[c - from];
     for (size_t c = to; c < (size_t)n * n; c++) out[c] = P[c];
     symmetrise(n, out);
+}
+
+/* out = T P T^T, T = 1 + d e^T, d (6) in the first rows, e being half of 1 at the place first and at the next */
+WIDE static void move_along(int n, int first, const double *restrict P, const double *restrict d,
+                            double *restrict out)
+{
+    double mean[MOST_STATES];
+    for (int c = 0; c < n; c++) mean[c] = 0.5 * (P[first * n + c] + P[(first + 1) * n + c]);
+    const double variance = 0.5 * (mean[first] + mean[first + 1]);
+    memcpy(out, P, sizeof(double) * n * n);
+    for (int i = 0; i < MOVING; i++) {
+        for (int c = 0; c < MOVING; c++) {
+            const double own = d[i] * mean[c] + 0.5 * variance * (d[i] * d[c]);
+            const double other = d[c] * mean[i] + 0.5 * variance * (d[c] * d[i]);
+            out[i * n + c] += own + other;
+        }
+        for (int c = MOVING; c < n; c++) {
+            out[i * n + c] += d[i] * mean[c];
+            out[c * n + i] += d[i] * mean[c];
+        }
+    }
 }
 
 /* States from first to last decay by a factor: out = D P D, their variances gaining 1 - keep^2 of those in P0 */
@@ -472,9 +529,9 @@ FUNCTION(predict)
 {
     Held held = {0};
     PyArrayObject *P, *F, *Q;
-    double v[6], *out = NULL;
+    double v[3 * MOST_KICKS], *out = NULL;
     int kicks;
-    if (takes(count, 4, "P, F, Q and kicks") && (kicks = tuple(given[3], 0, 6, v, "kicks")) >= 0 &&
+    if (takes(count, 4, "P, F, Q and kicks") && (kicks = tuple(given[3], 0, 3 * MOST_KICKS, v, "kicks")) >= 0 &&
         (P = square(&held, given[0], MOST_STATES, "P")) != NULL &&
         (F = matrix(&held, given[1], -1, ROWS(P), "F")) != NULL &&
         (Q = matrix(&held, given[2], ROWS(P), ROWS(P), "Q")) != NULL) {
@@ -489,10 +546,11 @@ FUNCTION(predict)
 FUNCTION(update)
 {
     Held held = {0};
-    PyArrayObject *P, *R, *H;
-    PyObject *found = NULL;
-    double y[MOST_MEASURED], x[MOST_STATES], S[MOST_MEASURED * MOST_MEASURED], nis, *after, *K, *SI;
-    if (!takes(count, 6, "P, y, R, H, first and last")) return NULL;
+    PyArrayObject *P, *R, *H, *effect = NULL, *sums = NULL;
+    PyObject *found = NULL, *made[2] = {Py_None, Py_None};
+    double y[MOST_MEASURED], x[MOST_STATES], gain[MOST_MEASURED * MOST_STATES], nis, *after, *carried, *summed;
+    double S[MOST_MEASURED * MOST_MEASURED], SI[MOST_MEASURED * MOST_MEASURED];
+    if (!takes(count, 8, "P, y, R, H, first, last, effect and sums")) return NULL;
     const int m = tuple(given[1], 1, MOST_MEASURED, y, "the innovation");
     const long first = m < 0 ? -1 : PyLong_AsLong(given[4]), last = m < 0 ? -1 : PyLong_AsLong(given[5]);
     if (PyErr_Occurred() || (P = square(&held, given[0], MOST_STATES, "P")) == NULL) goto done;
@@ -501,17 +559,24 @@ FUNCTION(update)
         PyErr_SetString(PyExc_ValueError, "the considered states are none of P");
         goto done;
     }
-    if ((R = matrix(&held, given[2], m, m, "R")) == NULL || (H = matrix(&held, given[3], m, n, "H")) == NULL ||
-        (after = result(&held, n, n)) == NULL || (K = result(&held, n, m)) == NULL ||
-        (SI = result(&held, m, m)) == NULL)
+    if ((R = matrix(&held, given[2], m, m, "R")) == NULL || (H = matrix(&held, given[3], m, n, "H")) == NULL)
         goto done;
-    if (update(n, m, DATA(P), DATA(H), DATA(R), y, (int)first, (int)last, after, x, K, S, SI, &nis)) {
+    if (given[6] != Py_None && ((sums = square(&held, given[7], MOST_STATES, "the sums")) == NULL ||
+                                (effect = matrix(&held, given[6], n, ROWS(sums), "the effect")) == NULL))
+        goto done;
+    if ((after = result(&held, n, n)) == NULL) goto done;
+    PyObject *covariance = (PyObject *)held.array[held.count - 1];
+    if (update(n, m, DATA(P), DATA(H), DATA(R), y, (int)first, (int)last, after, x, gain, S, SI, &nis)) {
         found = Py_NewRef(Py_None);
-    } else {
-        PyArrayObject **made = held.array + held.count - 3;
-        found = Py_BuildValue("NOOONd", as_tuple(x, n, 1), made[0], made[1], made[2],
-                              as_tuple(S, m, m + 1), nis);
+        goto done;
     }
+    if (effect != NULL) {
+        const int k = ROWS(sums);
+        if ((carried = result(&held, n, k)) == NULL || (summed = result(&held, k, k)) == NULL) goto done;
+        made[0] = (PyObject *)held.array[held.count - 2], made[1] = (PyObject *)held.array[held.count - 1];
+        trace_update(n, m, k, DATA(effect), DATA(sums), y, DATA(H), gain, SI, carried, summed);
+    }
+    found = Py_BuildValue("NONdOO", as_tuple(x, n, 1), covariance, as_tuple(S, m, m + 1), nis, made[0], made[1]);
 done:
     release(&held);
     return found;
@@ -601,17 +666,26 @@ FUNCTION(series)
     return returned(&held, out);
 }
 
-FUNCTION(stack)
+FUNCTION(sensitivity)
 {
     Held held = {0};
-    PyArrayObject *A, *B;
-    double *out = NULL;
-    if (takes(count, 2, "A and B") && (A = matrix(&held, given[0], -1, -1, "A")) != NULL &&
-        (B = matrix(&held, given[1], -1, COLUMNS(A), "B")) != NULL &&
-        (out = result(&held, ROWS(A) + ROWS(B), COLUMNS(A))) != NULL) {
-        memcpy(out, DATA(A), sizeof(double) * ROWS(A) * COLUMNS(A));
-        memcpy(out + (size_t)ROWS(A) * COLUMNS(A), DATA(B), sizeof(double) * ROWS(B) * COLUMNS(A));
+    PyArrayObject *constant;
+    double u[MOST_MEASURED], omega[3], ages[MOST_MEASURED], numbers[MOST_MEASURED], *out = NULL;
+    int places[MOST_MEASURED];
+    if (!takes(count, 5, "constant, directions, omega, ages and places")) return NULL;
+    const int m = tuple(given[1], 3, MOST_MEASURED, u, "the directions");
+    if (m < 0 || tuple(given[2], 3, 3, omega, "the rate") < 0 || tuple(given[3], m / 3, m / 3, ages, "the ages") < 0 ||
+        tuple(given[4], m, m, numbers, "the places") < 0 ||
+        (constant = matrix(&held, given[0], m, -1, "the constant")) == NULL)
+        return returned(&held, NULL);
+    int fits = m % 3 == 0 && COLUMNS(constant) >= MOVING;
+    for (int i = 0; i < m; i++) {
+        fits &= numbers[i] >= -1.0 && numbers[i] <= COLUMNS(constant) - (i % 3 ? 3 : 1);
+        places[i] = fits ? (int)numbers[i] : -1;
     }
+    if (!fits) PyErr_SetString(PyExc_ValueError, "the places are none of H's states");
+    else if ((out = result(&held, m, COLUMNS(constant))) != NULL)
+        sensitivity(COLUMNS(constant), m / 3, DATA(constant), u, omega, ages, places, out);
     return returned(&held, out);
 }
 
@@ -677,29 +751,6 @@ FUNCTION(carry_trace)
     return returned(&held, out);
 }
 
-FUNCTION(update_trace)
-{
-    Held held = {0};
-    PyArrayObject *effect, *sums, *H, *K, *SI;
-    PyObject *found = NULL;
-    double y[MOST_MEASURED], *out, *sums_out;
-    if (!takes(count, 6, "effect, sums, y, H, K and S^-1")) return NULL;
-    const int m = tuple(given[2], 1, MOST_MEASURED, y, "the innovation");
-    if (m < 0 || (sums = square(&held, given[1], MOST_STATES, "the sums")) == NULL) goto done;
-    const int k = ROWS(sums);
-    if ((effect = matrix(&held, given[0], -1, k, "the effect")) != NULL &&
-        (H = matrix(&held, given[3], m, ROWS(effect), "H")) != NULL &&
-        (K = matrix(&held, given[4], ROWS(effect), m, "K")) != NULL &&
-        (SI = matrix(&held, given[5], m, m, "S^-1")) != NULL &&
-        (out = result(&held, ROWS(effect), k)) != NULL && (sums_out = result(&held, k, k)) != NULL) {
-        trace_update(ROWS(effect), m, k, DATA(effect), DATA(sums), y, DATA(H), DATA(K), DATA(SI), out, sums_out);
-        found = PyTuple_Pack(2, held.array[held.count - 2], held.array[held.count - 1]);
-    }
-done:
-    release(&held);
-    return found;
-}
-
 FUNCTION(unexplained)
 {
     Held held = {0};
@@ -730,6 +781,22 @@ FUNCTION(turn_along)
             PyErr_SetString(PyExc_ValueError, "the map is not to the directions of P");
         else if ((out = result(&held, ROWS(P), ROWS(P))) != NULL)
             turn_along(ROWS(P), m, k, (int)first, DATA(P), e, factor, DATA(W), DATA(moving), out);
+    }
+    return returned(&held, out);
+}
+
+FUNCTION(move_along)
+{
+    Held held = {0};
+    PyArrayObject *P;
+    double d[MOVING], *out = NULL;
+    if (!takes(count, 3, "P, the change and the first place")) return NULL;
+    const long first = PyLong_AsLong(given[2]);
+    if (!PyErr_Occurred() && tuple(given[1], MOVING, MOVING, d, "the change") > 0 &&
+        (P = square(&held, given[0], MOST_STATES, "P")) != NULL) {
+        if (first < MOVING || first + 2 > ROWS(P)) PyErr_SetString(PyExc_ValueError, "the places are none of P's states");
+        else if ((out = result(&held, ROWS(P), ROWS(P))) != NULL)
+            move_along(ROWS(P), (int)first, DATA(P), d, out);
     }
     return returned(&held, out);
 }
@@ -778,20 +845,21 @@ FUNCTION(shear)
 
 static PyMethodDef methods[] = {
     METHOD(predict, "predict(P, F, Q, kicks) -> P"),
-    METHOD(update, "update(P, y, R, H, first, last) -> (x, P, K, S^-1, diagonal of S, y^T S^-1 y); None: S is singular"),
+    METHOD(update, "update(P, y, R, H, first, last, effect, sums) -> (x, P, diagonal of S, y^T S^-1 y, effect, sums); "
+                   "None: S is singular"),
     METHOD(product, "product(A, B) -> A B"),
     METHOD(inverse, "inverse(M) -> M^-1, NaN where M is singular"),
     METHOD(linear, "linear(constant, numbers, map, ...) -> constant + numbers * map, in its first columns"),
     METHOD(system_rows, "system_rows(constant, -h omega, h J^-1, torque by state) -> rows of 1 + A h"),
     METHOD(series, "series(1 + A h, 2 or 4) -> exp(A h) to this order"),
-    METHOD(stack, "stack(A, B) -> the rows of A, then those of B"),
+    METHOD(sensitivity, "sensitivity(constant, directions, omega, ages, places) -> H"),
     METHOD(diagonal, "diagonal(M) -> its numbers"),
     METHOD(total_variance, "total_variance(P, k) -> the sum of the variances; inf: one is negative, or of the first k zero"),
     METHOD(largest_variance, "largest_variance(P, first, last) -> that of these states"),
     METHOD(carry_trace, "carry_trace(effect, F) -> effect"),
-    METHOD(update_trace, "update_trace(effect, sums, y, H, K, S^-1) -> (effect, sums)"),
     METHOD(unexplained, "unexplained(sums) -> what no deviation explains, NaN of damaged sums"),
     METHOD(turn_along, "turn_along(P, error, first, factor, W, map) -> P"),
+    METHOD(move_along, "move_along(P, change, first) -> P"),
     METHOD(fade, "fade(P, P a priori, first, last, what is left) -> P"),
     METHOD(shear, "shear(P, change, places) -> P"),
     {NULL, NULL, 0, NULL},

@@ -1,10 +1,10 @@
 """What each sensor should measure, and how that depends on every part of the error state."""
 
 from fsw.core.algebra.quaternion import Quaternion, rotate
-from fsw.core.algebra.vector import Vec3, add, cross, dot, is_zero, scale, sub
-from fsw.core.estimation.kalman import Matrix, linear
+from fsw.core.algebra.vector import Vec3, add, cross, is_zero, scale, sub
+from fsw.core.estimation.kalman import Matrix, sensitivity
 from fsw.core.estimation.mekf_config import MekfConfig
-from fsw.core.estimation.parameters import Matrix3x3, Parameters
+from fsw.core.estimation.parameters import Parameters
 
 Prediction = tuple[Vec3, Matrix]
 """What should be measured, and its sensitivity H, (3, n)."""
@@ -14,10 +14,9 @@ def field_prediction(
     q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, b_eci_t: Vec3, config: MekfConfig
 ) -> Prediction:
     """The magnetometer: z = (1 + s) o R(turn) C(t - delay) b + bias, R the misalignment; T, body axes."""
-    delay_s = parameters.delay_s[0]
-    b = _turned(_late(rotate(q_body_from_eci, b_eci_t), omega, delay_s), parameters.mag_turn_rad)
-    sensitivity = _sensitivity(b, omega, delay_s, config.field_sensitivity, config.field_map)
-    return add(_scaled(b, parameters.mag_scale), parameters.mag_bias_t), sensitivity
+    b, age_s = _field_seen(q_body_from_eci, omega, parameters, b_eci_t), parameters.delay_s[0]
+    rows = sensitivity(config.field_sensitivity, b, omega, (age_s,), config.field_places)
+    return _field_shown(b, parameters), rows
 
 
 def field_sampled(parameters: Parameters, b_eci_t: Vec3, b_rate_eci_tps: Vec3) -> Vec3:
@@ -34,42 +33,44 @@ def sun_prediction(
     q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, s_eci: Vec3, config: MekfConfig
 ) -> Prediction:
     """The Sun sensor: z = R(turn) C(t - delay) s, R the misalignment; body axes."""
-    delay_s = parameters.delay_s[1]
-    s = _turned(_late(rotate(q_body_from_eci, s_eci), omega, delay_s), parameters.sun_turn_rad)
-    return s, _sensitivity(s, omega, delay_s, config.sun_sensitivity, config.sun_map)
+    s, age_s = _sun_seen(q_body_from_eci, omega, parameters, s_eci), parameters.delay_s[1]
+    return s, sensitivity(config.sun_sensitivity, s, omega, (age_s,), config.sun_places)
 
 
-def _sensitivity(u: Vec3, omega: Vec3, delay_s: float, constant: Matrix, by_direction: Matrix) -> Matrix:
-    """H, (3, n), of a sensor that sees the direction u; body axes."""
-    numbers = (_since(u, omega, delay_s), u, cross(omega, u), scale(-delay_s, u))
-    return linear(constant, numbers, by_direction)
+def both_prediction(
+    q_body_from_eci: Quaternion,
+    omega: Vec3,
+    parameters: Parameters,
+    b_eci_t: Vec3,
+    s_eci: Vec3,
+    config: MekfConfig,
+) -> tuple[Vec3, Vec3, Matrix]:
+    """Magnetometer and Sun sensor; the sensitivity of both is (6, n)."""
+    b = _field_seen(q_body_from_eci, omega, parameters, b_eci_t)
+    s = _sun_seen(q_body_from_eci, omega, parameters, s_eci)
+    rows = sensitivity(config.both_sensitivity, (b, s), omega, parameters.delay_s, config.both_places)
+    return _field_shown(b, parameters), s, rows
+
+
+def _field_seen(q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, b_eci_t: Vec3) -> Vec3:
+    """The field in the axes of the magnetometer when the sample was taken."""
+    b = _late(rotate(q_body_from_eci, b_eci_t), omega, parameters.delay_s[0])
+    return _turned(b, parameters.mag_turn_rad)
+
+
+def _field_shown(b: Vec3, parameters: Parameters) -> Vec3:
+    return add(_scaled(b, parameters.mag_scale), parameters.mag_bias_t)
+
+
+def _sun_seen(q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, s_eci: Vec3) -> Vec3:
+    """The Sun in the axes of its sensor when the sample was taken."""
+    s = _late(rotate(q_body_from_eci, s_eci), omega, parameters.delay_s[1])
+    return _turned(s, parameters.sun_turn_rad)
 
 
 def _late(v_body: Vec3, omega: Vec3, delay_s: float) -> Vec3:
     """A direction fixed in space as it stood ``delay_s`` ago, body axes."""
     return _turned(v_body, scale(-delay_s, omega))
-
-
-def _since(u: Vec3, omega: Vec3, delay_s: float) -> Matrix3x3:
-    """The derivative by the attitude now, from that by the attitude ``delay_s`` ago; to first order, by rows.
-
-    [u x] (1 + [w x]) = [u x] + w u^T - (u . w) 1, w being the rotation since. Along the rate it is exactly
-    minus the derivative by the age: no sample can tell the two apart.
-    """
-    u1, u2, u3 = u
-    w1, w2, w3 = w = scale(delay_s, omega)
-    along = dot(u, w)
-    return (
-        w1 * u1 - along,
-        w1 * u2 - u3,
-        w1 * u3 + u2,
-        w2 * u1 + u3,
-        w2 * u2 - along,
-        w2 * u3 - u1,
-        w3 * u1 - u2,
-        w3 * u2 + u1,
-        w3 * u3 - along,
-    )
 
 
 def _turned(v: Vec3, turn_rad: Vec3) -> Vec3:

@@ -27,7 +27,7 @@ from fsw.core.algebra.vector import ZERO, Vec3, add, dot, is_zero, sub
 from fsw.core.estimation.dynamics.error_dynamics import (
     FAST_SQUARE,
     Driven,
-    free_motion,
+    free_acceleration,
     kicks,
     transition_matrix,
     with_age_along,
@@ -37,21 +37,20 @@ from fsw.core.estimation.kalman import (
     Matrix,
     Trace,
     carry_trace,
-    stack,
     total_variance,
     unexplained,
-    update_trace,
 )
 from fsw.core.estimation.kalman import predict as predict_covariance
 from fsw.core.estimation.kalman import update as update_error
-from fsw.core.estimation.measurement import field_prediction, sun_prediction
-from fsw.core.estimation.mekf_config import FilterStep, MekfConfig, open_noise, pieces_of_tick
+from fsw.core.estimation.measurement import both_prediction, field_prediction, sun_prediction
+from fsw.core.estimation.mekf_config import FilterStep, MekfConfig, WheelMotion, open_noise, pieces_of_tick
 from fsw.core.estimation.parameters import (
     ATTITUDE_AND_RATE,
     Parameters,
     correct_parameters,
     estimated_dipole,
     estimated_rotor,
+    with_momentum,
 )
 from fsw.core.estimation.unobservable import turned_along
 
@@ -112,7 +111,7 @@ def correct(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: Mekf
         uncertainty: covariance that this adds, (n, n).
         config: the filter.
     """
-    _fold(estimate, tuple(error.tolist()), estimate.covariance + uncertainty, config)
+    _fold(estimate, tuple(error.tolist()), estimate.covariance + uncertainty, config, ZERO)
 
 
 def healthy(estimate: Estimate) -> bool:
@@ -137,6 +136,7 @@ def predict(
     m_body_am2: Vec3,
     config: MekfConfig,
     doubted_am2: Vec3 = ZERO,
+    wheel: WheelMotion | None = None,
 ) -> None:
     """Carry estimate and covariance over one tick.
 
@@ -148,9 +148,10 @@ def predict(
         m_body_am2: dipole driven over the tick, body axes, A m^2.
         config: the filter.
         doubted_am2: standard deviation of that dipole's error, as in ``Driven``.
+        wheel: how a driven wheel moves, if there is one.
     """
     count = pieces_of_tick(estimate.omega_body_radps, config.tick_s)
-    step, driven = FilterStep(config, count), Driven(m_body_am2, doubted_am2)
+    step, driven = FilterStep(config, count, wheel), Driven(m_body_am2, doubted_am2)
     for _ in range(count):
         predict_step(estimate, e1_eci, b_eci_t, gravity_per_s2, driven, config, step)
 
@@ -167,14 +168,14 @@ def predict_step(
     """Carry estimate and covariance over a tick, or a piece of one."""
     h, parts = step.tick_s, config.layout
     q, omega, parameters = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
-    m, rotor = driven.m_body_am2, config.rotor
+    m, rotor = driven.m_body_am2, step.rotor
     if parts.dipole is not None or parts.coils is not None:
         m = estimated_dipole(m, parameters)
     if parts.inertia is not None:
         rotor = estimated_rotor(rotor, parameters)
     torque = parameters.torque_body_nm
-    if not is_zero(config.reaction_body_nm):
-        torque = add(torque, config.reaction_body_nm)
+    if not is_zero(step.reaction_body_nm):
+        torque = add(torque, step.reaction_body_nm)
     acting = Acting(e1_eci, b_eci_t, gravity_per_s2, m, torque, rotor)
     around_mid, motion = middle(q, omega, acting, h)
     rotation, omega_after = advanced(q, omega, motion, acting, h)
@@ -200,6 +201,7 @@ def update_field(
     config: MekfConfig,
     open_body: Vec3 | None = None,
     frozen: bool = False,
+    wheel_nms: Vec3 = ZERO,
 ) -> bool:
     """Take a magnetometer sample; False when the gate rejects it.
 
@@ -210,6 +212,7 @@ def update_field(
         config: the filter.
         open_body: the direction along which the sample shows nothing, if there is one.
         frozen: whether the parameters keep their values.
+        wheel_nms: momentum of a driven wheel, body axes.
     """
     predicted, sensitivity = field_prediction(
         estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters, b_eci_t, config
@@ -218,18 +221,24 @@ def update_field(
     if open_body is not None:
         noise = noise + open_noise(open_body)
     innovation = sub(b_body_t, predicted)
-    return take(estimate, innovation, sensitivity, noise, config, config.gate_nis, frozen=frozen)
+    return take(estimate, innovation, sensitivity, noise, config, config.gate_nis, 0, frozen, wheel_nms)
 
 
 def update_sun(
-    estimate: Estimate, s_body: Vec3, s_eci: Vec3, config: MekfConfig, frozen: bool = False
+    estimate: Estimate,
+    s_body: Vec3,
+    s_eci: Vec3,
+    config: MekfConfig,
+    frozen: bool = False,
+    wheel_nms: Vec3 = ZERO,
 ) -> bool:
     """Take a Sun direction; False when the gate rejects it."""
     predicted, sensitivity = sun_prediction(
         estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters, s_eci, config
     )
     innovation = sub(s_body, predicted)
-    return take(estimate, innovation, sensitivity, config.sun_noise, config, config.gate_nis, 3, frozen)
+    noise, gate_nis = config.sun_noise, config.gate_nis
+    return take(estimate, innovation, sensitivity, noise, config, gate_nis, 3, frozen, wheel_nms)
 
 
 def update_both(
@@ -241,23 +250,22 @@ def update_both(
     config: MekfConfig,
     open_body: Vec3 | None = None,
     frozen: bool = False,
+    wheel_nms: Vec3 = ZERO,
 ) -> bool:
     """Take field and Sun in one update; False when it is uncertain that each would pass the gate by itself.
 
     The NIS of a part never exceeds that of the whole, so the gate for one, applied to both, is stricter.
     """
     q, omega, parameters = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
-    b_predicted, b_sensitivity = field_prediction(q, omega, parameters, b_eci_t, config)
-    s_predicted, s_sensitivity = sun_prediction(q, omega, parameters, s_eci, config)
+    b_predicted, s_predicted, sensitivity = both_prediction(q, omega, parameters, b_eci_t, s_eci, config)
     b1, b2, b3 = sub(b_body_t, b_predicted)
     s1, s2, s3 = sub(s_body, s_predicted)
     innovation = (b1, b2, b3, s1, s2, s3)
-    sensitivity = stack(b_sensitivity, s_sensitivity)
     noise = config.both_noise
     if open_body is not None:
         noise = noise.copy()
         noise[0:3, 0:3] += open_noise(open_body)
-    return take(estimate, innovation, sensitivity, noise, config, config.gate_nis, frozen=frozen)
+    return take(estimate, innovation, sensitivity, noise, config, config.gate_nis, 0, frozen, wheel_nms)
 
 
 def take(
@@ -269,31 +277,34 @@ def take(
     gate_nis: float,
     first: int = 0,
     frozen: bool = False,
+    wheel_nms: Vec3 = ZERO,
 ) -> bool:
     """Update the estimate, gated by its NIS; beyond the gate False, and nothing is changed.
 
     ``first``: place of the innovation in the ``lag``; that of a single number is left out of it. ``frozen``:
-    the parameters keep their values, and their errors count as they are.
+    the parameters keep their values, and their errors count as they are. ``wheel_nms``: momentum of a driven
+    wheel, body axes.
     """
     considered = slice(ATTITUDE_AND_RATE, config.layout.size) if frozen else None
-    found = update_error(estimate.covariance, innovation, noise, sensitivity, considered, config.algebra)
+    trace, measured = estimate.trace, len(innovation)
+    found = update_error(
+        estimate.covariance, innovation, noise, sensitivity, considered, config.algebra, trace
+    )
     if found is None:
         return False
-    trace, nis, measured = estimate.trace, found.nis, len(innovation)
-    if trace is not None:
-        effect, sums = update_trace(trace, innovation, sensitivity, found)
-        if nis > 2.0 * measured:  # otherwise nothing to explain
-            nis = unexplained(sums) - unexplained(trace.sums)
+    nis, effect, sums = found.nis, found.effect, found.sums
+    if trace is not None and sums is not None and nis > 2.0 * measured:  # otherwise nothing to explain
+        nis = unexplained(sums) - unexplained(trace.sums)
     if not 0.0 <= nis <= gate_nis:  # overflow can make it -inf
         return False
-    if trace is not None:
+    if trace is not None and effect is not None and sums is not None:
         trace.effect, trace.sums = effect, sums
         trace.measured += measured
     estimate.nis += nis
     estimate.numbers += measured
     if measured > 1:
         estimate.lag = _lagging(estimate.lag, innovation, found.variances, first, config.tick_s / LAG_S)
-    _fold(estimate, found.error, found.covariance, config)
+    _fold(estimate, found.error, found.covariance, config, wheel_nms)
     return True
 
 
@@ -319,19 +330,24 @@ def _weighed(innovation: float, variance: float) -> float:
     return innovation / sqrt(variance) if variance > 0.0 else inf
 
 
-def _fold(estimate: Estimate, error: tuple[float, ...], covariance: Matrix, config: MekfConfig) -> None:
+def _fold(
+    estimate: Estimate, error: tuple[float, ...], covariance: Matrix, config: MekfConfig, wheel_nms: Vec3
+) -> None:
     """Fold an error state into attitude, rate and parameters; the covariance of their errors follows them."""
-    parts, parameters = config.layout, estimate.parameters
-    omega = add(estimate.omega_body_radps, (error[3], error[4], error[5]))
+    parts, parameters, before = config.layout, estimate.parameters, estimate.omega_body_radps
+    omega = add(before, (error[3], error[4], error[5]))
     turning = parts.delay is not None and dot(omega, omega) >= FAST_SQUARE
-    before = free_motion(estimate.omega_body_radps, parameters, config.rotor) if turning else None
+    rotor, acceleration = config.rotor, ZERO
+    if turning:
+        rotor = with_momentum(rotor, wheel_nms)
+        acceleration = free_acceleration(before, parameters, rotor)
     inertia_error = parameters.inertia_error_kgm2
     turned = from_small_rotation((error[0], error[1], error[2]))
     estimate.q_body_from_eci = normalise(multiply(estimate.q_body_from_eci, turned))
     estimate.omega_body_radps = omega
     correct_parameters(parameters, error, parts)
-    if parts.delay is not None and before is not None:
-        shift = free_motion(omega, parameters, config.rotor) - before
+    if turning and parts.delay is not None:
+        shift = (sub(omega, before), sub(free_acceleration(omega, parameters, rotor), acceleration))
         covariance = with_age_along(shift, covariance, parts.delay)
     if config.unobservable is not None:
         covariance = turned_along(covariance, error, inertia_error, config.unobservable)

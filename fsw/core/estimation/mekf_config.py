@@ -1,16 +1,16 @@
 """The filter's tuning, and what is derived from it once."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import ceil, sqrt
 from typing import Any, final
 
 import numpy as np
 
-from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, dot, inverse, transform
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, dot, inverse, product, scale, skew, transform
 from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.dynamics.torque_maps import cross_matrix, system_maps, torque_map
-from fsw.core.estimation.kalman import Algebra, Matrix, available
+from fsw.core.estimation.kalman import Algebra, Matrix, available, linear
 from fsw.core.estimation.parameters import (
     OF_CELLS,
     Layout,
@@ -18,8 +18,8 @@ from fsw.core.estimation.parameters import (
     Prior,
     Rotor,
     layout,
+    with_momentum,
 )
-from fsw.core.estimation.sensitivity_map import sensitivity_map
 from fsw.core.estimation.unobservable import Unobservable, unobservable
 
 OPEN_T = 1e-3
@@ -38,11 +38,11 @@ class MekfConfig:
 
     ``torque_map`` replaces both if the derivative by some estimated parameter varies.
 
-    By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3, n),
-    ``..._map`` what it gains, as in ``sensitivity_map``, and ``..._noise`` the covariance, (3, 3) or (6, 6).
+    By measurement, field, Sun or both at once: ``..._sensitivity`` is the constant part of H, (3, n) or
+    (6, n), ``..._places`` those of each sensor's age, misalignment and scale errors in the error state (-1:
+    it has none), and ``..._noise`` the covariance, (3, 3) or (6, 6).
     ``cells``: Sun cells in place of a Sun sensor.
     ``unobservable``: what no sample shows, if anything.
-    ``reaction_body_nm``: torque of a driven wheel on the body over this tick, N m.
     ``algebra``: what computes predictions and updates.
     """
 
@@ -58,8 +58,10 @@ class MekfConfig:
     torque_map: tuple[Matrix, Matrix] | None
     field_sensitivity: Matrix
     sun_sensitivity: Matrix
-    field_map: Matrix
-    sun_map: Matrix
+    both_sensitivity: Matrix
+    field_places: tuple[int, int, int]
+    sun_places: tuple[int, int, int]
+    both_places: tuple[int, int, int, int, int, int]
     field_noise: Matrix
     sun_noise: Matrix
     both_noise: Matrix
@@ -67,7 +69,6 @@ class MekfConfig:
     gate_nis: float
     cells: CellSet | None = None
     unobservable: Unobservable | None = None
-    reaction_body_nm: Vec3 = ZERO
     algebra: Algebra = Algebra.FILTERPY
 
 
@@ -87,22 +88,56 @@ def pieces_of_tick(omega_radps: Vec3, tick_s: float) -> int:
 
 
 @final
+class WheelMotion:
+    """How a driven wheel moves over the ticks that end now, by its measured momentum; body axes.
+
+    J omega and the torques are those of the whole satellite, wheel included: with the momentum h relative to
+    the body, J domega/dt = T - omega x (J omega + h) - dh/dt holds exactly.
+
+    Attributes:
+        momentum_nms: h, its mean over a tick, without any constant momentum.
+        reaction_nm: -dh/dt, the mean over a tick.
+        doubted_nms: standard deviation of the change of h over a tick, along the wheel's axis.
+    """
+
+    __slots__ = ("doubted_nms", "momentum_nms", "reaction_nm")
+
+    def __init__(self, momentum_nms: Vec3, reaction_nm: Vec3 = ZERO, doubted_nms: Vec3 = ZERO) -> None:
+        self.momentum_nms = momentum_nms
+        self.reaction_nm = reaction_nm
+        self.doubted_nms = doubted_nms
+
+
+@final
 class FilterStep:
     """What the filter predicts by: a tick, or one of so many equal ``pieces`` of it.
 
-    As in ``MekfConfig``, for a step of this length. The pieces together add the tick's noise.
+    As in ``MekfConfig``, for a step of this length. The pieces together add the tick's noise. With a driven
+    wheel, its torque on the body, and the standard deviation of what its change adds to the rate, rad/s.
     """
 
-    __slots__ = ("constant", "driven", "moving", "pieces", "process_noise", "tick_s")
+    __slots__ = (
+        *("constant", "driven", "moving", "pieces", "process_noise", "tick_s"),
+        *("reaction_body_nm", "rotor", "wheel_kick_radps"),
+    )
 
-    def __init__(self, config: MekfConfig, pieces: int) -> None:
+    def __init__(self, config: MekfConfig, pieces: int, wheel: WheelMotion | None = None) -> None:
         self.pieces = pieces
+        self.tick_s = config.tick_s
+        self.process_noise = config.process_noise
+        self.constant = config.constant
+        self.moving = config.moving
+        self.driven = config.driven
+        self.rotor = config.rotor
+        self.reaction_body_nm = ZERO
+        self.wheel_kick_radps = ZERO
+        if wheel is not None:
+            self.rotor = with_momentum(config.rotor, wheel.momentum_nms)
+            self.reaction_body_nm = wheel.reaction_nm
+            kick_radps = transform(config.rotor.inertia_inverse, wheel.doubted_nms)
+            self.wheel_kick_radps = scale(sqrt(1.0 / pieces), kick_radps)
+            self.constant = _with_gyroscopic(config, wheel.momentum_nms)
         if pieces == 1:
-            self.tick_s = config.tick_s
-            self.process_noise = config.process_noise
-            self.constant = config.constant
-            self.moving = config.moving
-            self.driven = config.driven
             return
         part = 1.0 / pieces
         noise = part * config.process_noise
@@ -112,9 +147,20 @@ class FilterStep:
         identity = np.eye(6, config.layout.size)
         self.tick_s = part * config.tick_s
         self.process_noise = noise
-        self.constant = identity + part * (config.constant - identity)
+        self.constant = identity + part * (self.constant - identity)
         self.moving = part * config.moving
         self.driven = part * config.driven
+
+
+def _with_gyroscopic(config: MekfConfig, momentum_body_nms: Vec3) -> Matrix:
+    """The constant part of 1 + A h with h J^-1 [momentum x], of the rate by the rate."""
+    h, (row_1, row_2, row_3) = config.tick_s, config.rotor.inertia_inverse
+    r1, r2, r3 = product((scale(h, row_1), scale(h, row_2), scale(h, row_3)), skew(momentum_body_nms))
+    return linear(config.constant, (r1, r2, r3), _BY_RATE)
+
+
+_BY_RATE: Matrix = np.pad(np.eye(9).reshape(9, 3, 3), ((0, 0), (3, 0), (3, 0))).reshape(9, 36)
+"""From the derivative of the rate by the rate, by rows, (9), to the upper left 6x6 of the system matrix."""
 
 
 def open_noise(direction_body: Vec3) -> Matrix:
@@ -123,43 +169,13 @@ def open_noise(direction_body: Vec3) -> Matrix:
     return noise
 
 
-def with_wheel(
-    config: MekfConfig, momentum_body_nms: Vec3, reaction_body_nm: Vec3, doubted_body_nms: Vec3
-) -> MekfConfig:
-    """The filter of a satellite with a driven wheel, in a tick in which its momentum was measured.
-
-    J omega and the torques are those of the whole satellite, wheel included: with the momentum h relative to
-    the body, J domega/dt = T - omega x (J omega + h) - dh/dt holds exactly.
-
-    Args:
-        config: without the wheel.
-        momentum_body_nms: h, its mean over the tick, without any constant momentum; body axes.
-        reaction_body_nm: -dh/dt, the mean over the tick, body axes.
-        doubted_body_nms: standard deviation of the change of h over the tick, along the wheel's axis.
-    """
-    rotor, h = config.rotor, config.tick_s
-    momentum_nms = add(rotor.wheel_body_nms, momentum_body_nms)
-    constant = config.constant.copy()
-    constant[3:6, 3:6] += h * np.array(rotor.inertia_inverse) @ cross_matrix(np.array(momentum_body_nms))
-    noise = config.process_noise.copy()
-    kick = np.array(transform(rotor.inertia_inverse, doubted_body_nms))
-    noise[3:6, 3:6] += np.outer(kick, kick)
-    return replace(
-        config,
-        rotor=Rotor(rotor.inertia_kgm2, rotor.inertia_inverse, momentum_nms),
-        constant=constant,
-        process_noise=noise,
-        reaction_body_nm=reaction_body_nm,
-        unobservable=None,
-    )
-
-
 def mekf_config(
     inertia_kgm2: Mat3,
     tick_s: float,
     priors: Mapping[str, Prior],
     *,
     wheel_body_nms: Vec3 = ZERO,
+    driven_wheel: bool = False,
     magnetometer_sigma_t: float,
     sun_sigma_rad: float,
     attitude_sigma_rad: float,
@@ -177,6 +193,7 @@ def mekf_config(
         tick_s: length of a tick, s.
         priors: by name in ``Parameters``, of those that the filter estimates.
         wheel_body_nms: constant momentum of a wheel, body axes.
+        driven_wheel: whether there is one whose momentum is measured.
         magnetometer_sigma_t: standard deviation of a field component, T.
         sun_sigma_rad: standard deviation of the Sun direction per tangential axis, rad.
         attitude_sigma_rad: initial standard deviation, as is the next.
@@ -208,6 +225,7 @@ def mekf_config(
     field_sensitivity, sun_sensitivity = np.zeros((3, parts.size)), np.zeros((3, parts.size))
     if parts.mag_bias is not None:
         field_sensitivity[:, parts.mag_bias] = np.eye(3)
+    of_field, of_sun = _sensor_places(parts, 0, parts.mag_turn), _sensor_places(parts, 1, parts.sun_turn)
     field_variances, sun_variances = [magnetometer_sigma_t**2] * 3, [sun_sigma_rad**2] * 3
     moving, driven = np.split(tick_s * system_maps(j, j_inverse), [12])
     return MekfConfig(
@@ -223,16 +241,28 @@ def mekf_config(
         torque_map=torque_map(parts),
         field_sensitivity=field_sensitivity,
         sun_sensitivity=sun_sensitivity,
-        field_map=sensitivity_map(parts, 0, parts.mag_turn, parts.mag_scale),
-        sun_map=sensitivity_map(parts, 1, parts.sun_turn, None),
+        both_sensitivity=np.concatenate((field_sensitivity, sun_sensitivity)),
+        field_places=of_field,
+        sun_places=of_sun,
+        both_places=of_field + of_sun,
         field_noise=np.diag(field_variances),
         sun_noise=np.diag(sun_variances),
         both_noise=np.diag(field_variances + sun_variances),
         dipole_sigma=dipole_sigma,
         gate_nis=gate_nis,
         cells=cells,
-        unobservable=unobservable(parts, variances, rotor),
+        unobservable=None if driven_wheel else unobservable(parts, variances, rotor),
         algebra=available(algebra),
+    )
+
+
+def _sensor_places(parts: Layout, sensor: int, turn: slice | None) -> tuple[int, int, int]:
+    """Where age, misalignment and scale errors of a sensor stand in the error state; -1: not there."""
+    scale = parts.mag_scale if sensor == 0 else None
+    return (
+        -1 if parts.delay is None else parts.delay.start + sensor,
+        -1 if turn is None else turn.start,
+        -1 if scale is None else scale.start,
     )
 
 

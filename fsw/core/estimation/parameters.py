@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields, replace
 from math import nan
 from typing import Any, ClassVar, Final, final
 
-from fsw.core.algebra.vector import ZERO, Mat3, Vec3, symmetric_inverse
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, symmetric_inverse
 from fsw.wire.value import Value
 
 Matrix3x3 = tuple[float, float, float, float, float, float, float, float, float]
@@ -280,6 +280,12 @@ class Rotor(Value):
         self.inertia_kgm2 = inertia_kgm2
         self.inertia_inverse = inertia_inverse
         self.wheel_body_nms = wheel_body_nms
+
+
+def with_momentum(rotor: Rotor, momentum_body_nms: Vec3) -> Rotor:
+    """The rotor with the momentum of a driven wheel beside a constant one."""
+    wheel_body_nms = add(rotor.wheel_body_nms, momentum_body_nms)
+    return Rotor(rotor.inertia_kgm2, rotor.inertia_inverse, wheel_body_nms)
 
 
 def estimated_inertia(nominal: Rotor, parameters: Parameters) -> Mat3:

@@ -3,12 +3,10 @@
 from math import radians, sqrt
 from typing import Final, final
 
-import numpy as np
-
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, is_zero, scale, transform
 from fsw.core.estimation.dynamics.motion import BodyFields, BodyMotion, outer
 from fsw.core.estimation.dynamics.torque_maps import torque_rows
-from fsw.core.estimation.kalman import Matrix, Numbers, bilinear, linear, series, system_rows
+from fsw.core.estimation.kalman import Matrix, Numbers, bilinear, linear, move_along, series, system_rows
 from fsw.core.estimation.mekf_config import FilterStep, MekfConfig
 from fsw.core.estimation.parameters import Parameters, Rotor, estimated_rotor
 
@@ -36,14 +34,15 @@ def kicks(driven: Driven, b_body_t: Vec3, config: MekfConfig, step: FilterStep) 
     """Standard deviations of what a driven dipole adds to the rate in a step, rad/s, body axes.
 
     The dipole is known only to ``dipole_sigma``, and as far as it is not doubted. Its error is constant over
-    a tick, of which the step may be a piece, and independent of those of the other ticks.
+    a tick, of which the step may be a piece, and independent of those of the other ticks. Before them, that
+    of a driven wheel.
     """
     if driven.nothing:
-        return ()
+        return () if is_zero(step.wheel_kick_radps) else (step.wheel_kick_radps,)
     h, inverse = step.tick_s * sqrt(step.pieces), config.rotor.inertia_inverse
     by_all = scale(h, cross(scale(config.dipole_sigma, driven.m_body_am2), b_body_t))
     by_doubt = scale(h, cross(driven.doubted_am2, b_body_t))
-    return (transform(inverse, by_all), transform(inverse, by_doubt))
+    return (step.wheel_kick_radps, transform(inverse, by_all), transform(inverse, by_doubt))
 
 
 NOT_DRIVEN = Driven(ZERO)
@@ -90,15 +89,15 @@ def transition_matrix(
     return series(rows, 2 if step.pieces == 1 else 4)
 
 
-def free_motion(omega: Vec3, parameters: Parameters, nominal: Rotor) -> Matrix:
-    """How attitude and rate of a torque-free body evolve: omega, and its derivative; (6)."""
+def free_acceleration(omega: Vec3, parameters: Parameters, nominal: Rotor) -> Vec3:
+    """The derivative of the rate of a torque-free body."""
     rotor = estimated_rotor(nominal, parameters)
     gyroscopic = cross(add(transform(rotor.inertia_kgm2, omega), rotor.wheel_body_nms), omega)
-    return np.array((*omega, *transform(rotor.inertia_inverse, gyroscopic)))
+    return transform(rotor.inertia_inverse, gyroscopic)
 
 
-def with_age_along(change: Matrix, covariance: Matrix, delay: slice) -> Matrix:
-    """The covariance of the error state, (n, n), where a correction has changed the ``free_motion``.
+def with_age_along(change: Numbers, covariance: Matrix, delay: slice) -> Matrix:
+    """The covariance of the error state, (n, n), where a correction has changed how a free body moves.
 
     Samples that are all older by dtau, of a satellite that is ahead by dtau on its motion, look the same: no
     sample shows this error. Were it left along the motion as estimated before, samples would seem to show it,
@@ -106,16 +105,8 @@ def with_age_along(change: Matrix, covariance: Matrix, delay: slice) -> Matrix:
     Observability-based rules for designing consistent EKF SLAM estimators).
 
     Args:
-        change: of the free motion, (6).
+        change: of the rate and of its derivative without torque, (6).
         covariance: before.
         delay: place of the two ages in the error state.
     """
-    age = 0.5 * (covariance[delay.start] + covariance[delay.start + 1])
-    variance = 0.5 * (age[delay.start] + age[delay.start + 1])
-    added = np.outer(change, age)
-    block = added[:, 0:6] + 0.5 * variance * np.outer(change, change)
-    turned = covariance.copy()
-    turned[0:6, 0:6] += block + block.T
-    turned[0:6, 6:] += added[:, 6:]
-    turned[6:, 0:6] += added[:, 6:].T
-    return turned
+    return move_along(covariance, change, delay.start)

@@ -20,9 +20,9 @@ from typing import Any, final
 import numpy as np
 
 from fsw.core.algebra.quaternion import from_small_rotation, multiply, normalise
-from fsw.core.algebra.vector import Vec3, add
+from fsw.core.algebra.vector import Vec3, add, scale
 from fsw.core.estimation import mekf
-from fsw.core.estimation.dynamics.error_dynamics import free_motion, with_age_along
+from fsw.core.estimation.dynamics.error_dynamics import free_acceleration, with_age_along
 from fsw.core.estimation.kalman import Matrix
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
@@ -187,11 +187,11 @@ def _add_age(estimate: Estimate, config: MekfConfig) -> None:
     delay = config.layout.delay
     if delay is None:
         return
-    motion = free_motion(omega, parameters, config.rotor)
-    turn, gain = np.split(0.5 * sum(parameters.delay_s) * motion, 2)
-    estimate.q_body_from_eci = normalise(multiply(q, from_small_rotation(_three(turn))))
-    estimate.omega_body_radps = add(omega, _three(gain))
-    estimate.covariance = with_age_along(motion, estimate.covariance, delay)
+    of_field, of_sun = parameters.delay_s
+    age_s, acceleration = 0.5 * (of_field + of_sun), free_acceleration(omega, parameters, config.rotor)
+    estimate.q_body_from_eci = normalise(multiply(q, from_small_rotation(scale(age_s, omega))))
+    estimate.omega_body_radps = add(omega, scale(age_s, acceleration))
+    estimate.covariance = with_age_along((omega, acceleration), estimate.covariance, delay)
 
 
 def _found(model: BatchModel) -> tuple[tuple[str, slice | None, range], ...]:

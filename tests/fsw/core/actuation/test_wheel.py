@@ -5,17 +5,16 @@ from math import inf, nan, sqrt
 
 import pytest
 from actuator_samples import then
-from estimator_samples import CONFIG
 from gate_samples import measured
 
 from fsw.core.actuation.wheel import (
     UNIT_NM,
     WheelView,
-    estimating,
     friction_nm,
     momentum_nms,
     request,
     update_view,
+    wheel_motion,
 )
 from fsw.core.laws.interface import Demand, Wheel
 from fsw.wire.messages import WheelStatus, WheelTorque
@@ -38,7 +37,7 @@ def after(*speeds, first_tick=0):
 
 def test_without_a_wheel_there_is_no_momentum():
     assert momentum_nms(None, None) is None
-    assert estimating(CONFIG, None, 3, 1, None) is CONFIG
+    assert wheel_motion(None, 3, 1, None) is None
 
 
 def test_a_report_gives_momentum_and_its_change():
@@ -109,34 +108,26 @@ def test_after_too_long_without_one_the_next_within_the_range_counts_again():
 
 class TestFilter:
     def test_it_gets_the_mean_momentum_and_the_torque_of_its_change(self):
-        config = estimating(CONFIG, after(100.0, 103.0), 1, 1, WHEEL)
+        motion = wheel_motion(after(100.0, 103.0), 1, 1, WHEEL)
         mean, rate = 101.5 * 2e-4, 3.0 * 2e-4 / 0.5
-        assert config.mekf.rotor.wheel_body_nms == pytest.approx([mean * part for part in AXIS])
-        assert config.mekf.reaction_body_nm == pytest.approx([-rate * part for part in AXIS])
+        assert motion.momentum_nms == pytest.approx([mean * part for part in AXIS])
+        assert motion.reaction_nm == pytest.approx([-rate * part for part in AXIS])
 
     def test_over_ticks_that_were_skipped_the_torque_is_the_mean(self):
         view = then(update_view, after(100.0), reported(106.0), 3, WHEEL)
-        config = estimating(CONFIG, view, 3, 3, WHEEL)
         rate = 6.0 * 2e-4 / 1.5
-        assert config.mekf.reaction_body_nm == pytest.approx([-rate * part for part in AXIS])
+        assert wheel_motion(view, 3, 3, WHEEL).reaction_nm == pytest.approx([-rate * part for part in AXIS])
 
     def test_without_a_report_the_momentum_is_the_last_one_and_what_was_asked_for_in_doubt(self):
         view = then(update_view, replace(after(100.0), requested_nm=-1e-3), measured(), 1, WHEEL)
-        config = estimating(CONFIG, view, 1, 1, WHEEL)
-        sure = estimating(CONFIG, after(100.0, 100.0), 1, 1, WHEEL)
-        assert config.mekf.rotor == sure.mekf.rotor
-        assert config.mekf.reaction_body_nm == (0.0, 0.0, 0.0)
-        added = config.mekf.process_noise - sure.mekf.process_noise
-        inverse = config.mekf.rotor.inertia_inverse
-        kick = [sum(row[k] * AXIS[k] for k in range(3)) * 1e-3 * 0.5 for row in inverse]
-        assert added[3, 4] == pytest.approx(kick[0] * kick[1], rel=1e-6)
-        assert added[5, 5] == pytest.approx(kick[2] ** 2, rel=1e-6)
+        motion, sure = wheel_motion(view, 1, 1, WHEEL), wheel_motion(after(100.0, 100.0), 1, 1, WHEEL)
+        assert motion.momentum_nms == sure.momentum_nms
+        assert motion.reaction_nm == sure.doubted_nms == (0.0, 0.0, 0.0)
+        assert motion.doubted_nms == pytest.approx([1e-3 * 0.5 * part for part in AXIS])
 
-    def test_the_rest_of_the_filter_stays(self):
-        config = estimating(CONFIG, after(100.0, 103.0), 1, 1, WHEEL)
-        assert config.start is CONFIG.start
-        assert config.mekf.layout is CONFIG.mekf.layout
-        assert (CONFIG.mekf.process_noise == CONFIG.mekf.process_noise.T).all()
+    def test_of_a_change_that_was_reported_half_a_percent_is_in_doubt(self):
+        motion = wheel_motion(after(100.0, 103.0), 1, 1, WHEEL)
+        assert motion.doubted_nms == pytest.approx([0.005 * 3.0 * 2e-4 * part for part in AXIS])
 
 
 def asked(torque_nm, speed_radps=0.0):

@@ -10,7 +10,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fsw.core.estimation import filterpy_algebra, kalman
-from fsw.core.estimation.kalman import Algebra, available, inverse, predict, product, unexplained, update
+from fsw.core.estimation.kalman import (
+    Algebra,
+    Trace,
+    available,
+    inverse,
+    predict,
+    product,
+    unexplained,
+    update,
+)
 
 SIZES = st.tuples(st.sampled_from([6, 9, 12, 41, 54]), st.sampled_from([1, 3, 6]))
 MOVING = 6
@@ -91,11 +100,33 @@ def test_an_update_is_that_of_filterpy(algebra, sizes, seed):
     sigma = np.sqrt(p.diagonal())
     assert_near(np.array(found.error), kalman.x, 10.0 * sigma)
     assert_near(found.covariance, kalman.P, 10.0 * deviations(p))
-    assert_near(found.gain, kalman.K, 10.0 * sigma[:, None])
     assert_near(np.array(found.variances), kalman.S.diagonal())
     assert found.nis == pytest.approx(np.array(y) @ kalman.SI @ np.array(y), rel=ROUNDING)
-    assert_near(found.weight, kalman.SI)
+    assert found.effect is found.sums is None
     assert (found.covariance == found.covariance.T).all()
+
+
+@pytest.mark.parametrize("algebra", BOTH)
+@given(sizes=SIZES, seed=SEEDS)
+def test_a_trace_goes_along_by_the_gain_and_the_weight_of_the_update(algebra, sizes, seed):
+    random, (states, measured) = np.random.default_rng(seed), sizes
+    p = covariance(random, states)
+    y, noise, sensitivity = measurement(random, p, measured)
+    sigma = np.sqrt(p.diagonal())
+    effect, sums = sigma[:, None] * random.normal(size=(states, 5)), symmetric(random.normal(size=(5, 5)))
+    kept = effect.copy(), sums.copy()
+    trace = Trace((), effect, sums, 0)
+    kalman = KalmanFilter(dim_x=states, dim_z=measured)
+    kalman.x, kalman.P = np.zeros(states), p
+    kalman.update(np.array(y), noise, sensitivity)
+    traced = sensitivity @ effect
+    traced[:, -1] = y
+    found = update(p, y, noise, sensitivity, None, algebra, trace)
+    size = np.abs(traced).max() + 1.0
+    assert_near(found.effect, effect - kalman.K @ traced, 10.0 * sigma[:, None] * size)
+    assert_near(found.sums, sums + traced.T @ kalman.SI @ traced, 100.0 * size**2)
+    assert np.array_equal(trace.effect, kept[0])
+    assert np.array_equal(trace.sums, kept[1])
 
 
 @given(sizes=SIZES, seed=SEEDS)
@@ -220,8 +251,9 @@ def of_series(order):
     return arguments
 
 
-def of_stack(random, states):
-    return random.normal(size=(3, states)), random.normal(size=(2, states))
+def of_sensitivity(random, states):
+    constant, places = random.normal(size=(6, states)), (-1, 3, states - 3, states - 1, -1, -1)
+    return constant, numbers(random, 3, 3), numbers(random, 3)[0], (0.3, 0.7), places
 
 
 def of_diagonal(random, states):
@@ -240,12 +272,6 @@ def of_carry_trace(random, states):
     return random.normal(size=(states, 5)), transition(random, states)[:MOVING]
 
 
-def of_update_trace(random, states):
-    effect, sums, sensitivity = (random.normal(size=size) for size in ((states, 5), (5, 5), (3, states)))
-    gain, weight = random.normal(size=(states, 3)), symmetric(random.normal(size=(3, 3)))
-    return effect, sums, *numbers(random, 3), sensitivity, gain, weight
-
-
 def of_unexplained(random, states):
     traced = random.normal(size=(20, states % 7 + 1))
     return (traced.T @ traced,)
@@ -256,6 +282,10 @@ def of_turn_along(random, states):
     coordinates = random.normal(size=(directions, states))
     moving = random.normal(size=(moved, moved * directions))
     return covariance(random, states), *numbers(random, states), 3, 0.7, coordinates, moving
+
+
+def of_move_along(random, states):
+    return covariance(random, max(states, 9)), *numbers(random, 6), 7
 
 
 def of_fade(random, states):
@@ -275,14 +305,14 @@ def of_shear(random, states):
         ("system_rows", of_system_rows),
         ("series", of_series(2)),
         ("series", of_series(4)),
-        ("stack", of_stack),
+        ("sensitivity", of_sensitivity),
         ("diagonal", of_diagonal),
         ("total_variance", of_total_variance),
         ("largest_variance", of_largest_variance),
         ("carry_trace", of_carry_trace),
-        ("update_trace", of_update_trace),
         ("unexplained", of_unexplained),
         ("turn_along", of_turn_along),
+        ("move_along", of_move_along),
         ("fade", of_fade),
         ("shear", of_shear),
     ],
@@ -293,9 +323,7 @@ def test_the_kernel_computes_what_numpy_does_and_changes_nothing_that_goes_in(na
     given_arguments, again = (arguments(np.random.default_rng(seed), sizes[0]) for _ in range(2))
     ours = getattr(kalman._kernel, name)(*given_arguments)
     theirs = getattr(filterpy_algebra, name)(*again)
-    several = (ours, theirs) if name == "update_trace" else ((ours,), (theirs,))
-    for one, other in zip(*several, strict=True):
-        assert_near(np.array(one), np.array(other), np.abs(other).max() + 1.0, 100.0 * ROUNDING)
+    assert_near(np.array(ours), np.array(theirs), np.abs(theirs).max() + 1.0, 100.0 * ROUNDING)
     assert pickle.dumps(given_arguments) == pickle.dumps(again)
 
 
@@ -333,14 +361,22 @@ class TestWhatTheKernelRefuses:
             ("system_rows", (np.ones((6, 9)), (1.0,) * 2, (1.0,) * 9, np.ones((3, 9)))),
             ("series", (np.ones((6, 65)), 2)),
             ("series", (np.ones((6, 9)), 3)),
-            ("stack", (np.ones((3, 9)), np.ones((3, 8)))),
+            ("sensitivity", (np.ones((3, 9)), (1.0,) * 3, (1.0,) * 3, (1.0,), (9, -1, -1))),
+            ("sensitivity", (np.ones((3, 9)), (1.0,) * 3, (1.0,) * 3, (1.0,), (-1, 7, -1))),
+            ("sensitivity", (np.ones((3, 9)), (1.0,) * 3, (1.0,) * 3, (1.0,), (-1, -1, -2))),
+            ("sensitivity", (np.ones((3, 9)), (1.0,) * 6, (1.0,) * 3, (1.0,) * 2, (-1,) * 6)),
+            ("sensitivity", (np.ones((4, 9)), (1.0,) * 4, (1.0,) * 3, (1.0,), (-1,) * 4)),
             ("diagonal", (np.ones((3, 2)),)),
             ("total_variance", (np.ones((3, 2)), 1)),
             ("largest_variance", (np.eye(9), 4, 10)),
             ("largest_variance", (np.eye(9), 4, 4)),
             ("carry_trace", (np.ones((9, 2)), np.ones((6, 8)))),
-            ("update_trace", (np.ones((9, 3)), np.ones((2, 2)), (1.0,), *[np.ones((1, 9))] * 3)),
+            ("update", (np.eye(9), (1.0,), np.eye(1), np.ones((1, 9)), 0, 0, np.ones((8, 2)), np.eye(2))),
+            ("update", (np.eye(9), (1.0,), np.eye(1), np.ones((1, 9)), 0, 0, np.ones((9, 2)), np.eye(3))),
             ("unexplained", (np.ones((0, 0)),)),
+            ("move_along", (np.eye(9), (1.0,) * 6, 5)),
+            ("move_along", (np.eye(9), (1.0,) * 6, 8)),
+            ("move_along", (np.eye(9), (1.0,) * 5, 7)),
             ("fade", (np.eye(9), np.eye(9), 4, 10, 0.9)),
             ("fade", (np.eye(9), np.eye(8), 4, 5, 0.9)),
             ("shear", (np.eye(9), np.ones((2, 9)), (1, 9))),

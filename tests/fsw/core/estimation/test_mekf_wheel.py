@@ -8,7 +8,7 @@ from filter_steps import predict
 
 from fsw.core.algebra.vector import ZERO
 from fsw.core.estimation.mekf import start
-from fsw.core.estimation.mekf_config import mekf_config, with_wheel
+from fsw.core.estimation.mekf_config import FilterStep, WheelMotion, mekf_config
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
 from sim.plant.dynamics.torques import TorqueFunction
 from sim.plant.dynamics.wheel import SpinningWheel
@@ -41,24 +41,36 @@ def along(size):
 
 
 def test_a_steady_wheel_is_one_of_constant_momentum():
-    driven, constant = with_wheel(tuned(), along(0.3), ZERO, ZERO), tuned(along(0.3))
+    driven, constant = FilterStep(tuned(), 1, WheelMotion(along(0.3))), FilterStep(tuned(along(0.3)), 1)
     assert driven.rotor == constant.rotor
+    assert driven.wheel_kick_radps == driven.reaction_body_nm == ZERO
     np.testing.assert_allclose(driven.constant, constant.constant, rtol=0, atol=1e-15)
     np.testing.assert_array_equal(driven.process_noise, constant.process_noise)
 
 
 def test_the_momentum_comes_on_top_of_a_constant_one():
-    assert with_wheel(tuned(along(0.1)), along(0.3), ZERO, ZERO).rotor.wheel_body_nms == pytest.approx(
-        along(0.4)
+    step = FilterStep(tuned(along(0.1)), 1, WheelMotion(along(0.3)))
+    assert step.rotor.wheel_body_nms == pytest.approx(along(0.4))
+
+
+@pytest.mark.parametrize("driven_am2", [ZERO, (0.3, 0.0, -0.2)], ids=["alone", "beside coils"])
+def test_what_is_in_doubt_is_noise_of_the_rate_along_its_kick(driven_am2):
+    estimate = start((0.5, -0.5, 0.5, 0.5), (2e-3, -3e-3, 5e-3), tuned())
+    sure, doubted = (
+        predict(estimate, STILL.e_eci, (1e-5, 2e-5, -3e-5), 0.0, driven_am2, tuned(), ZERO, motion)
+        for motion in (WheelMotion(along(0.3)), WheelMotion(along(0.3), doubted_nms=along(0.2)))
     )
-
-
-def test_what_is_in_doubt_is_noise_of_the_rate_along_its_kick():
-    before, after = tuned(), with_wheel(tuned(), along(0.3), ZERO, along(2e-4))
-    kick = np.linalg.inv(INERTIA) @ along(2e-4)
-    added = after.process_noise - before.process_noise
-    np.testing.assert_allclose(added[3:6, 3:6], np.outer(kick, kick), rtol=1e-9, atol=1e-22)
+    kick = np.linalg.inv(INERTIA) @ along(0.2)
+    added = doubted.covariance - sure.covariance
+    np.testing.assert_allclose(added[3:6, 3:6], np.outer(kick, kick), rtol=1e-9)
     assert not added[0:3].any()
+
+
+def test_the_pieces_of_a_tick_add_the_doubt_of_a_tick():
+    motion = WheelMotion(along(0.3), doubted_nms=along(2e-4))
+    whole, piece = FilterStep(tuned(), 1, motion), FilterStep(tuned(), 9, motion)
+    assert piece.wheel_kick_radps == pytest.approx([part / 3.0 for part in whole.wheel_kick_radps])
+    np.testing.assert_allclose(9.0 * (piece.constant - np.eye(6)), whole.constant - np.eye(6), atol=1e-15)
 
 
 @pytest.mark.parametrize("motor_nm", [0.0, 2e-3, -1.5e-3])
@@ -77,8 +89,8 @@ def test_by_measured_speeds_alone_it_turns_as_the_plant(motor_nm):
             torque = TorqueFunction(lambda q, omega, around, r=driven.reaction_nm: r)
             motion = body.step(motion, torque, 0.1 * TICK_S, STILL, STILL, STILL, driven=driven)
         after = wheel.relative_nms(motion.omega_body_radps)
-        step = with_wheel(tuned(), along(0.5 * (before + after)), along((before - after) / TICK_S), ZERO)
-        estimate = predict(estimate, STILL.e_eci, ZERO, 0.0, ZERO, step)
+        moving = WheelMotion(along(0.5 * (before + after)), along((before - after) / TICK_S))
+        estimate = predict(estimate, STILL.e_eci, ZERO, 0.0, ZERO, tuned(), ZERO, moving)
         before = after
     assert np.abs(np.array(motion.omega_body_radps)).max() > 5e-3
     assert estimate.omega_body_radps == pytest.approx(motion.omega_body_radps, abs=2e-6)

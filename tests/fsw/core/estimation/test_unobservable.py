@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 from filter_steps import correct, update_both
 
-from fsw.core.algebra.vector import ZERO
-from fsw.core.estimation.mekf_config import with_wheel
 from fsw.core.estimation.parameters import NAMES, NOTHING
 from fsw.core.estimation.unobservable import (
     FACTOR,
@@ -131,7 +129,7 @@ class TestWhichThereAre:
     def test_none_with_a_wheel(self, full):
         """Its momentum, known in body axes and newton metre seconds, tells them."""
         assert full.config(wheel_body_nms=(0.0, -0.02, 0.0)).unobservable is None
-        assert with_wheel(full.config(), (0.0, 0.01, 0.0), ZERO, ZERO).unobservable is None
+        assert full.config(driven_wheel=True).unobservable is None
 
     def test_none_of_a_satellite_as_its_table_says(self, carrying):
         assert carrying("mag_bias_t", "torque_body_nm").config().unobservable is None

@@ -7,7 +7,7 @@ import pytest
 from filter_steps import predict
 
 from fsw.core.algebra.vector import ZERO
-from fsw.core.estimation.dynamics.error_dynamics import free_motion, with_age_along
+from fsw.core.estimation.dynamics.error_dynamics import free_acceleration, with_age_along
 from fsw.core.estimation.dynamics.motion import turn
 from fsw.core.estimation.parameters import NAMES, UNCHANGED_COILS, UNCHANGED_INERTIA
 
@@ -200,7 +200,7 @@ class TestProcessNoise:
 
 
 class TestAgeAlongTheMotion:
-    CHANGE = np.array([2e-3, -3e-3, 1e-3, 4e-5, 5e-5, -6e-5])
+    CHANGE = (2e-3, -3e-3, 1e-3, 4e-5, 5e-5, -6e-5)
 
     def test_the_free_motion_is_that_of_a_body_without_torque(self, full, nonlinear_flow):
         """With its own inertia, and a wheel: d(rotation, rate)/dt by differences of the motion."""
@@ -208,7 +208,8 @@ class TestAgeAlongTheMotion:
         kept = {"torque_body_nm": ZERO, "dipole_body_am2": ZERO, "coil_error": UNCHANGED_COILS}
         estimate = satellite.estimate(parameters=replace(full.parameters, **kept))
         ahead, behind = (nonlinear_flow(estimate, satellite, ZERO, ZERO, 0.0, dt) for dt in (1e-3, -1e-3))
-        found = free_motion(estimate.omega_body_radps, estimate.parameters, satellite.config().rotor)
+        omega = estimate.omega_body_radps
+        found = (*omega, *free_acceleration(omega, estimate.parameters, satellite.config().rotor))
         by_differences = (satellite.error(estimate, ahead) - satellite.error(estimate, behind))[:6] / 2e-3
         np.testing.assert_allclose(found, by_differences, rtol=1e-6, atol=1e-10)
         assert np.abs(found[3:]).min() > 1e-5
@@ -218,7 +219,7 @@ class TestAgeAlongTheMotion:
         delay, motion = full.place("delay_s"), np.array([0.02, -0.03, 0.04, 1e-4, 2e-4, -3e-4])
         before, after = np.zeros(full.size()), np.zeros(full.size())
         before[delay] = after[delay] = 0.3
-        before[0:6], after[0:6] = 0.3 * motion, 0.3 * (motion + self.CHANGE)
+        before[0:6], after[0:6] = 0.3 * motion, 0.3 * (motion + np.array(self.CHANGE))
         found = with_age_along(self.CHANGE, np.outer(before, before), delay)
         np.testing.assert_allclose(found, np.outer(after, after), rtol=0.0, atol=1e-15)
 
