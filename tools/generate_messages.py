@@ -99,7 +99,7 @@ class {name}(Value):
     @staticmethod
     def decode(data: bytes) -> "{name}":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes({data}, "little")
         return {name}({values})
 '''
 
@@ -118,7 +118,7 @@ class _{name}(Value):
     @classmethod
     def decode(cls, data: bytes) -> Self:
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes({data}, "little")
         return cls({values})
 '''
 """What messages of several nodes share."""
@@ -210,6 +210,7 @@ def parts(message: Message) -> dict[str, str]:
         "parameters": ", ".join(map(parameter, fields)),
         "assignments": "\n".join(map(assignment, fields)),
         "word": "(" + " | ".join(map(encode_term, by_start)) + ")",
+        "data": "data[:7]" if is_sealed(message) and message.length == 8 else "data",  # without the CRC
         "values": decode_term(fields[0])[1:-1] if len(fields) == 1 else ", ".join(map(decode_term, fields)),
     }
 

@@ -53,8 +53,8 @@ def crc8(data: bytes, register: int = 0xFF) -> int:
         register: value of the register before ``data``, for a prefix that has been processed already.
     """
     table = _TABLE
-    for byte in data:
-        register = table[register ^ byte]
+    for place in range(len(data)):  # each byte as it is, where an iterator would make an object of it
+        register = table[register ^ data[place]]
     return register ^ 0xFF
 
 

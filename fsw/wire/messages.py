@@ -217,7 +217,7 @@ class CoilDipole(Value):
     @staticmethod
     def decode(data: bytes) -> "CoilDipole":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return CoilDipole(
             ((word >> 4 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 21 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
@@ -486,7 +486,7 @@ class TcParameter(Value):
     @staticmethod
     def decode(data: bytes) -> "TcParameter":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return TcParameter(
             (word >> 4 & 0x3F),
             ((word >> 16 & 0xFF ^ 0x80) - 0x80),
@@ -563,7 +563,7 @@ class CoilStatus(Value):
     @staticmethod
     def decode(data: bytes) -> "CoilStatus":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return CoilStatus(
             ((word >> 4 & 0xF ^ 0x8) - 0x8),
             (word >> 8 & 0x3),
@@ -603,7 +603,7 @@ class CoilDipoleStatus(Value):
     @staticmethod
     def decode(data: bytes) -> "CoilDipoleStatus":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return CoilDipoleStatus(
             ((word >> 4 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 21 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
@@ -678,7 +678,7 @@ class MagField(Value):
     @staticmethod
     def decode(data: bytes) -> "MagField":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return MagField(
             (word >> 4 & 0x1),
             ((word >> 8 & 0xFFFF ^ 0x8000) - 0x8000) * 2.0,
@@ -718,7 +718,7 @@ class SunVector(Value):
     @staticmethod
     def decode(data: bytes) -> "SunVector":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return SunVector(
             (word >> 4 & 0x1),
             ((word >> 8 & 0xFFFF ^ 0x8000) - 0x8000) * 6.103515625e-05,
@@ -774,7 +774,7 @@ class SunCells(Value):
     @staticmethod
     def decode(data: bytes) -> "SunCells":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return SunCells(
             (word >> 4 & 0x1),
             (word >> 8 & 0xFF) * 0.0078125,
@@ -811,7 +811,7 @@ class _Attitude(Value):
     @classmethod
     def decode(cls, data: bytes) -> Self:
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return cls(
             (word >> 4 & 0x1),
             ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
@@ -858,7 +858,7 @@ class _Rate(Value):
     @classmethod
     def decode(cls, data: bytes) -> Self:
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return cls(
             (word >> 4 & 0x1),
             ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
@@ -911,7 +911,7 @@ class WheelStatus(Value):
     @staticmethod
     def decode(data: bytes) -> "WheelStatus":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return WheelStatus(
             (word >> 4 & 0x1),
             (word >> 5 & 0x7),
@@ -1039,7 +1039,7 @@ class NavQuality(Value):
     @staticmethod
     def decode(data: bytes) -> "NavQuality":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return NavQuality(
             (word >> 4 & 0x7),
             (word >> 8 & 0xFFFF) * 6.103515625e-05,
@@ -1086,7 +1086,7 @@ class NavParameter(Value):
     @staticmethod
     def decode(data: bytes) -> "NavParameter":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return NavParameter(
             (word >> 4 & 0x3F),
             ((word >> 10 & 0xFF ^ 0x80) - 0x80),
@@ -1126,7 +1126,7 @@ class TcAck(Value):
     @staticmethod
     def decode(data: bytes) -> "TcAck":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return TcAck(
             (word >> 4 & 0xF),
             (word >> 8 & 0x7FF),
@@ -1185,7 +1185,7 @@ class _Event(Value):
     @classmethod
     def decode(cls, data: bytes) -> Self:
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return cls(
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
@@ -1238,7 +1238,7 @@ class FswEvent(Value):
     @staticmethod
     def decode(data: bytes) -> "FswEvent":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return FswEvent(
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
@@ -1278,7 +1278,7 @@ class CoilEvent(Value):
     @staticmethod
     def decode(data: bytes) -> "CoilEvent":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return CoilEvent(
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
@@ -1455,7 +1455,7 @@ class _Heartbeat(Value):
     @classmethod
     def decode(cls, data: bytes) -> Self:
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = int.from_bytes(data[:7], "little")
         return cls(
             (word >> 4 & 0xF),
             (word >> 8 & 0xFFFF),

@@ -1,7 +1,6 @@
 """A message of each kind that the controller listens to, and the gate that admits it."""
 
 from copy import deepcopy
-from dataclasses import fields
 
 import pytest
 
@@ -36,7 +35,7 @@ CELLS = SunCells(1, 0.5, 0.25, 1.125, 0.0078125, 1.9921875, 0.75, counter=14)
 WHEEL = WheelStatus(1, 1, -312.5, 0.001953125, counter=15)
 EVERY_KIND = (*COUNTED, BOOT, END, CELLS, WHEEL)
 SLOT = {message.ID: slot for slot, message in enumerate(EVERY_KIND)}
-KINDS = tuple(field.name for field in fields(Readings))[: len(EVERY_KIND)]
+KINDS = Readings.FIELDS[: len(EVERY_KIND)]
 """Their names, in the same order."""
 EVERY_MESSAGE = pytest.mark.parametrize("message", EVERY_KIND, ids=lambda m: type(m).__name__)
 EVERY_COUNTED = pytest.mark.parametrize("message", COUNTED, ids=lambda m: type(m).__name__)
@@ -55,7 +54,7 @@ def admitted(*messages, state=None, skipped=False):
 
 def measured(calibration=NO_CALIBRATION, **given):
     """What a tick shows in which these messages came, by kind; of the measurements, the others as given."""
-    sent = {one.name: given.pop(one.name) for one in fields(Readings) if one.name in given}
+    sent = {name: given.pop(name) for name in Readings.FIELDS if name in given}
     measurements = measure(Readings(**sent), calibration)
     for name, value in given.items():
         assert hasattr(measurements, name)

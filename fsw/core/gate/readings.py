@@ -5,7 +5,7 @@ in range. Everything else is counted and dropped, and so is a telecommand in the
 """
 
 from dataclasses import dataclass, field
-from typing import final
+from typing import Final, final
 from zlib import crc32
 
 from fsw.wire.frame import Frame
@@ -33,14 +33,15 @@ from fsw.wire.messages import (
     WheelStatus,
     intact,
 )
+from fsw.wire.value import Value
 
-INBOX_LIMIT = 64
+INBOX_LIMIT: Final = 64
 """Frames read in one tick; a babbling node cannot cost more than that.
 
 After skipped ticks these are the latest, and before them as many telecommands.
 """
 
-NOISE_LIMIT = 8
+NOISE_LIMIT: Final = 8
 """Broken frames in one tick beyond which no telecommand is believed.
 
 One frame of noise in 256 passes the CRC by chance. A faulty line breaks no more than the few that nodes send.
@@ -60,7 +61,7 @@ InputMessage = (
     | WheelStatus
 )
 
-INPUT_MESSAGES: dict[int, type[InputMessage]] = {
+INPUT_MESSAGES: Final[dict[int, type[InputMessage]]] = {
     MagField.ID: MagField,
     SunVector.ID: SunVector,
     CoilStatus.ID: CoilStatus,
@@ -78,7 +79,7 @@ Telecommand = (
     TcMode | TcClear | TcLaw | TcSpin | TcGain | TcOrbitElement | TcOrbitLoad | TcParameter | TcFreeze
 )
 
-TELECOMMANDS: dict[int, type[Telecommand]] = {
+TELECOMMANDS: Final[dict[int, type[Telecommand]]] = {
     TcMode.ID: TcMode,
     TcClear.ID: TcClear,
     TcLaw.ID: TcLaw,
@@ -90,66 +91,60 @@ TELECOMMANDS: dict[int, type[Telecommand]] = {
     TcFreeze.ID: TcFreeze,
 }
 
-_ACCEPTED: dict[int, type[InputMessage | Telecommand]] = {**INPUT_MESSAGES, **TELECOMMANDS}
-_SLOT = {can_id: slot for slot, can_id in enumerate(_ACCEPTED)}
-_IN_ANY_PLACE = frozenset({*TELECOMMANDS, PlantEnd.ID})
+_SLOT: Final = {can_id: slot for slot, can_id in enumerate({**INPUT_MESSAGES, **TELECOMMANDS})}
+_IN_ANY_PLACE: Final = frozenset({*TELECOMMANDS, PlantEnd.ID})
 """Identifiers of messages that other nodes may send between those of the boards."""
-_OWN = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW")
+_OWN: Final = frozenset([can_id for can_id, sender in SENDERS.items() if sender == "FSW"])
 """Identifiers of fsw: no other node is to use them."""
-_COIL_SLOTS = [slot for can_id, slot in _SLOT.items() if SENDERS[can_id] == "COIL"]
+_COIL_SLOTS: Final = [slot for can_id, slot in _SLOT.items() if SENDERS[can_id] == "COIL"]
 
 
 @final
-@dataclass(slots=True)
-class Readings:
+class Readings(Value):
     """The last accepted message of each kind in this tick, as it was sent; None where there was none.
 
     Telecommands are all taken, in order of reception; ``repeated`` are those with the counter of the one
     before. ``under_own_id`` is the lowest identifier of fsw itself under which an intact frame came, 0 if
-    none did. ``end`` is a PLANT_END after which the flight has gone on.
+    none did. ``end`` is a PLANT_END after which the flight has gone on. Filled by ``admit``.
     """
 
-    field: MagField | None = None
-    sun: SunVector | None = None
-    coil: CoilStatus | None = None
-    refused: CoilRefused | None = None
-    ref_attitude: RefAttitude | None = None
-    ref_rate: RefRate | None = None
-    dipole: CoilDipoleStatus | None = None
-    coil_boot: CoilBoot | None = None
-    end: PlantEnd | None = None
-    cells: SunCells | None = None
-    wheel: WheelStatus | None = None
-    telecommands: tuple[Telecommand, ...] = ()
-    repeated: tuple[Telecommand, ...] = ()
-    under_own_id: int = 0
+    FIELDS = (
+        *("field", "sun", "coil", "refused", "ref_attitude", "ref_rate", "dipole", "coil_boot", "end"),
+        *("cells", "wheel", "telecommands", "repeated", "under_own_id"),
+    )
+    __slots__ = FIELDS
 
-    def take(self, message: InputMessage | Telecommand) -> None:
-        """Keep an accepted message, in the place of an earlier one of its kind if it is not a telecommand."""
-        if isinstance(message, MagField):
-            self.field = message
-        elif isinstance(message, SunVector):
-            self.sun = message
-        elif isinstance(message, CoilStatus):
-            self.coil = message
-        elif isinstance(message, CoilRefused):
-            self.refused = message
-        elif isinstance(message, RefAttitude):
-            self.ref_attitude = message
-        elif isinstance(message, RefRate):
-            self.ref_rate = message
-        elif isinstance(message, CoilDipoleStatus):
-            self.dipole = message
-        elif isinstance(message, CoilBoot):
-            self.coil_boot = message
-        elif isinstance(message, PlantEnd):
-            self.end = message
-        elif isinstance(message, SunCells):
-            self.cells = message
-        elif isinstance(message, WheelStatus):
-            self.wheel = message
-        else:
-            self.telecommands = (*self.telecommands, message)
+    def __init__(
+        self,
+        field: MagField | None = None,
+        sun: SunVector | None = None,
+        coil: CoilStatus | None = None,
+        refused: CoilRefused | None = None,
+        ref_attitude: RefAttitude | None = None,
+        ref_rate: RefRate | None = None,
+        dipole: CoilDipoleStatus | None = None,
+        coil_boot: CoilBoot | None = None,
+        end: PlantEnd | None = None,
+        cells: SunCells | None = None,
+        wheel: WheelStatus | None = None,
+        telecommands: tuple[Telecommand, ...] = (),
+        repeated: tuple[Telecommand, ...] = (),
+        under_own_id: int = 0,
+    ) -> None:
+        self.field = field
+        self.sun = sun
+        self.coil = coil
+        self.refused = refused
+        self.ref_attitude = ref_attitude
+        self.ref_rate = ref_rate
+        self.dipole = dipole
+        self.coil_boot = coil_boot
+        self.end = end
+        self.cells = cells
+        self.wheel = wheel
+        self.telecommands = telecommands
+        self.repeated = repeated
+        self.under_own_id = under_own_id
 
 
 @final
@@ -164,7 +159,7 @@ class GateState:
     boards' messages in any order.
     """
 
-    counters: list[int] = field(default_factory=lambda: [-1] * len(_ACCEPTED))
+    counters: list[int] = field(default_factory=lambda: [-1] * len(_SLOT))
     rejected: int = 0
     missed: int = 0
     overrun: int = 0
@@ -180,59 +175,97 @@ def admit(frames: tuple[Frame, ...], state: GateState, skipped: bool = False) ->
         state: of the tick before; it becomes that of this one.
         skipped: the frames are those of several ticks.
     """
-    readings, counters = Readings(), state.counters
+    readings = Readings()
     read = _latest(frames) if skipped else frames[:INBOX_LIMIT]
     state.overrun += len(frames) - len(read)
     whole = [intact(frame) for frame in read]
     noisy = whole.count(False) > NOISE_LIMIT
     for place, frame in enumerate(read):
         can_id = frame.can_id
-        message_class = _ACCEPTED.get(can_id)
-        if message_class is None:
-            if not whole[place]:
-                state.rejected += 1
-            elif can_id in _OWN:
-                readings.under_own_id = min(readings.under_own_id or can_id, can_id)
-            continue
+        slot = _SLOT.get(can_id, -1)
         if not whole[place] or (noisy and can_id in TELECOMMANDS):
             state.rejected += 1
-            continue
-        message = message_class.decode(frame.data)
-        slot = _SLOT[can_id]
-        step = (message.counter - counters[slot]) & 0xF
-        if can_id == CoilBoot.ID:  # a board that boots counts anew
-            for coil_slot in _COIL_SLOTS:
-                counters[coil_slot] = -1
-        has_counter = counters[slot] >= 0
-        if (has_counter and step == 0) or not _in_range(message):
-            state.rejected += 1
-            if isinstance(message, Telecommand):
-                readings.repeated = (*readings.repeated, message)
-            continue
-        if has_counter:
-            state.missed += step - 1
-        counters[slot] = message.counter
-        readings.take(message)
-        if can_id in _IN_ANY_PLACE:
-            state.command_crc = crc32(frame.data, state.command_crc)
-        else:
-            state.input_crc = crc32(frame.data, state.input_crc)
+        elif slot >= 0:
+            _judge(readings, frame, state, slot)
+        elif can_id in _OWN:
+            readings.under_own_id = min(readings.under_own_id or can_id, can_id)
     return readings
+
+
+def _judge(readings: Readings, frame: Frame, state: GateState, slot: int) -> None:
+    """Judge an intact frame that is listened to by its counter and its values, and count it."""
+    can_id, data, counters = frame.can_id, frame.data, state.counters
+    if can_id == CoilBoot.ID:  # a board that boots counts anew
+        for coil_slot in _COIL_SLOTS:
+            counters[coil_slot] = -1
+    counter, before = data[0] & 0xF, counters[slot]
+    if not _take(readings, can_id, data, repeated=counter == before):
+        state.rejected += 1
+        return
+    if before >= 0:
+        state.missed += (counter - before & 0xF) - 1
+    counters[slot] = counter
+    if can_id in _IN_ANY_PLACE:
+        state.command_crc = crc32(data, state.command_crc)
+    else:
+        state.input_crc = crc32(data, state.input_crc)
+
+
+def _take(readings: Readings, can_id: int, data: bytes, repeated: bool) -> bool:
+    """Whether a message is accepted: it is no repetition, and its values are possible.
+
+    It is then kept, in the place of an earlier one of its kind; telecommands are all kept, those that are
+    repeated apart. ``commands`` judges and answers their values.
+    """
+    if can_id in TELECOMMANDS:
+        telecommand = TELECOMMANDS[can_id].decode(data)
+        if repeated:
+            readings.repeated = (*readings.repeated, telecommand)
+        else:
+            readings.telecommands = (*readings.telecommands, telecommand)
+    elif repeated:
+        return False
+    elif can_id == MagField.ID:
+        readings.field = MagField.decode(data)
+    elif can_id == SunVector.ID:
+        sun = SunVector.decode(data)
+        if sun.valid and not 0.8 < sun.s_x**2 + sun.s_y**2 + sun.s_z**2 < 1.2:
+            return False
+        readings.sun = sun
+    elif can_id == CoilStatus.ID:
+        coil = CoilStatus.decode(data)
+        if not -3 <= coil.level <= 3 or coil.coil > 2:
+            return False
+        readings.coil = coil
+    elif can_id == RefAttitude.ID:
+        attitude = RefAttitude.decode(data)
+        if not attitude.q_x**2 + attitude.q_y**2 + attitude.q_z**2 < 1.0001:  # 1, and the wire's rounding
+            return False
+        readings.ref_attitude = attitude
+    else:
+        _keep(readings, can_id, data)
+    return not repeated
+
+
+def _keep(readings: Readings, can_id: int, data: bytes) -> None:
+    """Keep a message of a board of which any values are possible."""
+    if can_id == SunCells.ID:
+        readings.cells = SunCells.decode(data)
+    elif can_id == CoilDipoleStatus.ID:
+        readings.dipole = CoilDipoleStatus.decode(data)
+    elif can_id == WheelStatus.ID:
+        readings.wheel = WheelStatus.decode(data)
+    elif can_id == CoilRefused.ID:
+        readings.refused = CoilRefused.decode(data)
+    elif can_id == RefRate.ID:
+        readings.ref_rate = RefRate.decode(data)
+    elif can_id == CoilBoot.ID:
+        readings.coil_boot = CoilBoot.decode(data)
+    elif can_id == PlantEnd.ID:
+        readings.end = PlantEnd.decode(data)
 
 
 def _latest(frames: tuple[Frame, ...]) -> tuple[Frame, ...]:
     """What is read of the frames of several ticks: what the boards say now, and what they are told once."""
     before = [frame for frame in frames[:-INBOX_LIMIT] if frame.can_id in _IN_ANY_PLACE]
     return (*before[:INBOX_LIMIT], *frames[-INBOX_LIMIT:])
-
-
-def _in_range(message: InputMessage | Telecommand) -> bool:
-    """Whether the values are possible; ``commands`` judges and answers those of telecommands."""
-    if isinstance(message, CoilStatus):
-        return -3 <= message.level <= 3 and message.coil <= 2
-    if isinstance(message, SunVector) and message.valid:
-        square = message.s_x**2 + message.s_y**2 + message.s_z**2
-        return 0.8 < square < 1.2
-    if isinstance(message, RefAttitude):
-        return message.q_x**2 + message.q_y**2 + message.q_z**2 < 1.0001  # 1, and the wire's rounding
-    return True
