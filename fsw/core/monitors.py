@@ -1,18 +1,16 @@
-"""Monitors: each a name, a limit and a predicate over one tick. A violation trips to SAFE.
+"""Monitors: each a name and a limit of what is true in one tick. A violation trips to SAFE.
 
-A rate beyond its bound is the last of the list: named, it is the only violation. It trips ACQUIRE and POINT
+A rate beyond its bound is looked at last: named, it is the only violation. It trips ACQUIRE and POINT
 alone. DETUMBLE is how it ends, by B-dot, which needs no estimate: SAFE, in which nothing is driven, would
 keep it.
 
 The purpose of each is in ``docs/requirements.md``.
 """
 
-from collections.abc import Callable
 from enum import IntEnum
 from math import isfinite
-from typing import final
+from typing import Final, final
 
-from fsw.core.algebra.quaternion import Quaternion
 from fsw.core.algebra.vector import Vec3
 from fsw.core.estimation.attitude import Attitude, rate_bounded
 from fsw.wire.messages import Mode
@@ -70,44 +68,40 @@ class MonitorInput(Value):
         self.stale_after_ticks = stale_after_ticks
 
 
-UNIT_TOLERANCE = 1e-6
+UNIT_TOLERANCE: Final = 1e-6
 """How far the square of the quaternion's norm may be off."""
 
 
-def _square(q: Quaternion) -> float:
-    q0, q1, q2, q3 = q
-    return q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3
-
-
-MONITORS: tuple[tuple[Monitor, Callable[[MonitorInput], bool]], ...] = (
-    (
-        Monitor.ATTITUDE_FINITE,
-        lambda w: isfinite(sum(w.attitude.q_body_from_orbit, sum(w.attitude.omega_body_orbit_radps, 0.0))),
-    ),
-    (
-        Monitor.QUATERNION_UNIT,
-        lambda w: abs(_square(w.attitude.q_body_from_orbit) - 1.0) < UNIT_TOLERANCE,
-    ),
-    (Monitor.OWED_FINITE, lambda w: isfinite(sum(w.owed_impulse_body_nms, 0.0))),
-    (Monitor.FIELD_FRESH, lambda w: w.field_age_ticks < w.stale_after_ticks),
-    (Monitor.COIL_STATUS_FRESH, lambda w: w.status_age_ticks < w.stale_after_ticks),
-    (Monitor.COIL_AS_COMMANDED, lambda w: not w.unexpected_drive),
-    (Monitor.ORBIT_KNOWN, lambda w: w.orbit_known),
-    (Monitor.NO_SECOND_SENDER, lambda w: not w.second_sender),
-    (Monitor.RATE_BOUNDED, lambda w: rate_bounded(w.attitude)),
-)
-
-
 def trips(violated: Monitor | None, mode: Mode) -> bool:
-    """Whether a violation, the first of the list, leads to SAFE and keeps it."""
+    """Whether a violation, the first that is found, leads to SAFE and keeps it."""
     if violated is Monitor.RATE_BOUNDED:
         return mode in (Mode.ACQUIRE, Mode.POINT)
     return violated is not None
 
 
 def first_violation(watched: MonitorInput) -> Monitor | None:
-    """The first monitor that is violated, in the order of the list, or None."""
-    for monitor, holds in MONITORS:
-        if not holds(watched):
-            return monitor
-    return None
+    """The first monitor that is violated, or None."""
+    attitude = watched.attitude
+    violated: Monitor | None = None
+    q0, q1, q2, q3 = attitude.q_body_from_orbit
+    w1, w2, w3 = attitude.omega_body_orbit_radps
+    owed1, owed2, owed3 = watched.owed_impulse_body_nms
+    if not isfinite(w1 + w2 + w3 + q0 + q1 + q2 + q3):
+        violated = Monitor.ATTITUDE_FINITE
+    elif not abs(q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3 - 1.0) < UNIT_TOLERANCE:
+        violated = Monitor.QUATERNION_UNIT
+    elif not isfinite(owed1 + owed2 + owed3):
+        violated = Monitor.OWED_FINITE
+    elif watched.field_age_ticks >= watched.stale_after_ticks:
+        violated = Monitor.FIELD_FRESH
+    elif watched.status_age_ticks >= watched.stale_after_ticks:
+        violated = Monitor.COIL_STATUS_FRESH
+    elif watched.unexpected_drive:
+        violated = Monitor.COIL_AS_COMMANDED
+    elif not watched.orbit_known:
+        violated = Monitor.ORBIT_KNOWN
+    elif watched.second_sender:
+        violated = Monitor.NO_SECOND_SENDER
+    elif not rate_bounded(attitude):
+        violated = Monitor.RATE_BOUNDED
+    return violated

@@ -11,7 +11,7 @@ import pytest
 
 from fsw.core.actuation.pulses import PulseState
 from fsw.core.gate.sync_watch import Belief
-from fsw.core.monitors import MONITORS, Monitor
+from fsw.core.monitors import first_violation
 from sim.fault_table.case import fly
 from sim.fault_table.row import CheckVerdict
 from sim.fault_table.rows.table import ROWS
@@ -38,7 +38,12 @@ def believing(watch, current, tick, leap_ticks):
 
 HALFWAY = 5
 """The phase that is in the middle of a back-off: the board's own word is not enough then."""
-WITHOUT_FRESHNESS = tuple(row for row in MONITORS if row[0] is not Monitor.FIELD_FRESH)
+
+
+def without_freshness(watched):
+    """The first violation where a field that is never received does not count."""
+    return first_violation(watched.replace(field_age_ticks=0))
+
 
 GUARDS = {
     "scheduler: back-off after boot": Off(
@@ -53,7 +58,9 @@ GUARDS = {
     "ticks that leap": Off(
         "sync-forged-going-on", "undisturbed", ("fsw.core.step.judge_sync", believing), watch_s=100.0
     ),
-    "freshness": Off("mag-board-dead", "silence named", ("fsw.core.monitors.MONITORS", WITHOUT_FRESHNESS)),
+    "freshness": Off(
+        "mag-board-dead", "silence named", ("fsw.core.supervisor.first_violation", without_freshness)
+    ),
     "monitors": Off(
         "coil-stuck-on-1", "stuck", ("fsw.core.supervisor.first_violation", lambda watched: None)
     ),
