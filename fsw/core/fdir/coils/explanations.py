@@ -5,7 +5,7 @@ one is less likely by the threshold of the evidence.
 """
 
 from math import inf, sqrt
-from typing import final
+from typing import Final, final
 
 import numpy as np
 
@@ -23,11 +23,12 @@ from fsw.core.fdir.coils.weak_test import (
 )
 from fsw.core.fdir.evidence import SIGMAS
 
-PULSES = 3
+PULSES: Final = 3
 """How many of each coil's latest pulses are solved for."""
-NONE, ALL = -1, -2
+NONE: Final = -1
+ALL: Final = -2
 """In place of a coil: no coil is faulty, or all are equally weak."""
-STRAY = 3
+STRAY: Final = 3
 """STRAY + j is the number, as a cause, of a stray current in coil j; j itself that of a pulse."""
 
 
@@ -59,7 +60,7 @@ class Solution:
 
     def noise(self, indices: list[int]) -> Matrix:
         """Covariance of some causes: that of the solution, plus what is uncertain in any case."""
-        covariance: Matrix = self.covariance[np.ix_(indices, indices)]
+        covariance: Matrix = self.covariance[indices][:, indices]
         return covariance + np.diag(self.uncertain[indices] ** 2)
 
 
@@ -105,13 +106,16 @@ def explain_pulses(solution: Solution) -> list[Explanation]:
 
     A faulty coil is so from some pulse on, and each of its later pulses has the same fraction of its effect;
     those of the others are sound. It may have failed during the pulse before: that one may then have any
-    fraction.
+    fraction. No coil is looked at where one fraction of all pulses fits: ``weak_by_pulses`` finds none then.
     """
     pulses = [index for index, cause in enumerate(solution.causes) if cause < STRAY]
     if not pulses:
         return [Explanation(NONE, 0, 1.0, 0.0)]
     whole = _Among(solution, pulses)
-    found = [whole.explain(NONE, []), whole.explain(ALL, pulses)]
+    alike = whole.explain(ALL, pulses)
+    found = [whole.explain(NONE, []), alike]
+    if alike.fits:
+        return sorted(found, key=lambda explanation: explanation.distance)
     for coil in sorted({solution.causes[index] for index in pulses}):
         own = indices_of(coil, solution.causes)
         for count in range(1, len(own) + 1):

@@ -10,6 +10,8 @@ from scipy.stats import chi2, norm
 from fsw.core.estimation import mekf
 from fsw.core.estimation.parameters import Prior
 from fsw.core.fdir.coils.explanations import (
+    ALL,
+    NONE,
     STRAY,
     Solution,
     explain_pulses,
@@ -77,6 +79,12 @@ def test_two_pulses_that_did_too_little_accuse_their_coil(coil, part):
 )
 def test_they_accuse_nobody(causes, deviation, sigma):
     assert weak(causes, deviation, sigma) is None
+
+
+def test_no_coil_is_looked_at_where_one_fraction_of_all_pulses_fits():
+    found = solution((0, 1, 0), (-0.5, -0.51, -0.49), (0.04, 0.03, 0.05)).explanations
+    assert [one.coil for one in found] == [ALL, NONE]
+    assert [one.fits for one in found] == [True, False]
 
 
 def test_a_coil_that_failed_between_two_pulses_is_accused_by_the_later_ones():
@@ -173,7 +181,7 @@ def test_no_coil_does_more_the_other_way_than_a_reversed_one():
 @pytest.mark.parametrize("lack", [-0.7, -2.6], ids=["weak", "beyond a reversed one"])
 def test_the_distance_is_that_of_what_is_left(lack):
     """By numpy, from the part that the coil is taken to have."""
-    pulses = solution((1, 1, 0), (lack, lack + 0.1, 0.05), (0.4, 0.3, 0.1), 0.3)
+    pulses = solution((1, 1, 0), (lack, lack + 0.1, 0.05), (0.1, 0.15, 0.05), 0.3)
     one = next(found for found in explain_pulses(pulses) if (found.coil, found.pulses) == (1, 2))
     off = np.array([*(pulses.part[:2] - one.part), pulses.deviation[2]])
     assert one.distance == pytest.approx(off @ np.linalg.solve(pulses.noise([0, 1, 2]), off))
