@@ -9,6 +9,7 @@ and what one in a hundred exceeds. The law acts in POINT: a flight has to last u
 import json
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -36,7 +37,7 @@ def main(scenario_name: str, orbits: float) -> None:
             plans_ms.append(1e3 * passed_s)
         return demand
 
-    LAWS["pulse_mpc"] = entry._replace(point=timed)
+    LAWS["pulse_mpc"] = replace(entry, point=timed)
     with TemporaryDirectory() as folder:
         path = Path(folder, "run")
         run_dir.begin(path, scenario, 1, ticks_of(scenario, orbits), "virtual", LOCKSTEP)

@@ -222,8 +222,8 @@ def elements_of(line1: str, line2: str) -> dict[Element, Decimal]:
     Raises:
         ValueError: the lines are not an element set.
     """
-    numbers = (Decimal(repr(number)) for number in tle_elements(line1, line2))
-    return dict(zip(Element, numbers, strict=True))
+    elements = tle_elements(line1, line2)
+    return {element: Decimal(repr(getattr(elements, element.name.lower()))) for element in Element}
 
 
 def _element(element: Element, value: Decimal) -> CountedMessage:

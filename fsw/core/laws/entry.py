@@ -1,7 +1,7 @@
 """An entry of the table of laws: what a law is for, its two forms and its own parameters."""
 
+from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple
 
 from fsw.core.algebra.vector import Vec3
 from fsw.core.laws.interface import Law
@@ -47,7 +47,8 @@ LEAST_COSINE = 0.99
 """Of the angle between a wheel along body axis 3 and that axis."""
 
 
-class LawEntry(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class LawEntry:
     """A law: its number in telecommands, its aim, its forms in ACQUIRE and POINT, and its own parameters.
 
     The parameters are a class, a frozen dataclass of floats with defaults, or None for a law with none. One

@@ -1,27 +1,29 @@
 """Orbit elements from the ground: stored one by one, put into use all at once."""
 
-from typing import NamedTuple, final
+from dataclasses import dataclass, replace
+from typing import Any, final
 
 from fsw.wire.messages import Element
 
 
 @final
-class Elements(NamedTuple):
-    """Mean elements as in a two-line element set, in its units, in the order of ``Element``.
+@dataclass(frozen=True, slots=True)
+class Elements:
+    """Mean elements as in a two-line element set, in its units, by the names of ``Element``.
 
     The epoch is in days since 1970-01-01 UTC, whole days and the fraction of a day separately; ``bstar`` is
     in 1 per Earth radius, ``motion_revpday`` is Kozai's mean motion in revolutions per day.
     """
 
-    epoch_day: float
-    epoch_fraction: float
-    inclination_deg: float
-    raan_deg: float
-    eccentricity: float
-    perigee_deg: float
-    anomaly_deg: float
-    motion_revpday: float
-    bstar: float
+    epoch_day: float = 0.0
+    epoch_fraction: float = 0.0
+    inclination_deg: float = 0.0
+    raan_deg: float = 0.0
+    eccentricity: float = 0.0
+    perigee_deg: float = 0.0
+    anomaly_deg: float = 0.0
+    motion_revpday: float = 0.0
+    bstar: float = 0.0
 
 
 RANGES: dict[Element, tuple[float, float]] = {
@@ -39,10 +41,11 @@ RANGES: dict[Element, tuple[float, float]] = {
 
 
 @final
-class Upload(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Upload:
     """Elements received so far, and which: bit n for element n."""
 
-    values: Elements = Elements(*(0.0,) * len(Element))
+    values: Elements = Elements()
     received: int = 0
 
     @property
@@ -52,5 +55,5 @@ class Upload(NamedTuple):
 
     def with_element(self, element: Element, value: float) -> "Upload":
         """The upload with one more element, or one replaced."""
-        values = (*self.values[:element], value, *self.values[element + 1 :])
-        return Upload(Elements(*values), self.received | 1 << element)
+        changed: dict[str, Any] = {element.name.lower(): value}
+        return Upload(replace(self.values, **changed), self.received | 1 << element)

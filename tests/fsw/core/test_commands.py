@@ -221,7 +221,7 @@ class TestOrbit:
 
     def test_are_loaded_at_once(self, obey, state, config, elements, itamsat):
         after, results = obey(state, *elements(raan_deg=(500000, -4)), TcOrbitLoad())
-        wanted = itamsat._replace(raan_deg=50.0)
+        wanted = replace(itamsat, raan_deg=50.0)
         assert results[-1] is TcAckResult.ACCEPTED
         assert (after.orbit, after.upload) == (wanted, Upload())
         assert after.ephemeris == advance(None, TICK, with_orbit(config.ephemeris, wanted))
@@ -286,7 +286,7 @@ class TestOrbit:
     @pytest.mark.parametrize("slow", [6.39, 1.0, 0.0])
     def test_deep_space_is_no_orbit_for_this_field(self, slow, itamsat):
         with pytest.raises(ValueError, match=r"225 minutes|refuses"):
-            element_orbit(itamsat._replace(motion_revpday=slow))
+            element_orbit(replace(itamsat, motion_revpday=slow))
 
 
 class TestAcknowledgement:

@@ -1,6 +1,7 @@
 """A figure that is no number stays none, wherever it stands among others, and meets no claim."""
 
 import ast
+from dataclasses import replace
 from math import nan
 from pathlib import Path
 from types import SimpleNamespace
@@ -161,7 +162,7 @@ class TestLaw:
         def asks(inputs, memory, setpoint, config):
             return request.param if inputs.tick == 3 else Demand()
 
-        monkeypatch.setattr(law_flight, "LAWS", LAWS | {"pd": LAWS["pd"]._replace(acquire=asks, point=asks)})
+        monkeypatch.setattr(law_flight, "LAWS", LAWS | {"pd": replace(LAWS["pd"], acquire=asks, point=asks)})
 
     def angle_deg(self):
         return float(law_flight.fly(self.FLIGHT).angle_deg[-1])

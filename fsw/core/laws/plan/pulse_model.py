@@ -1,6 +1,7 @@
 """What pulsed coils can be asked for, and how the body moves from one opportunity to the next."""
 
-from typing import NamedTuple, final
+from dataclasses import dataclass
+from typing import final
 
 import numpy as np
 
@@ -29,7 +30,8 @@ class Pulse(Value):
 NO_PULSE = Pulse(0, 0)
 
 
-class PulseModel(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class PulseModel:
     """The choices at an opportunity, and the step from one to the next.
 
     ``pulses`` are none, then coil by coil each level with either sign; ``turns``, shape (19, 3, 3), are

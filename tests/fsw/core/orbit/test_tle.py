@@ -7,6 +7,7 @@ from random import Random
 
 import pytest
 
+from fsw.core.orbit.elements import Elements
 from fsw.core.orbit.tle import read_tle, tle_elements, tle_epoch_unix_s
 
 ROUNDS = 2000
@@ -111,7 +112,7 @@ def test_every_element_is_the_number_of_its_column(tle, checksummed):
             replaced(line2, 9, f"{inclination} {raan} {eccentricity} {perigee} {anomaly} {motion}")
         )
         elements = tle_elements(drag, shape)
-        assert elements == (
+        assert elements == Elements(
             (date(2015, 1, 1) - date(1970, 1, 1)).days + 85,
             0.11593543,
             float(inclination),

@@ -1,5 +1,6 @@
 """The search among pulses, against every sequence that there is."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -94,7 +95,7 @@ def test_no_sequence_is_better(seed, count):
 
 @pytest.mark.parametrize("waits", [(0, 1, 1), (1, 0, BARRED), (BARRED, 1, 0), (0, BARRED, BARRED)])
 def test_a_coil_that_rests_or_is_barred_is_not_fired(waits):
-    taking_turns = SHARED._replace(rest=3)
+    taking_turns = replace(SHARED, rest=3)
     chosen = set()
     for seed in range(30):
         random = np.random.default_rng(seed)
@@ -110,7 +111,7 @@ def test_that_the_same_coil_rests_changes_what_comes_first():
     """Else the search would not know of it."""
     firsts = []
     for rest in (1, 3):
-        model = SHARED._replace(rest=rest)
+        model = replace(SHARED, rest=rest)
         random = np.random.default_rng(7)
         cases = [(states(random), opportunities(random, 2)) for _ in range(40)]
         firsts.append([first_pulse(state, ahead, model, READY) for state, ahead in cases])
