@@ -59,10 +59,12 @@ def _write_text(out: BytesWriter, text: str) -> None:
 
 
 def _write_array(out: BytesWriter, array: NDArray[np.float64]) -> None:
-    write_i64_le(out, array.ndim)
-    for length in array.shape:
+    shape: tuple[int, ...] = array.shape
+    data: bytes = array.tobytes()
+    write_i64_le(out, len(shape))
+    for length in shape:
         write_i64_le(out, length)
-    out.write(array.tobytes())
+    out.write(data)
 
 
 {functions}
@@ -87,8 +89,6 @@ class Writers:
         """The name of the function for values of a type."""
         if kind in LEAVES:
             return LEAVES[kind]
-        if isinstance(kind, type) and issubclass(kind, IntEnum):
-            return LEAVES[int]
         if get_origin(kind) is np.ndarray:
             return "_write_array"
         name = f"_write_{noun(kind)}"
@@ -122,10 +122,13 @@ class Writers:
     def part(self, kind: object, value: str, field: str) -> Iterator[str]:
         """The lines that write a part of a value."""
         some = [argument for argument in get_args(kind) if argument is not NoneType]
-        if NoneType not in get_args(kind):
+        name = re.sub(r"\W+", "_", value.removeprefix("value.")).strip("_")
+        if isinstance(kind, type) and issubclass(kind, IntEnum):
+            yield f"{name}: int = {value}"
+            yield f"{LEAVES[int]}(out, {name})"
+        elif NoneType not in get_args(kind):
             yield f"{self.of(kind, field)}(out, {value})"
         elif len(some) == 1:
-            name = re.sub(r"\W+", "_", value.removeprefix("value.")).strip("_")
             yield f"{name} = {value}"
             yield f"out.append({name} is not None)"
             yield f"if {name} is not None:"

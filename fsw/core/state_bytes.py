@@ -65,10 +65,12 @@ def _write_text(out: BytesWriter, text: str) -> None:
 
 
 def _write_array(out: BytesWriter, array: NDArray[np.float64]) -> None:
-    write_i64_le(out, array.ndim)
-    for length in array.shape:
+    shape: tuple[int, ...] = array.shape
+    data: bytes = array.tobytes()
+    write_i64_le(out, len(shape))
+    for length in shape:
         write_i64_le(out, length)
-    out.write(array.tobytes())
+    out.write(data)
 
 
 def _write_flight_state(out: BytesWriter, value: FlightState) -> None:
@@ -223,7 +225,8 @@ def _write_estimator_state(out: BytesWriter, value: EstimatorState) -> None:
     write_i64_le(out, value.rejected_in_a_row)
     write_i64_le(out, value.rejected_total)
     write_i64_le(out, value.restarts)
-    write_i64_le(out, value.turning)
+    turning: int = value.turning
+    write_i64_le(out, turning)
     first = value.first
     out.append(first is not None)
     if first is not None:
@@ -357,7 +360,8 @@ def _write_batch_sample(out: BytesWriter, value: BatchSample) -> None:
 
 def _write_motion_search(out: BytesWriter, value: MotionSearch) -> None:
     write_i64_le(out, value.searched)
-    write_i64_le(out, value.stage)
+    stage: int = value.stage
+    write_i64_le(out, stage)
     write_i64_le(out, value.at)
     write_i64_le(out, value.steps)
     _write_motions(out, value.motions)
@@ -408,7 +412,8 @@ def _write_watch(out: BytesWriter, value: Watch) -> None:
 
 
 def _write_pair(out: BytesWriter, value: Pair) -> None:
-    write_i64_le(out, value.standing)
+    standing: int = value.standing
+    write_i64_le(out, standing)
     write_f64_le(out, value.proof)
     write_f64_le(out, value.doubt)
     write_f64_le(out, value.accord)
@@ -491,7 +496,8 @@ def _write_attitude(out: BytesWriter, value: Attitude) -> None:
 
 
 def _write_mode_state(out: BytesWriter, value: ModeState) -> None:
-    write_i64_le(out, value.mode)
+    mode: int = value.mode
+    write_i64_le(out, mode)
     write_i64_le(out, value.since_tick)
     _write_int_list(out, value.held_since)
     write_i64_le(out, value.trips)
