@@ -7,7 +7,7 @@ restarts, are one kind.
 
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import final
+from typing import Final, final
 
 from fsw.wire.messages import Severity
 from fsw.wire.value import Value
@@ -33,7 +33,7 @@ class Event(IntEnum):
     COIL_READMITTED = 15  # as in its isolation
 
 
-SEVERITY: dict[Event, Severity] = {
+SEVERITY: Final[dict[Event, Severity]] = {
     Event.MODE_CHANGED: Severity.INFO,
     Event.FILTER_STARTED: Severity.INFO,
     Event.FILTER_RESTARTED: Severity.WARNING,
@@ -64,7 +64,7 @@ class Happening(Value):
         self.argument = argument
 
 
-QUANTITIES = frozenset(
+QUANTITIES: Final = frozenset(
     {
         Event.TIME_MISMATCH,
         Event.FILTER_STARTED,
@@ -74,7 +74,7 @@ QUANTITIES = frozenset(
         Event.FALSE_END,
     }
 )
-MOST_KINDS = 32
+MOST_KINDS: Final = 32
 """Kinds remembered at once; events of further kinds are suppressed."""
 
 

@@ -7,7 +7,7 @@ to enter it.
 
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import final
+from typing import Final, final
 
 from fsw.core.algebra.vector import norm
 from fsw.core.estimation.attitude import Attitude
@@ -41,7 +41,7 @@ class Transition:
     dwell: str
 
 
-TABLE: tuple[Transition, ...] = (
+TABLE: Final[tuple[Transition, ...]] = (
     Transition(Mode.SAFE, Mode.DETUMBLE, ModeCondition.CLEAR, "recover_s"),
     Transition(Mode.DETUMBLE, Mode.SAFE, ModeCondition.TRIPPED, "none_s"),
     Transition(Mode.DETUMBLE, Mode.SAFE, ModeCondition.BLIND, "lose_s"),
@@ -56,7 +56,7 @@ TABLE: tuple[Transition, ...] = (
     Transition(Mode.POINT, Mode.ACQUIRE, ModeCondition.FAR, "hold_s"),
 )
 
-_ROWS_FROM = {mode: [(i, row) for i, row in enumerate(TABLE) if row.source is mode] for mode in Mode}
+_ROWS_FROM: Final = {mode: [(i, row) for i, row in enumerate(TABLE) if row.source is mode] for mode in Mode}
 
 
 @dataclass(frozen=True, slots=True)

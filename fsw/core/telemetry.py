@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 from math import sqrt
-from typing import final
+from typing import Final, final
 
 from fsw.core.config import FlightConfig
 from fsw.core.estimation import mekf
 from fsw.core.estimation.attitude import Attitude
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.mekf import Estimate
-from fsw.core.estimation.parameters import Layout, component_places
+from fsw.core.estimation.parameters import ATTITUDE_AND_RATE, Layout, component
 from fsw.core.events import SEVERITY, Event, Happening, Throttle, throttle_events
 from fsw.core.fdir import fault_events
 from fsw.core.fdir.fault_events import find_faults
@@ -37,8 +37,9 @@ from fsw.wire.messages import (
     WheelTorque,
 )
 
-CONTRACT_VERSION = 1
-LEAST_ARGUMENT, MOST_ARGUMENT = -(2**31), 2**31 - 1
+CONTRACT_VERSION: Final = 1
+LEAST_ARGUMENT: Final = -(2**31)
+MOST_ARGUMENT: Final = 2**31 - 1
 """Of an event."""
 COUNTED = (
     CoilFire.ID,
@@ -52,7 +53,7 @@ COUNTED = (
     FswHeartbeat.ID,
     WheelTorque.ID,
 )
-_SLOT = {can_id: slot for slot, can_id in enumerate(COUNTED)}
+_SLOT: Final = {can_id: slot for slot, can_id in enumerate(COUNTED)}
 
 
 def first_counters(with_wheel: bool) -> list[int]:
@@ -139,8 +140,11 @@ def parameter_messages(state: FlightState, places: Layout, rates: RateTable) -> 
     estimate, group = state.estimator.estimate, rates.parameter
     if not group.due(state.tick) or estimate is None or not mekf.healthy(estimate):
         return []
-    known = list(component_places(places).items())
-    return [parameter_message(estimate, *known[group.in_turn(state.tick, len(known))])] if known else []
+    known = places.components
+    if not known:
+        return []
+    turn = group.in_turn(state.tick, len(known))
+    return [parameter_message(estimate, known[turn], ATTITUDE_AND_RATE + turn)]
 
 
 def heartbeat_messages(state: FlightState, rates: RateTable) -> list[CountedMessage]:
@@ -161,8 +165,9 @@ def event_messages(
 def attitude_messages(attitude: Attitude) -> list[CountedMessage]:
     """NAV_ATTITUDE and NAV_RATE."""
     _, q1, q2, q3 = attitude.q_body_from_orbit
+    w1, w2, w3 = attitude.omega_body_orbit_radps
     valid = int(attitude.valid)
-    return [NavAttitude(valid, q1, q2, q3), NavRate(valid, *attitude.omega_body_orbit_radps)]
+    return [NavAttitude(valid, q1, q2, q3), NavRate(valid, w1, w2, w3)]
 
 
 def quality_message(attitude: Attitude, modes: ModeState, used: Used, lit: bool) -> CountedMessage:
@@ -181,23 +186,23 @@ def quality_message(attitude: Attitude, modes: ModeState, used: Used, lit: bool)
     )
 
 
-DIGITS = 4
+DIGITS: Final = 4
 """Digits of a reported parameter after the first."""
 
 
-def parameter_message(estimate: Estimate, component: int, place: int) -> CountedMessage:
+def parameter_message(estimate: Estimate, number: int, place: int) -> CountedMessage:
     """NAV_PARAMETER.
 
     Args:
         estimate: of finite numbers.
-        component: its number among the parameters.
+        number: that of the component among the parameters.
         place: where it stands in the error state.
     """
-    value, sigma = estimate.parameters.floats()[component], sqrt(estimate.covariance[place, place])
+    value, sigma = component(estimate.parameters, number), sqrt(estimate.covariance[place, place])
     _, _, exponent_text = f"{max(abs(value), sigma):.{DIGITS}e}".partition("e")
     exponent = int(exponent_text) - DIGITS
     unit = float(f"1e{exponent}")
-    return NavParameter(component, exponent, round(value / unit), round(sigma / unit))
+    return NavParameter(number, exponent, round(value / unit), round(sigma / unit))
 
 
 def heartbeat_message(tick: int, modes: ModeState, rejects: int) -> CountedMessage:

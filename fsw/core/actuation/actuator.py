@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 from math import ceil
-from typing import final
+from typing import Final, final
 
 from fsw.core.actuation import dipoles, pulses
 from fsw.core.actuation.dipoles import DipoleConfig, RequestedDipole
@@ -14,11 +14,11 @@ from fsw.core.laws.plan.pulse_model import NEVER, NO_PULSE, Pulse
 from fsw.wire.messages import CoilDipole, CoilFire, CoilRefusedReason
 
 LOCKOUT_UNKNOWN = (-1, -1, -1)
-LATE_TICKS = 2
+LATE_TICKS: Final = 2
 """So late a report of a pulse may come after its end."""
 OF_ANY_FRAME = (CoilRefusedReason.MALFORMED, CoilRefusedReason.REPEATED_SEQ)
 """Refusals of a broken or repeated frame, which may stand beside the very request that is driven."""
-MOST_IDLE_TICKS = 10_000
+MOST_IDLE_TICKS: Final = 10_000
 """The count of idle ticks stops here: longer than any sample is late."""
 
 

@@ -6,7 +6,7 @@ samples while it is off. An impulse law keeps the timing of the pulses; only its
 
 from dataclasses import dataclass
 from math import isfinite
-from typing import final
+from typing import Final, final
 
 from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, dot, scale, transform
@@ -15,7 +15,7 @@ from fsw.core.laws.predictive.genetic import search
 from fsw.core.laws.predictive.predictive import best_impulse
 from fsw.wire.messages import CoilDipole
 
-MOST = 1.0 - 2.0**-16
+MOST: Final = 1.0 - 2.0**-16
 """Largest fraction of full scale on the wire."""
 
 

@@ -10,7 +10,7 @@ refused request need no model there. Where a report is missing, the change comes
 
 from dataclasses import dataclass
 from math import isfinite, sqrt
-from typing import final
+from typing import Final, final
 
 from fsw.core.algebra.vector import scale
 from fsw.core.estimation.mekf_config import WheelMotion
@@ -18,17 +18,17 @@ from fsw.core.gate.measurements import Measurements
 from fsw.core.laws.interface import Demand, Wheel
 from fsw.wire.messages import WheelTorque
 
-MARGIN = 1.25
+MARGIN: Final = 1.25
 """A report may exceed range and reach by this factor."""
-CHANGE_SIGMA = 0.005
+CHANGE_SIGMA: Final = 0.005
 """Standard deviation of a measured momentum change, as a fraction of it: that of the wheel's inertia."""
-BODY_RADPS = 0.2
+BODY_RADPS: Final = 0.2
 """The speed relative to the body also changes with the body's rate: by at most this between two reports."""
-SMOOTH_RADPS = 1.0
+SMOOTH_RADPS: Final = 1.0
 """Below about this speed the Coulomb friction is smoothed towards zero."""
-UNIT_NM = 2.0**-24
+UNIT_NM: Final = 2.0**-24
 """One unit of the torque on the wire; at most the limit less this is requested."""
-MOST_REFUSED = 1_000_000
+MOST_REFUSED: Final = 1_000_000
 
 
 @final

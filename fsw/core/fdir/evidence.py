@@ -27,20 +27,21 @@ Source: Wald 1945; Page 1954, Continuous inspection schemes (Biometrika 41); Lor
 
 from dataclasses import dataclass
 from math import log
+from typing import Final
 
 from fsw.core.estimation.mekf import LAG_S
 
-CORRELATION_S = 2.0
+CORRELATION_S: Final = 2.0
 """Errors of samples closer than this are not independent: twice the sampling time of the slowest sensor."""
-MISS = 1e-3
+MISS: Final = 1e-3
 """Fraction of the samples of a sound sensor that the filter's gate refuses."""
-CHANCE = 0.8
+CHANCE: Final = 0.8
 """Largest fraction of the time in which a faulty sensor looks right."""
-BLIND_S = 120.0
+BLIND_S: Final = 120.0
 """A prediction that nothing has confirmed for longer is not valid: pulses may have failed unseen."""
-SIGMAS = 4.0
+SIGMAS: Final = 4.0
 """Beyond this many standard deviations a number is neither noise nor within what the table allows."""
-DAY_S = 86400.0
+DAY_S: Final = 86400.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +89,7 @@ def weights(
     )
 
 
-PAIR_NUMBERS = 4
+PAIR_NUMBERS: Final = 4
 """Numbers that a pair of directions consists of; their angle is one of them."""
 
 
@@ -97,7 +98,7 @@ def weigh(nats: float, by: float, threshold: float) -> float:
     return min(max(0.0, nats + by), threshold)
 
 
-INFLATION = 4.0
+INFLATION: Final = 4.0
 """Factor by which a covariance is wrong if it is: of the innovations under a fault that is too slow for the
 filter's gate, of an estimate that is to be used, of a prediction by which a sample is to be judged."""
 

@@ -50,11 +50,9 @@ def happenings(before: Faults, after: Faults) -> list[Happening]:
         _add_sensor(found, Sensor.CELL_1 + cell, was, now)
     if after.disputed and not before.disputed:
         found.append(Happening(Event.SENSORS_DISAGREE, 0))
-    for coil in range(3):
-        was, now = before.coils[coil], after.coils[coil]
-        if was != now:
-            kind = Event.COIL_FAULT if now else Event.COIL_READMITTED
-            found.append(Happening(kind, 100 * (coil + 1) + (now or was)))
+    _add_coil(found, 1, before.coils[0], after.coils[0])
+    _add_coil(found, 2, before.coils[1], after.coils[1])
+    _add_coil(found, 3, before.coils[2], after.coils[2])
     return found
 
 
@@ -63,3 +61,10 @@ def _add_sensor(found: list[Happening], sensor: int, before: int, after: int) ->
     if before != after:
         kind = Event.SENSOR_ISOLATED if after else Event.SENSOR_READMITTED
         found.append(Happening(kind, 100 * sensor + (after or before)))
+
+
+def _add_coil(found: list[Happening], coil: int, before: int, after: int) -> None:
+    """Add the event of a coil whose fault has changed, if it has; coils are numbered from 1."""
+    if before != after:
+        kind = Event.COIL_FAULT if after else Event.COIL_READMITTED
+        found.append(Happening(kind, 100 * coil + (after or before)))

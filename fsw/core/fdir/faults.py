@@ -1,6 +1,7 @@
 """Units and their faults, by the numbers that the bus reports."""
 
 from enum import IntEnum
+from typing import Final
 
 
 class Sensor(IntEnum):
@@ -36,7 +37,8 @@ class CoilFault(IntEnum):
     STUCK = 4
 
 
-OPEN_PART, REVERSED_PART = 0.2, -0.5
+OPEN_PART: Final = 0.2
+REVERSED_PART: Final = -0.5
 """Fractions of the nominal current or effect below which nothing flows, and below which it is reversed."""
 
 

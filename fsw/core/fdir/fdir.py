@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 from math import inf
-from typing import final
+from typing import Final, final
 
 from fsw.core.actuation.actuator import CoilView, unexpected
 from fsw.core.algebra.vector import Vec3
@@ -137,13 +137,15 @@ def judge(
         valid = attitude.valid and not _is_inconclusive(health, used, config)
         discard_trace(estimator)
         return attitude if valid else attitude.invalid()
-    before, cells_before = sensor_health.sensor_faults(sensors), cell_faults(sensors.cells)
+    field_before, sun_before = sensors.field.fault, sensors.sun.fault
+    cells_before = cell_faults(sensors.cells)
     reference = evidence.reference
     sensor_health.judge_sensors(
         sensors, evidence.findings, used, estimator.estimate, reference, config.sensors
     )
-    both, isolated = sensors.pair, bool(sensors.field.fault or sensors.sun.fault)
-    changed = sensor_health.sensor_faults(sensors) != before
+    both, of_field, of_sun = sensors.pair, sensors.field.fault, sensors.sun.fault
+    isolated = bool(of_field or of_sun)
+    changed = of_field != field_before or of_sun != sun_before or cell_faults(sensors.cells) != cells_before
     if changed:
         forget_isolated(estimator, cells_before, sensors.cells, config.sensors.mekf)
     if changed or both.standing is not Standing.TRUSTED:
@@ -176,7 +178,7 @@ def _is_inconclusive(health: Health, used: Used, config: FdirConfig) -> bool:
     )
 
 
-UNKNOWN_PART = 0.5
+UNKNOWN_PART: Final = 0.5
 """A sound coil's gain seems no lower on a satellite that differs from its table: one twice as heavy."""
 
 

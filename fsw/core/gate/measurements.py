@@ -1,12 +1,12 @@
 """What the boards sent in one tick, in SI units and body axes, those of the coil driver by coil axis."""
 
-from typing import final
+from typing import Final, final
 
 from fsw.core.algebra.vector import Vec3, scale
 from fsw.core.gate.readings import Telecommand
 from fsw.wire.value import Value
 
-TESLA_PER_NT = 1e-9
+TESLA_PER_NT: Final = 1e-9
 
 
 @final

@@ -6,12 +6,12 @@ still on its way, or noise with the right CRC: several in quick succession revea
 """
 
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 from fsw.core.gate.measurements import Measurements, Refusal
 from fsw.wire.messages import CoilDipole, CoilFire, CoilRefusedReason
 
-SIGNS = 3
+SIGNS: Final = 3
 """Ticks with a sign that make a second sender detected."""
 
 REQUESTS = frozenset({CoilFire.ID, CoilDipole.ID})

@@ -15,16 +15,16 @@ Whether the time is in doubt is another matter: a bus that loses a SYNC now and 
 
 from dataclasses import dataclass
 from enum import Enum, auto
-from typing import final
+from typing import Final, final
 
-LEAP_S = 60
+LEAP_S: Final = 60
 """A SYNC no further ahead is believed at once: those between were lost. A new count settles in as long."""
 
-FEW_TICKS = 5
+FEW_TICKS: Final = 5
 """Lost in a row they leave no doubt about the time: were the skip forged, field and Sun would hardly be
 others, and the next two SYNCs of the plant would show it."""
 
-MOST_DOUBTED = 64
+MOST_DOUBTED: Final = 64
 """How many ticks are remembered as in doubt, the latest."""
 
 

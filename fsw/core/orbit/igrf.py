@@ -15,11 +15,12 @@ from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import factorial, sqrt
+from typing import Final
 
 from fsw.core.algebra.vector import Vec3
 from fsw.core.orbit.igrf_coefficients import COEFFICIENTS_NT, EPOCHS_UNIX_S, MAX_DEGREE
 
-REFERENCE_RADIUS_M = 6371200.0
+REFERENCE_RADIUS_M: Final = 6371200.0
 
 Gauss = Mapping[tuple[int, int], float]
 """Coefficients by (n, m): g(n, m) for m >= 0, h(n, -m) for m < 0, in nT."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 from math import cos, isfinite, pi, radians, sin, sqrt
-from typing import Any
+from typing import Any, Final
 
 from sgp4.api import SGP4_ERRORS, WGS72, Satrec
 
@@ -17,7 +17,7 @@ State = tuple[Vec3, Vec3]
 _SGP4_EPOCH_DAY = -7306.0
 """1949-12-31 in days since 1970-01-01."""
 
-MAX_KM = 50_000.0
+MAX_KM: Final = 50_000.0
 """Far beyond any orbit of less than 225 minutes; SGP4 gets there, without an error, weeks past a decay."""
 
 

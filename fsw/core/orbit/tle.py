@@ -2,15 +2,16 @@
 
 import re
 from math import degrees, pi
+from typing import Final
 
 from sgp4.api import Satrec
 from sgp4.io import compute_checksum
 
 from fsw.core.orbit.elements import Elements
 
-DAY_S = 86400
-DAY_MIN = 1440.0
-UNIX_EPOCH_JD = 2440587.5
+DAY_S: Final = 86400
+DAY_MIN: Final = 1440.0
+UNIX_EPOCH_JD: Final = 2440587.5
 """1970-01-01 as a Julian date."""
 
 _SATELLITE = r"(?P<satellite>[ 0-9A-Z][ 0-9]{4})"

@@ -3,6 +3,8 @@
 The coils share one supply, which shows a current but not the coil in which it flows.
 """
 
+from typing import Final
+
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.algebra.vector import ZERO
@@ -11,7 +13,7 @@ from fsw.core.fdir.evidence import weigh
 from fsw.core.fdir.faults import CoilFault, coil_fault
 from fsw.core.gate.measurements import CoilReport, Measurements
 
-WHOLE_MS = 1e-6
+WHOLE_MS: Final = 1e-6
 """Rounding of a duration, ms."""
 
 

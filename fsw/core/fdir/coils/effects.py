@@ -21,6 +21,7 @@ the bias. Willsky and Jones 1976 estimate the size of jumps by the same sums.
 """
 
 from math import hypot, sqrt
+from typing import Final
 
 import numpy as np
 
@@ -36,7 +37,7 @@ from fsw.core.fdir.coils.weak_test import MODEL_ERROR
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.laws.plan.pulse_model import Pulse
 
-UNEXPLAINED = 1.25
+UNEXPLAINED: Final = 1.25
 """Largest unexplained NIS per scalar measured; beyond it no coil is judged."""
 
 

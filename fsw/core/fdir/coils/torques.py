@@ -1,6 +1,6 @@
 """Each coil by its torque: what pulses and currents did, as the filter sees it, against what they should."""
 
-from typing import final
+from typing import Final, final
 
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.estimation.estimator import EstimatorState
@@ -82,7 +82,7 @@ def judge_effect(
         effects.trace_pulse(estimate, view.fired, b_eci_t, gravity_ps2, config.pulses, config.mekf)
 
 
-EARLY_TICKS = 5
+EARLY_TICKS: Final = 5
 """Interval while in doubt; otherwise when the next pulse is due: a correction ends what a pulse can show."""
 
 

@@ -6,16 +6,16 @@ they agree, not each by its own: pulses that contradict each other prove little.
 
 from dataclasses import dataclass
 from math import sqrt
-from typing import final
+from typing import Final, final
 
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.evidence import SIGMAS
 
-MODEL_ERROR = 0.05
+MODEL_ERROR: Final = 0.05
 """Relative uncertainty of a coil's effect that no measurement reduces."""
-MOST = 0.6
+MOST: Final = 0.6
 """Fraction of the threshold that a pulse weighs at most: one isolates no coil, two that agree do."""
-REVERSED = -1.0
+REVERSED: Final = -1.0
 """Least fraction of its effect that a coil can have."""
 
 

@@ -22,7 +22,7 @@ another as the satellite turns. What speaks against a second cell that is lit sp
 """
 
 from dataclasses import dataclass, field, replace
-from typing import final
+from typing import Final, final
 
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import dot
@@ -39,9 +39,9 @@ from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.cell_evidence import CellEvidence
 from fsw.core.fdir.sensors.watch import Watch, accuse, readmit
 
-STILL = 0.06
+STILL: Final = 0.06
 """Fraction of full sunlight by which a still current should have moved: eight steps of it on the bus."""
-NO_CURRENT = -1.0
+NO_CURRENT: Final = -1.0
 GAIN_1, EXCESS_1 = (COMPONENTS.index((name, 0)) for name in ("cell_gain", "cell_excess"))
 """Numbers of these components of the first cell; those of the others follow."""
 
@@ -86,13 +86,20 @@ def judge_cells(
 
 def is_contradicted(health: CellsHealth) -> bool:
     """Whether the estimate in use has had more than one cell isolated."""
-    return sum([one.by_this for one in health]) > 1
+    isolated = 0
+    for one in health:
+        if one.by_this:
+            isolated += 1
+    return isolated > 1
 
 
 def is_doubtful(health: CellsHealth, weights: EvidenceWeights) -> bool:
     """Whether it has had one isolated, and over half of what isolates a cell speaks against another."""
-    accused = any(one.watch.nats > 0.5 * weights.threshold and not one.watch.fault for one in health)
-    return accused and any(one.by_this for one in health)
+    accused = isolated = False
+    for one in health:
+        accused = accused or (one.watch.nats > 0.5 * weights.threshold and not one.watch.fault)
+        isolated = isolated or one.by_this
+    return accused and isolated
 
 
 def unusable_cells(health: CellsHealth) -> tuple[int, ...]:

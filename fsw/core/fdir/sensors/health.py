@@ -27,7 +27,6 @@ from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.cell_evidence import CellEvidence
 from fsw.core.fdir.sensors.cells import (
     CellsHealth,
-    cell_faults,
     is_contradicted,
     judge_cells,
 )
@@ -61,16 +60,12 @@ class SensorConfig:
     mekf: MekfConfig
 
 
-def sensor_faults(health: SensorHealth) -> tuple[int, ...]:
-    """The fault of each sensor and cell."""
-    return (health.field.fault, health.sun.fault, *cell_faults(health.cells))
-
-
 def is_suspected(health: SensorHealth) -> bool:
     """Whether there is evidence against a sensor in use."""
-    if _is_accused(health.field) or _is_accused(health.sun):
-        return True
-    return any(_is_accused(one.watch) for one in health.cells)
+    accused = _is_accused(health.field) or _is_accused(health.sun)
+    for one in health.cells:
+        accused = accused or _is_accused(one.watch)
+    return accused
 
 
 def _is_accused(watch: Watch) -> bool:

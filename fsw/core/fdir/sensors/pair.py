@@ -15,7 +15,7 @@ taken.
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import final
+from typing import Final, final
 
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.mekf import Estimate
@@ -28,10 +28,10 @@ from fsw.core.fdir.sensors.credibility import (
 from fsw.core.fdir.sensors.observed import Observed, is_new
 from fsw.core.fdir.sensors.plausibility import Findings
 
-SUSPICIOUS = 0.25
+SUSPICIOUS: Final = 0.25
 """Fraction of the threshold: with more doubt about the pair, a refusal counts against no single sensor."""
 
-ALONE = 0.4
+ALONE: Final = 0.4
 """Fraction of the threshold at which a lag of one sensor alone counts: the other cannot contradict it."""
 
 

@@ -8,7 +8,7 @@ Every limit is what the bounds of the table and the noise at the edge of the fil
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import acos
-from typing import final
+from typing import Final, final
 
 from fsw.core.algebra.vector import Vec3, dot, norm
 from fsw.core.estimation.cells.cell_set import CellSet
@@ -23,10 +23,11 @@ from fsw.core.orbit.earth import RADIUS_M
 from fsw.core.orbit.ephemeris import Reference
 from fsw.core.orbit.sun import lit
 
-SHADOW_M = RADIUS_M - 100e3
+SHADOW_M: Final = RADIUS_M - 100e3
 """Radius of what is certainly shadow: the Earth is flattened by 21 km, half the penumbra of a low orbit is
 15 km wide, and the position may be off by tens of km."""
-MOST_LAMPS, MOST_IMPOSSIBLE = 2, 1
+MOST_LAMPS: Final = 2
+MOST_IMPOSSIBLE: Final = 1
 """Sun cells that may be broken at once: those lit in the shadow, those brighter than anything can make them.
 
 What speaks against more of them in one tick speaks against the board that reads them.

@@ -1,12 +1,12 @@
 """The watch over one unit: evidence against it while it is in use, and for it while it is isolated."""
 
 from dataclasses import dataclass
-from typing import final
+from typing import Final, final
 
 from fsw.core.fdir.evidence import EvidenceWeights, weigh
 from fsw.core.fdir.faults import SensorFault
 
-LOST = 0.5
+LOST: Final = 0.5
 """Fraction of its weight that a missing sample has: the bus may lose some, in bursts."""
 
 
