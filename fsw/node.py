@@ -1,6 +1,5 @@
 """The flight node: collects frames into inboxes and runs a step at each SYNC. No I/O of its own."""
 
-from copy import copy
 from enum import Enum, auto
 from typing import Self
 
@@ -73,9 +72,8 @@ class FlightNode:
 
     def copy(self) -> Self:
         """An independent copy of the node in its present state."""
-        other = copy(self)
-        other.state = copy_state(self.state)
-        other._inbox = self._inbox.copy()
+        other = type(self)(self.config)
+        other.state, other.end, other._inbox = copy_state(self.state), self.end, self._inbox.copy()
         return other
 
     def _answer(self, sync: Sync) -> tuple[Frame, ...]:

@@ -43,11 +43,23 @@ from fsw.compiled import (
     standing,
 )
 
-GROUP = ("fsw/core/**/*.py", "fsw/wire/*.py", "hil_stub/**/*.py", "sim/plant/**/*.py")
+GROUP = (
+    "fsw/core/**/*.py",
+    "fsw/wire/*.py",
+    "fsw/node.py",
+    "hil_stub/**/*.py",
+    "sim/plant/**/*.py",
+    "sim/flight/flight_loop.py",
+    "sim/flight/fsw_answers.py",
+    "sim/flight/virtual_bus.py",
+    "sim/record/bus_log.py",
+    "sim/record/inbox_order.py",
+    "sim/record/log_index.py",
+)
 """What is compiled, as one group: calls within it are direct, a call into it or out of it costs."""
 INTERPRETED = ("hil_stub/__main__.py", "hil_stub/process/*.py", "sim/plant/__main__.py")
 """Within those, what stays interpreted: command lines, whose functions click decorates."""
-OPTIMISATION = ("-O2", "-g0", "-fno-fast-math", "-ffp-contract=off")
+OPTIMISATION = ("-O1", "-g0", "-fno-fast-math", "-ffp-contract=off", "-fvisibility=hidden")
 """No contraction: a product and a sum are rounded each by itself, as Python does it."""
 UNWARNED = ("-w",)
 """Generated code: its warnings are of no use here."""

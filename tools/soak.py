@@ -31,7 +31,7 @@ from sim.bench.memory import MemoryMonitor
 from sim.errors import HarnessError
 from sim.flight.flight_loop import WATCH_TICKS
 from sim.flight.record_flight import MOST_TICKS, record_flight
-from sim.flight.virtual import VirtualBus
+from sim.flight.virtual_bus import VirtualBus
 from sim.progress import progress
 from sim.record import run_dir
 from sim.record.destination import check_file

@@ -21,13 +21,13 @@ from sim.campaign.frame_digest import FrameDigest
 from sim.faults.section import make_plant
 from sim.flight.flight_loop import fly
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
-from sim.flight.virtual import VirtualBus
+from sim.flight.virtual_bus import VirtualBus
 from sim.plant.truth_row import TruthRow
 from sim.record.candump import LogEntry
 from sim.record.estimates import EstimateRecorder, Estimates
 from sim.record.run_dir import Json
 from sim.record.run_record import FlightRecord
-from sim.record.truth import Histories
+from sim.record.truth import COLUMNS, Histories
 from sim.report.figures.performance import perform
 from sim.report.flight_audit import audit_flight
 from sim.report.summary import BusTally, summarise
@@ -45,15 +45,8 @@ _JUDGED = (
 )
 """Identifiers of the frames that audit and tally evaluate."""
 
-_COLUMNS = {
-    "t_s": 1,
-    "q_body_from_orbit": 4,
-    "omega_body_orbit_radps": 3,
-    "b_body_t": 3,
-    "sun_body": 3,
-    "lit": 1,
-    "m_body_am2": 3,
-}
+_WIDTHS = {name: width for name, width, *_ in COLUMNS if name != "r_eci_m"}
+"""Of the histories that summaries and measures need: the first numbers of a row."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,7 +149,7 @@ def record_scenario(scenario: Scenario, seed: int, orbits: float | None = None) 
     )
     report = audit_flight(log.entries, limits_in(scenario.model_dump(mode="json"), scenario.name), scenario)
     estimates = truth.recorder.estimates()
-    return RecordedFlight(scenario, run, truth.histories, estimates, report, tally, log.digest)
+    return RecordedFlight(scenario, run, truth.histories(), estimates, report, tally, log.digest)
 
 
 class _Frames:
@@ -179,19 +172,23 @@ class _Truth:
     """The histories that summaries and measures need, and with each row the estimate on board."""
 
     def __init__(self, ticks: int, node: FlightNode) -> None:
-        self.histories: Histories = {
-            name: np.zeros(ticks) if width == 1 else np.zeros((ticks, width))
-            for name, width in _COLUMNS.items()
-        }
+        self._rows = np.zeros((ticks, sum(_WIDTHS.values())))
         self.recorder = EstimateRecorder(ticks)
         self._node = node
         self._row = 0
 
     def append(self, row: TruthRow) -> None:
-        for name, history in self.histories.items():
-            history[self._row] = getattr(row, name)
+        self._rows[self._row] = row.numbers()[: self._rows.shape[1]]
         self.recorder.take(self._node.state)
         self._row += 1
+
+    def histories(self) -> Histories:
+        """By name; each a copy of its columns."""
+        columns = np.split(self._rows, np.cumsum([*_WIDTHS.values()])[:-1], axis=1)
+        return {
+            name: np.ascontiguousarray(column[:, 0] if width == 1 else column)
+            for (name, width), column in zip(_WIDTHS.items(), columns, strict=True)
+        }
 
     def flush(self) -> None:
         """Nothing is buffered."""

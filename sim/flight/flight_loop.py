@@ -28,7 +28,6 @@ from sim.plant.plant import Plant
 from sim.plant.truth_row import TruthRow
 from sim.record.inbox_order import has_from_ground, split_at_sync
 from sim.record.pace import LOCKSTEP, Pace
-from sim.scenario.telecommands import Uplink
 
 ProgressCallback = Callable[[int], None]
 """Called every ``WATCH_TICKS`` ticks with the current tick."""
@@ -70,7 +69,7 @@ def fly(
     tick_hz: int,
     pace: Pace = LOCKSTEP,
     watch: ProgressCallback | None = None,
-    uplink: Uplink | None = None,
+    uplink: Callable[[int], list[Frame]] | None = None,
     patience: Patience | None = None,
     overhear: Overhear | None = None,
     waiting: Callable[[float], None] | None = None,

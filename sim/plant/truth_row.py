@@ -61,3 +61,18 @@ class TruthRow(Value):
         self.r_eci_m = r_eci_m
         self.torque_body_nm = torque_body_nm
         self.wheel_nms = wheel_nms
+
+    def numbers(self) -> list[float]:
+        """All numbers in the order of the attributes; without the wheel's, if there is none."""
+        qw, qx, qy, qz = self.q_body_from_orbit
+        wx, wy, wz = self.omega_body_orbit_radps
+        bx, by, bz = self.b_body_t
+        sx, sy, sz = self.sun_body
+        mx, my, mz = self.m_body_am2
+        rx, ry, rz = self.r_eci_m
+        row = [self.t_s, qw, qx, qy, qz, wx, wy, wz, bx, by, bz, sx, sy, sz, self.lit, mx, my, mz, rx, ry, rz]
+        for torque_body_nm in self.torque_body_nm:
+            row.extend(torque_body_nm)
+        if self.wheel_nms is not None:
+            row.append(self.wheel_nms)
+        return row

@@ -10,7 +10,7 @@ import time
 from array import array
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from itertools import chain, islice
+from itertools import islice
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -94,7 +94,7 @@ class TruthFile:
 
     def append(self, row: TruthRow) -> None:
         """Add the row of the next tick."""
-        self._buffer.fromlist(_flat(row))
+        self._buffer.fromlist(row.numbers())
         full = len(self._buffer) >= BLOCK_ROWS * self._columns
         if full or time.monotonic() - self._written_s >= BLOCK_S:
             self.flush()
@@ -282,18 +282,3 @@ def _complete_rows(history: NDArray[np.float64]) -> int:
     """Rows before the first with a NaN; after an interrupted flush, datasets differ in it."""
     broken = np.flatnonzero(~np.isfinite(history.reshape(len(history), -1)).all(axis=1))
     return int(broken[0]) if len(broken) else len(history)
-
-
-def _flat(row: TruthRow) -> list[float]:
-    return [
-        row.t_s,
-        *row.q_body_from_orbit,
-        *row.omega_body_orbit_radps,
-        *row.b_body_t,
-        *row.sun_body,
-        row.lit,
-        *row.m_body_am2,
-        *row.r_eci_m,
-        *chain.from_iterable(row.torque_body_nm),
-        *(() if row.wheel_nms is None else (row.wheel_nms,)),
-    ]

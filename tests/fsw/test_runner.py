@@ -131,6 +131,7 @@ class TestBootAgain:
     def test_not_at_once_since_the_first_may_still_be_on_its_way(self, run, config):
         assert kinds(run(START, START, sync(config, 0), END)).count(FswBoot) == 1
 
+    @pytest.mark.interpreted
     def test_a_plant_that_starts_anew_is_told_where_there_was_none_for_a_while(
         self, run, config, monkeypatch
     ):

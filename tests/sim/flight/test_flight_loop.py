@@ -17,7 +17,7 @@ from fsw.wire.messages import (
 from sim.errors import FlightError
 from sim.flight import fsw_answers
 from sim.flight.flight_loop import fly
-from sim.flight.virtual import VirtualBus
+from sim.flight.virtual_bus import VirtualBus
 from sim.plant.dynamics.torques import SOURCES
 from sim.plant.plant import Plant
 from sim.record.bus_log import BusLog
@@ -72,6 +72,7 @@ def virtual():
 
 
 class TestLockstep:
+    @pytest.mark.interpreted
     def test_sync_is_sent_again_to_a_flight_software_that_is_silent(self, flown, monkeypatch, scripted):
         """As one that a forged SYNC has led astray, which believes the second."""
         monkeypatch.setattr(fsw_answers, "REPEAT_SYNC_S", 0.01)
@@ -144,6 +145,7 @@ class TestLockstep:
         assert result.ticks == 5
         assert sum(entry.frame.can_id == TickDone.ID for entry in entries) == 4 * 5 - 1
 
+    @pytest.mark.interpreted
     def test_without_an_answer_it_ends_with_a_sentence_and_exit_code_1(self, flown, monkeypatch, scripted):
         monkeypatch.setattr(fsw_answers, "ANSWER_TIMEOUT_S", 0.0)
         with pytest.raises(
@@ -152,6 +154,7 @@ class TestLockstep:
             flown(scripted(lambda tick: [done(tick)] if tick < 3 else []))
         assert caught.value.exit_code == 1
 
+    @pytest.mark.interpreted
     def test_the_log_up_to_then_remains(self, flown, monkeypatch, tmp_path, scripted):
         monkeypatch.setattr(fsw_answers, "ANSWER_TIMEOUT_S", 0.0)
         with pytest.raises(FlightError):
@@ -181,6 +184,7 @@ class TestBoot:
         assert entries[0].frame == BOOT
         assert [e.frame.can_id for e in entries].count(TickDone.ID) == 3
 
+    @pytest.mark.interpreted
     def test_asks_again_until_it_is_answered(self, flown, monkeypatch, scripted):
         monkeypatch.setattr(fsw_answers, "BOOT_REQUEST_S", 0.01)
         bus = scripted(lambda tick: [done(tick)], first=())

@@ -44,6 +44,7 @@ class TestBoot:
         assert await_boot(bus, 1.0, lambda *seen: None, lambda waited_s: None) == BOOT
         assert [frame.can_id for frame in bus.sent] == [PlantBoot.ID]
 
+    @pytest.mark.interpreted
     def test_a_silent_bus_is_given_up_after_the_time_that_was_given(self, bus_of, monkeypatch):
         monkeypatch.setattr(fsw_answers, "BOOT_REQUEST_S", 0.01)
         bus, waited = bus_of(), []
@@ -65,6 +66,7 @@ class TestLockstep:
         assert lockstep_answers(bus, 3, SYNC, 1.0) == [done(2), NOISE, done(3)]
         assert list(bus.queue) == [done(4)]
 
+    @pytest.mark.interpreted
     def test_the_sync_that_is_sent_again_stands_among_the_answers(self, bus_of, monkeypatch):
         monkeypatch.setattr(fsw_answers, "REPEAT_SYNC_S", 0.01)
         bus = bus_of([NOISE], answer=lambda tick: [done(tick)])
@@ -92,6 +94,7 @@ class TestLateAnswers:
     def test_end_with_the_one_that_names_the_last_tick(self, bus_of):
         assert late_answers(bus_of([done(8), done(9), NOISE]), 9) == [done(8), done(9)]
 
+    @pytest.mark.interpreted
     def test_or_when_no_tick_is_answered_any_more_whatever_others_say(self, babbling, monkeypatch):
         monkeypatch.setattr(fsw_answers, "LATE_TIMEOUT_S", 0.02)
         began = time.monotonic()

@@ -112,6 +112,7 @@ class TestRecord:
         (sender,) = json.loads((path / "run.json").read_text())["second_senders"]
         assert sender["message"] == "TICK_DONE"
 
+    @pytest.mark.interpreted
     def test_keeps_what_was_flown_before_the_answers_stopped(self, run, bus_of, monkeypatch):
         path, scenario = run
         monkeypatch.setattr(fsw_answers, "ANSWER_TIMEOUT_S", 0.0)

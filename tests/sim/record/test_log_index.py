@@ -284,6 +284,7 @@ def test_a_full_disk_keeps_whole_ticks(tmp_path, monkeypatch, room):
 
 @pytest.mark.parametrize("name", ["bus.log", "bus.log.gz"])
 @pytest.mark.parametrize("ticks", [0, 1, BLOCK_WRITES, 2 * BLOCK_WRITES])
+@pytest.mark.interpreted
 def test_a_disk_with_room_for_the_log_alone_holds_each_line_once(tmp_path, monkeypatch, name, ticks):
     """What was written before its index failed is kept, and not written again."""
     log = tmp_path / name

@@ -13,7 +13,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import FswEvent, PlantEnd, Sync, TickDone
 from sim.flight import fsw_answers
 from sim.flight.record_flight import record_flight
-from sim.flight.virtual import VirtualBus
+from sim.flight.virtual_bus import VirtualBus
 from sim.record import run_dir
 from sim.record.candump import read_log
 from sim.record.pace import Pace
@@ -99,6 +99,7 @@ def fly_with(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("frames_of", STRANGERS.values(), ids=STRANGERS)
+@pytest.mark.interpreted
 def test_replays_bit_exact(tmp_path, fly_with, frames_of):
     bus, config = fly_with(frames_of)
     states = []
@@ -110,6 +111,7 @@ def test_replays_bit_exact(tmp_path, fly_with, frames_of):
     assert {TickDone.decode(frame.data).tick for frame in done} >= set(range(TICKS))
 
 
+@pytest.mark.interpreted
 def test_a_run_that_strangers_disturbed_is_concluded_too(tmp_path, fly_with):
     fly_with(STRANGERS["pairs"])
     summary = conclude(tmp_path)
@@ -117,6 +119,7 @@ def test_a_run_that_strangers_disturbed_is_concluded_too(tmp_path, fly_with):
     assert run_dir.read_run(tmp_path)["complete"] is True
 
 
+@pytest.mark.interpreted
 def test_the_order_that_is_found_explains_an_altered_frame_no_more_than_the_logged_one(tmp_path, fly_with):
     _, config = fly_with(STRANGERS["one in each tick"])
     entries = list(read_log(tmp_path / BUS_LOG))

@@ -41,7 +41,8 @@ from fsw.wire.messages import (
     intact,
 )
 from sim.flight.record_flight import record_flight
-from sim.flight.virtual import VirtualBus, fly_virtual
+from sim.flight.virtual import fly_virtual
+from sim.flight.virtual_bus import VirtualBus
 from sim.record import run_dir
 from sim.record.candump import read_log
 from sim.record.pace import Pace
