@@ -9,6 +9,8 @@ from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing import forkserver
+from multiprocessing.context import BaseContext
 from threading import current_thread, main_thread
 from typing import Any
 
@@ -93,7 +95,7 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
             yield place, number, _run_timed(task)
         return
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one task, one core
-    with ProcessPoolExecutor(min(workers, len(tasks)), multiprocessing.get_context("spawn")) as pool:
+    with ProcessPoolExecutor(min(workers, len(tasks)), worker_context()) as pool:
         with children_ignore_interrupt():
             places: dict[Future[tuple[float, Any]], tuple[int, int]] = {
                 pool.submit(_run_timed, task): (place, number) for place, number, task in tasks
@@ -110,6 +112,29 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
         except BaseException:
             end_workers(pool)  # breaks the pool, which then cancels waiting tasks and is joined
             raise
+
+
+def worker_context() -> BaseContext:
+    """How workers start: as copies of a process that has imported what a flight needs; on Windows, anew.
+
+    That process is started once, and lives as long as this one.
+    """
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["sim.campaign.one_run"])
+    # it would look for packages in the working directory first, which workers do not
+    safe_path = os.environ.get("PYTHONSAFEPATH")
+    os.environ["PYTHONSAFEPATH"] = "1"
+    try:
+        with children_ignore_interrupt():
+            forkserver.ensure_running()
+    finally:
+        if safe_path is None:
+            del os.environ["PYTHONSAFEPATH"]
+        else:
+            os.environ["PYTHONSAFEPATH"] = safe_path
+    return context
 
 
 @contextmanager

@@ -15,7 +15,7 @@ from types import ModuleType
 
 from sim.campaign.one_run import RunTask, lost_run
 from sim.campaign.results.row import RunRow
-from sim.campaign.runner import children_ignore_interrupt, end_workers
+from sim.campaign.runner import children_ignore_interrupt, end_workers, worker_context
 
 MOST_LOSSES = 3
 """A run whose worker was ended this many times is given up."""
@@ -51,8 +51,7 @@ class Processes:
         """
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one run, one core
         workers = min(self.workers, len(waiting))
-        context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(workers, context, initializer=_begin_worker) as pool:
+        with ProcessPoolExecutor(workers, worker_context(), initializer=_begin_worker) as pool:
             try:
                 while waiting or flying:
                     while waiting and len(flying) < (1 if losses[waiting[0]] else HANDED_OUT * workers):

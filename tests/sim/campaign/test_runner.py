@@ -3,13 +3,16 @@
 import multiprocessing
 import os
 import signal
+import subprocess
+import sys
 import time
+from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 
 import pytest
 
 from sim.campaign.claim import Study
-from sim.campaign.runner import run
+from sim.campaign.runner import run, worker_context
 from sim.errors import HarnessError
 
 
@@ -51,6 +54,42 @@ class TestRunner:
             run([Study("x", tasks, lambda results: [])], 2, lambda done: None, lambda done: None)
         assert time.monotonic() - began < 30.0
         assert not multiprocessing.active_children()
+
+
+class TestWorkers:
+    SCRIPT = """
+from concurrent.futures import ProcessPoolExecutor
+from sim.campaign.runner import worker_context
+
+if __name__ == "__main__":
+    with ProcessPoolExecutor(1, worker_context()) as pool:
+        print(pool.submit(abs, -1).result())
+"""
+
+    def test_have_what_a_flight_needs_when_they_start(self):
+        with ProcessPoolExecutor(1, worker_context()) as pool:
+            assert "sim.campaign.flight" in pool.submit(names_of_modules).result()
+
+    def test_do_not_look_for_packages_in_the_working_directory(self, tmp_path):
+        script, here = tmp_path / "script" / "run.py", tmp_path / "here"
+        for folder in (script.parent, here):
+            folder.mkdir()
+        script.write_text(self.SCRIPT)
+        (here / "numpy.py").write_text("raise SystemExit('the package of the working directory')")
+        done = subprocess.run([sys.executable, script], cwd=here, capture_output=True, text=True, check=False)
+        assert (done.stdout, done.stderr) == ("1\n", "")
+
+    def test_leave_the_environment_as_it_was(self, monkeypatch):
+        for before in (None, "x"):
+            monkeypatch.delenv("PYTHONSAFEPATH", raising=False)
+            if before is not None:
+                monkeypatch.setenv("PYTHONSAFEPATH", before)
+            worker_context()
+            assert os.environ.get("PYTHONSAFEPATH") == before
+
+
+def names_of_modules():
+    return set(sys.modules)
 
 
 @pytest.mark.long
