@@ -9,6 +9,8 @@ import argparse
 import json
 import os
 import platform
+import re
+import shutil
 import statistics
 import subprocess
 import sys
@@ -29,6 +31,15 @@ PEER = ROOT / "build" / "basilisk"
 PEER_PACKAGE = "bsk>=2.12"
 ORBIT_S = 6041.3
 CAMPAIGN_RUNS = 8
+COUNTED = (
+    "CPyDef_step___step",
+    "CPyDef_plant___Plant___begin_tick",
+    "CPyDef_plant___Plant___receive",
+    "CPyDef_plant___Plant___end_tick",
+)
+"""Functions within which instructions are counted."""
+COUNTED_ORBITS = 0.15
+COUNT = re.compile(r"^ *([\d,]+) \([^)]*\).*CPyDef_(step___|plant___Plant___)(\w+) ", re.MULTILINE)
 TRIED = """## What holds more back
 
 Four fifths of a tick are spent in the Python interpreter itself (`perf record`), a tenth in numpy, whose
@@ -73,9 +84,32 @@ def one_process(scenario: str, orbits: float) -> Measured:
     return run(command, lambda output, wall_s: float(json.loads(output)["realtime_factor"]))
 
 
-def parts_of(scenario: str, orbits: float) -> dict[str, Any]:
-    """Where the time of a tick goes."""
-    return figures_of("fly_once.py", scenario, str(orbits), "--parts")
+def parts_of(scenario: str) -> dict[str, float]:
+    """Thousands of instructions of a compiled tick in each function of the step and of the plant."""
+    if shutil.which("valgrind") is None:
+        sys.exit("what the parts of a tick cost is counted by callgrind: install valgrind")
+    with TemporaryDirectory() as folder:
+        counts = Path(folder, "counts")
+        words = [f"--callgrind-out-file={counts}", *(f"--toggle-collect={name}" for name in COUNTED)]
+        flight = [sys.executable, str(BENCHMARKS / "fly_once.py"), scenario, str(COUNTED_ORBITS)]
+        flown = subprocess.run(
+            ["valgrind", "--tool=callgrind", *words, *flight],
+            env=environment(), capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        annotate = ["callgrind_annotate", "--inclusive=yes", "--threshold=100", str(counts)]
+        listed = subprocess.run(annotate, capture_output=True, text=True, check=True).stdout
+    return instructions(listed, json.loads(flown.stdout)["ticks"])
+
+
+def instructions(listed: str, ticks: int) -> dict[str, float]:
+    """What ``callgrind_annotate`` lists of these functions, in thousands a tick, dearest first."""
+    found = COUNT.findall(listed)
+    return {
+        f"{of.removesuffix('___').replace('___', '.')}.{name.strip('_')}": int(count.replace(",", ""))
+        / ticks
+        / 1e3
+        for count, of, name in found
+    }
 
 
 def plans_of(scenario: str, orbits: float) -> dict[str, Any]:
@@ -185,7 +219,7 @@ def measure(rounds: int, orbits: float) -> tuple[list[Row], list[float]]:
 def page(
     rows: list[Row],
     overheads: list[float],
-    parts: dict[str, dict[str, Any]],
+    parts: dict[str, dict[str, float]],
     plans: dict[str, dict[str, Any]],
     peer_version: str,
 ) -> str:
@@ -229,20 +263,17 @@ def page(
             f"A plan of `pulse_mpc` takes {mean_ms:.2f} ms in the mean on `{scenario}`, one in a hundred",
             f"more than {rare_ms:.2f} ms ({figures['plans']} plans, those that find no pulse among them).",
         ]
-    for scenario, figures in parts.items():
+    for scenario, thousands in parts.items():
         lines += [
             "",
             f"## A tick of {scenario}",
             "",
-            f"{figures['tick_us']:.0f} µs with the sampler running.",
+            "Instructions in the functions of the step and of the plant, with what they call (callgrind).",
             "",
+            "| function | thousands |",
+            "|---|---|",
         ]
-        lines += ["| part | µs |", "|---|---|"]
-        lines += [
-            f"| `{part}` | {share * figures['tick_us']:.0f} |"
-            for part, share in figures["parts"].items()
-            if share * figures["tick_us"] >= 1.0
-        ]
+        lines += [f"| `{part}` | {count:.0f} |" for part, count in thousands.items() if count >= 1.0]
     return "\n".join([*lines, "", TRIED])
 
 
@@ -256,7 +287,7 @@ def main() -> None:
     peer_version = install_peer()
     scenarios = ("microsat", "realsat")
     plans = {scenario: plans_of(scenario, options.orbits) for scenario in scenarios}
-    parts = {scenario: parts_of(scenario, options.orbits) for scenario in scenarios}
+    parts = {scenario: parts_of(scenario) for scenario in scenarios}
     rows, overheads = measure(options.rounds, options.orbits)
     options.out.write_text(page(rows, overheads, parts, plans, peer_version), encoding="utf-8")
     print(options.out)

@@ -59,7 +59,7 @@ GROUP = (
 """What is compiled, as one group: calls within it are direct, a call into it or out of it costs."""
 INTERPRETED = ("hil_stub/__main__.py", "hil_stub/process/*.py", "sim/plant/__main__.py")
 """Within those, what stays interpreted: command lines, whose functions click decorates."""
-OPTIMISATION = ("-O1", "-g0", "-fno-fast-math", "-ffp-contract=off", "-fvisibility=hidden")
+OPTIMISATION = ("-O2", "-g0", "-fno-fast-math", "-ffp-contract=off", "-fvisibility=hidden")
 """No contraction: a product and a sum are rounded each by itself, as Python does it."""
 UNWARNED = ("-w",)
 """Generated code: its warnings are of no use here."""
@@ -247,10 +247,11 @@ def compile_all(
     for path in {*folder.iterdir()} - {*objects.values()}:
         path.unlink()
     missing = sorted((file for file, to in objects.items() if not to.exists()), key=_size, reverse=True)
+    once = _read_headers_once(words, scratch) if missing else []
 
     def compile_one(file: Path) -> None:
         part = objects[file].with_suffix(".part")
-        _run([*words, "-c", str(file), "-o", str(part)])
+        _run([*words, *once, "-c", str(file), "-o", str(part)])
         part.replace(objects[file])
 
     with ThreadPoolExecutor(_processors()) as pool:
@@ -260,6 +261,14 @@ def compile_all(
         finally:
             pool.shutdown(cancel_futures=True)
     return list(objects.values())
+
+
+def _read_headers_once(words: Sequence[str], scratch: Path) -> list[str]:
+    """Compile the headers of the group, which all files include; the option that uses that."""
+    headers = scratch / "headers"
+    headers.write_text("".join(f'#include "{path}"\n' for path in sorted(scratch.glob("__native_*.h"))))
+    _run([*words, "-x", "c-header", str(headers), "-o", f"{headers}.gch"])
+    return ["-include", str(headers)]
 
 
 def _size(path: Path) -> int:

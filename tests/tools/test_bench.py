@@ -11,7 +11,13 @@ ROWS = [
     bench.Row("microsat, one process", [2000.0, 2500.0, 4000.0], 130.0),
     bench.Row("realsat, one process", [1600.0, 2000.0, 2500.0], 130.0),
 ]
-PARTS = {"microsat": {"tick_us": 400.0, "parts": {"fsw/core": 0.5, "sim/plant": 0.25, "other": 0.001}}}
+PARTS = {"microsat": {"step.update": 59.6, "plant.Plant.end_tick": 37.4, "plant.Plant.tick": 0.1}}
+LISTED = """
+ 200,000 (66.7%)  ???:CPyDef_step___step [torquer__mypyc.so]
+ 100,000 (33.3%)  ???:CPyDef_plant___Plant___end_tick [torquer__mypyc.so]
+  90,000 (30.0%)  ???:CPyDef_step____update [torquer__mypyc.so]
+  80,000 (26.7%)  ???:CPyDef_estimator___update [torquer__mypyc.so]
+"""
 PLANS = {"microsat": {"plans": 219, "mean_ms": 2.604, "percentile_99_ms": 3.871}}
 
 
@@ -30,8 +36,16 @@ def test_what_the_parameters_cost_is_the_median_of_the_differences_within_a_roun
     assert "takes 125 µs longer\n(100 to 150 in the rounds) than one" in page
 
 
-def test_parts_are_in_microseconds_and_what_is_next_to_nothing_is_left_out(page):
-    assert re.findall(r"\| `(.*?)` \| (\d+) \|", page) == [("fsw/core", "200"), ("sim/plant", "100")]
+def test_parts_are_in_thousands_of_instructions_and_what_is_next_to_nothing_is_left_out(page):
+    assert re.findall(r"\| `(.*?)` \| (\d+) \|", page) == [
+        ("step.update", "60"),
+        ("plant.Plant.end_tick", "37"),
+    ]
+
+
+def test_instructions_are_those_of_the_functions_of_step_and_plant():
+    counted = {"step.step": 20.0, "plant.Plant.end_tick": 10.0, "step.update": 9.0}
+    assert bench.instructions(LISTED, ticks=10) == counted
 
 
 def test_what_a_plan_takes_is_told(page):
