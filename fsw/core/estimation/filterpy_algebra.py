@@ -9,6 +9,8 @@ import numpy as np
 from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
 
+from fsw.core.estimation.components import crossed, multiplied, seen_in_body
+
 Matrix = NDArray[np.float64]
 Numbers = tuple[float | tuple[float, ...], ...]
 
@@ -152,6 +154,39 @@ def carry_trace(effect: Matrix, transition: Matrix) -> Matrix:
     after = effect.copy()
     after[: len(transition)] = transition.dot(effect)
     return after
+
+
+def move_bodies(
+    x: Matrix,
+    step_s: float,
+    acting: Numbers,
+    dipoles_am2: Matrix,
+    torques_nm: Matrix,
+    inertias_kgm2: Matrix,
+    responses: Matrix,
+) -> Matrix:
+    """Attitude and rate of many bodies after a step."""
+    numbers, h = _flat(acting), step_s
+    seen, wheel, gravity = numbers[0:6].reshape(2, 3, 1), numbers[6:9, None], numbers[9]
+    inertia, response = inertias_kgm2.reshape(3, 3, -1), responses.reshape(3, 3, -1)
+
+    def rates(x: Matrix) -> Matrix:
+        scalar, vector, omega = x[0], x[1:4], x[4:7]
+        e1, b = seen_in_body(scalar, vector, seen)
+        turned = (inertia * np.stack((e1, omega))[:, None]).sum(axis=2)
+        first = np.stack((gravity * e1, -omega, dipoles_am2))
+        second = np.stack((turned[0], turned[1] + wheel, b))
+        torque = crossed(first, second).sum(axis=0) + torques_nm
+        q_rate = multiplied(scalar, vector, 0.5 * omega)
+        return np.vstack((*q_rate, (response * torque).sum(axis=1)))
+
+    k1 = rates(x)
+    k2 = rates(x + 0.5 * h * k1)
+    k3 = rates(x + 0.5 * h * k2)
+    k4 = rates(x + h * k3)
+    moved: Matrix = x + h / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
+    moved[:4] /= np.sqrt((moved[:4] * moved[:4]).sum(axis=0))
+    return moved
 
 
 def unexplained(sums: Matrix) -> float:

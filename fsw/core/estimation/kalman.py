@@ -122,7 +122,10 @@ def update(
     first, last = 0, 0
     if considered is not None:
         first, last = considered.start, considered.stop
-    effect, sums = (None, None) if trace is None else (trace.effect, trace.sums)
+    effect: Matrix | None = None
+    sums: Matrix | None = None
+    if trace is not None:
+        effect, sums = trace.effect, trace.sums
     if algebra is Algebra.KERNEL:
         found = _kernel.update(covariance, innovation, noise, sensitivity, first, last, effect, sums)
     else:
@@ -253,6 +256,31 @@ def fade(covariance: Matrix, prior: Matrix, place: slice, keep: float) -> Matrix
 def shear(covariance: Matrix, change: Matrix, places: tuple[int, ...]) -> Matrix:
     """The covariance T P T^T, symmetric, T being 1 with a change (k, n) of its rows at these k places."""
     return _kernel.shear(covariance, change, places)
+
+
+def move_bodies(
+    x: Matrix,
+    step_s: float,
+    acting: Numbers,
+    dipoles_am2: Matrix,
+    torques_nm: Matrix,
+    inertias_kgm2: Matrix,
+    responses: Matrix,
+) -> Matrix:
+    """Attitude and rate of many rigid bodies, (7, n), after a step of the fourth-order Runge-Kutta method.
+
+        dq/dt = 1/2 q (0, w),  J dw/dt = m x b + 3 mu/r^3 e1 x J e1 - w x (J w + h) + torque
+
+    Args:
+        x: before, (7, n).
+        step_s: length of the step.
+        acting: on all of them: e1 and b, T, eci; h, N m s, body axes; 3 mu/r^3, 1/s^2.
+        dipoles_am2: m, body axes, (3, n).
+        torques_nm: body axes, (3, n).
+        inertias_kgm2: J by rows, (9, n).
+        responses: to a torque, J^-1 by rows, (9, n).
+    """
+    return _kernel.move_bodies(x, step_s, acting, dipoles_am2, torques_nm, inertias_kgm2, responses)
 
 
 @final

@@ -32,13 +32,14 @@
 #define WIDE
 #endif
 
-/* row (n) gains the sum of each of these factors times its row of B (count,n), count being known when this is
-   compiled: the sums of some columns stay in registers */
-static inline __attribute__((always_inline)) void add_rows(const int count, int n, const double *restrict factors,
-                                                          const double *restrict B, double *restrict row)
+/* row (n) gains the sum of each of these factors times its row of B (count,n); fresh: from zero. Count and fresh are
+   known when this is compiled: the sums of some columns stay in registers */
+static inline __attribute__((always_inline)) void add_rows(const int count, const int fresh, int n,
+                                                          const double *restrict factors, const double *restrict B,
+                                                          double *restrict row)
 {
     for (int c = 0; c < n; c++) {
-        double sum = row[c];
+        double sum = fresh ? 0.0 : row[c];
         for (int j = 0; j < count; j++) sum += factors[j] * B[(size_t)j * n + c];
         row[c] = sum;
     }
@@ -49,11 +50,15 @@ WIDE static void multiply(int m, int k, int n, const double *restrict A, const d
                           double *restrict out)
 {
     for (int i = 0; i < m; i++, A += k, out += n) {
-        int j = 0;
-        for (int c = 0; c < n; c++) out[c] = 0.0;
-        for (; j + 8 <= k; j += 8) add_rows(8, n, A + j, B + (size_t)j * n, out);
-        if (j + 4 <= k) add_rows(4, n, A + j, B + (size_t)j * n, out), j += 4;
-        for (; j < k; j++) add_rows(1, n, A + j, B + (size_t)j * n, out);
+        const int few = k % 4; /* the first ones, so that the others come by four */
+        int j = few;
+        if (few == 1) add_rows(1, 1, n, A, B, out);
+        else if (few == 2) add_rows(2, 1, n, A, B, out);
+        else if (few == 3) add_rows(3, 1, n, A, B, out);
+        else if (k > 0) add_rows(4, 1, n, A, B, out), j = 4;
+        else memset(out, 0, sizeof(double) * n);
+        for (; j + 8 <= k; j += 8) add_rows(8, 0, n, A + j, B + (size_t)j * n, out);
+        if (j < k) add_rows(4, 0, n, A + j, B + (size_t)j * n, out);
     }
 }
 
@@ -412,6 +417,82 @@ WIDE static void shear(int n, int k, const double *restrict P, const double *res
     symmetrise(n, out);
 }
 
+/* Rigid bodies side by side, (.., n): what acts on all of them, radius direction and field, eci, gravity 3 mu/r^3,
+   momentum of a wheel; and on each, dipole and torque (3,n), inertia and what a torque gives (3,3,n), body axes */
+typedef struct {
+    double e1[3], b[3], gravity, wheel[3];
+    const double *dipole, *torque, *inertia, *response;
+} Bodies;
+
+static inline __attribute__((always_inline)) void cross(const double *a, const double *b, double *out)
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline __attribute__((always_inline)) void in_body(const double *q, const double *d, double *out)
+{
+    double crossed[3];
+    const double along = d[0] * q[1] + d[1] * q[2] + d[2] * q[3];
+    const double square = q[0] * q[0] - (q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    cross(q + 1, d, crossed);
+    for (int i = 0; i < 3; i++) out[i] = square * d[i] + 2.0 * (along * q[i + 1] - q[0] * crossed[i]);
+}
+
+/* dq/dt = 1/2 q (0, w), J dw/dt = (m + d) x b + 3 mu/r^3 e1 x J e1 - w x (J w + h) + t, out (7), of one of them */
+static inline __attribute__((always_inline)) void
+body_rates(const Bodies *acting, const double *J, const double *response, const double *dipole, const double *torque,
+           const double *x, double *out)
+{
+    const double *w = x + 4;
+    double e1[3], b[3], pull[3], back[3], je1[3], jw[3], by_gravity[3], by_rate[3], by_field[3], total[3];
+    double half[3], crossed[3];
+    in_body(x, acting->e1, e1);
+    in_body(x, acting->b, b);
+    for (int i = 0; i < 3; i++) {
+        je1[i] = J[3 * i] * e1[0] + J[3 * i + 1] * e1[1] + J[3 * i + 2] * e1[2];
+        jw[i] = J[3 * i] * w[0] + J[3 * i + 1] * w[1] + J[3 * i + 2] * w[2] + acting->wheel[i];
+        pull[i] = acting->gravity * e1[i];
+        back[i] = -w[i];
+        half[i] = 0.5 * w[i];
+    }
+    cross(pull, je1, by_gravity);
+    cross(back, jw, by_rate);
+    cross(dipole, b, by_field);
+    for (int i = 0; i < 3; i++) total[i] = by_gravity[i] + by_rate[i] + by_field[i] + torque[i];
+    cross(x + 1, half, crossed);
+    out[0] = -(x[1] * half[0] + x[2] * half[1] + x[3] * half[2]);
+    for (int i = 0; i < 3; i++) {
+        out[i + 1] = x[0] * half[i] + crossed[i];
+        out[i + 4] = response[3 * i] * total[0] + response[3 * i + 1] * total[1] + response[3 * i + 2] * total[2];
+    }
+}
+
+/* Attitude and rate of each body, (7,n), after a step by the fourth-order Runge-Kutta method */
+WIDE static void move_bodies(size_t n, double h, const Bodies *acting, const double *restrict x,
+                             double *restrict out)
+{
+    const Bodies all = *acting;
+    for (size_t c = 0; c < n; c++) {
+        double J[9], response[9], dipole[3], torque[3], start[7], mid[7], k1[7], k2[7], k3[7], k4[7];
+        for (int i = 0; i < 9; i++) J[i] = all.inertia[i * n + c], response[i] = all.response[i * n + c];
+        for (int i = 0; i < 3; i++) dipole[i] = all.dipole[i * n + c], torque[i] = all.torque[i * n + c];
+        for (int i = 0; i < 7; i++) start[i] = x[i * n + c];
+        body_rates(&all, J, response, dipole, torque, start, k1);
+        for (int i = 0; i < 7; i++) mid[i] = start[i] + 0.5 * h * k1[i];
+        body_rates(&all, J, response, dipole, torque, mid, k2);
+        for (int i = 0; i < 7; i++) mid[i] = start[i] + 0.5 * h * k2[i];
+        body_rates(&all, J, response, dipole, torque, mid, k3);
+        for (int i = 0; i < 7; i++) mid[i] = start[i] + h * k3[i];
+        body_rates(&all, J, response, dipole, torque, mid, k4);
+        for (int i = 0; i < 7; i++) mid[i] = start[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+        const double length = sqrt(mid[0] * mid[0] + mid[1] * mid[1] + mid[2] * mid[2] + mid[3] * mid[3]);
+        for (int i = 0; i < 4; i++) out[i * n + c] = mid[i] / length;
+        for (int i = 4; i < 7; i++) out[i * n + c] = mid[i];
+    }
+}
+
 /* The sum of the variances; infinite where one is negative, or one of the first few is zero */
 static double total_variance(int n, int uncertain, const double *P)
 {
@@ -751,6 +832,32 @@ FUNCTION(carry_trace)
     return returned(&held, out);
 }
 
+FUNCTION(move_bodies)
+{
+    Held held = {0};
+    PyArrayObject *x, *dipole, *torque, *inertia, *response;
+    Bodies acting;
+    double numbers[10], *out = NULL;
+    if (!takes(count, 7, "x, step, what acts, dipoles, torques, inertias and responses")) return NULL;
+    const double h = PyFloat_AsDouble(given[1]);
+    if (!PyErr_Occurred() && tuple(given[2], 10, 10, numbers, "what acts") > 0 &&
+        (x = matrix(&held, given[0], 7, -1, "x")) != NULL &&
+        (dipole = matrix(&held, given[3], 3, COLUMNS(x), "the dipoles")) != NULL &&
+        (torque = matrix(&held, given[4], 3, COLUMNS(x), "the torques")) != NULL &&
+        (inertia = matrix(&held, given[5], 9, COLUMNS(x), "the inertias")) != NULL &&
+        (response = matrix(&held, given[6], 9, COLUMNS(x), "the responses")) != NULL &&
+        (out = result(&held, 7, COLUMNS(x))) != NULL) {
+        memcpy(acting.e1, numbers, sizeof(acting.e1));
+        memcpy(acting.b, numbers + 3, sizeof(acting.b));
+        memcpy(acting.wheel, numbers + 6, sizeof(acting.wheel));
+        acting.gravity = numbers[9];
+        acting.dipole = DATA(dipole), acting.torque = DATA(torque);
+        acting.inertia = DATA(inertia), acting.response = DATA(response);
+        move_bodies(COLUMNS(x), h, &acting, DATA(x), out);
+    }
+    return returned(&held, out);
+}
+
 FUNCTION(unexplained)
 {
     Held held = {0};
@@ -857,6 +964,7 @@ static PyMethodDef methods[] = {
     METHOD(total_variance, "total_variance(P, k) -> the sum of the variances; inf: one is negative, or of the first k zero"),
     METHOD(largest_variance, "largest_variance(P, first, last) -> that of these states"),
     METHOD(carry_trace, "carry_trace(effect, F) -> effect"),
+    METHOD(move_bodies, "move_bodies(x, h, what acts, dipoles, torques, inertias, responses) -> x"),
     METHOD(unexplained, "unexplained(sums) -> what no deviation explains, NaN of damaged sums"),
     METHOD(turn_along, "turn_along(P, error, first, factor, W, map) -> P"),
     METHOD(move_along, "move_along(P, change, first) -> P"),

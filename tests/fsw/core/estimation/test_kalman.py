@@ -272,6 +272,13 @@ def of_carry_trace(random, states):
     return random.normal(size=(states, 5)), transition(random, states)[:MOVING]
 
 
+def of_move_bodies(random, states):
+    x, dipoles, torques = (random.normal(size=(size, states)) for size in (7, 3, 3))
+    x[:4] /= np.linalg.norm(x[:4], axis=0)
+    acting = (*numbers(random, 3, 3, 3), 0.7)
+    return x, 0.3, acting, dipoles, torques, *random.normal(size=(2, 9, states))
+
+
 def of_unexplained(random, states):
     traced = random.normal(size=(20, states % 7 + 1))
     return (traced.T @ traced,)
@@ -310,6 +317,7 @@ def of_shear(random, states):
         ("total_variance", of_total_variance),
         ("largest_variance", of_largest_variance),
         ("carry_trace", of_carry_trace),
+        ("move_bodies", of_move_bodies),
         ("unexplained", of_unexplained),
         ("turn_along", of_turn_along),
         ("move_along", of_move_along),
@@ -373,6 +381,11 @@ class TestWhatTheKernelRefuses:
             ("carry_trace", (np.ones((9, 2)), np.ones((6, 8)))),
             ("update", (np.eye(9), (1.0,), np.eye(1), np.ones((1, 9)), 0, 0, np.ones((8, 2)), np.eye(2))),
             ("update", (np.eye(9), (1.0,), np.eye(1), np.ones((1, 9)), 0, 0, np.ones((9, 2)), np.eye(3))),
+            (
+                "move_bodies",
+                (np.ones((7, 4)), 0.1, (1.0,) * 9, *[np.ones((3, 4))] * 2, *[np.ones((9, 4))] * 2),
+            ),
+            ("move_bodies", (np.ones((7, 4)), 0.1, (1.0,) * 10, *[np.ones((3, 4))] * 3, np.ones((9, 4)))),
             ("unexplained", (np.ones((0, 0)),)),
             ("move_along", (np.eye(9), (1.0,) * 6, 5)),
             ("move_along", (np.eye(9), (1.0,) * 6, 8)),
