@@ -36,7 +36,7 @@ and CRC are judged by ``intact``.
 from enum import IntEnum
 from typing import Final, Self, final
 
-from fsw.wire.frame import Frame, crc8, raw, seal
+from fsw.wire.frame import REMAINDER, Frame, crc8, raw, seal, word_of
 from fsw.wire.value import Value
 
 {enums}
@@ -69,7 +69,7 @@ def intact(frame: Frame) -> bool:
     data = frame.data
     if len(data) != length:
         return False
-    return register < 0 or crc8(data[:-1], register) == data[-1]
+    return register < 0 or crc8(data, register) == REMAINDER
 '''
 
 ENUM = '''
@@ -99,7 +99,7 @@ class {name}(Value):
     @staticmethod
     def decode(data: bytes) -> "{name}":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes({data}, "little")
+        word = {data}
         return {name}({values})
 '''
 
@@ -118,7 +118,7 @@ class _{name}(Value):
     @classmethod
     def decode(cls, data: bytes) -> Self:
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes({data}, "little")
+        word = {data}
         return cls({values})
 '''
 """What messages of several nodes share."""
@@ -210,7 +210,7 @@ def parts(message: Message) -> dict[str, str]:
         "parameters": ", ".join(map(parameter, fields)),
         "assignments": "\n".join(map(assignment, fields)),
         "word": "(" + " | ".join(map(encode_term, by_start)) + ")",
-        "data": "data[:7]" if is_sealed(message) and message.length == 8 else "data",  # without the CRC
+        "data": "word_of(data)" if is_sealed(message) else 'int.from_bytes(data, "little")',
         "values": decode_term(fields[0])[1:-1] if len(fields) == 1 else ", ".join(map(decode_term, fields)),
     }
 

@@ -2,6 +2,8 @@
 
 from typing import Final, final
 
+from librt.strings import read_i64_le
+
 from fsw.wire.value import Value
 
 EXTENDED_FLAG: Final = 0x8000_0000
@@ -56,6 +58,17 @@ def crc8(data: bytes, register: int = 0xFF) -> int:
     for place in range(len(data)):  # each byte as it is, where an iterator would make an object of it
         register = table[register ^ data[place]]
     return register ^ 0xFF
+
+
+REMAINDER: Final = crc8(b"\x00")
+"""The CRC of any bytes and their own CRC after them."""
+
+
+def word_of(data: bytes) -> int:
+    """The first 7 bytes as a number, little-endian: all of a message but its CRC."""
+    if len(data) == 8:  # as most have
+        return read_i64_le(data, 0) & 0xFF_FFFF_FFFF_FFFF
+    return int.from_bytes(data[:7], "little")
 
 
 def id_register(can_id: int) -> int:

@@ -8,7 +8,7 @@ and CRC are judged by ``intact``.
 from enum import IntEnum
 from typing import Final, Self, final
 
-from fsw.wire.frame import Frame, crc8, raw, seal
+from fsw.wire.frame import REMAINDER, Frame, crc8, raw, seal, word_of
 from fsw.wire.value import Value
 
 
@@ -178,7 +178,7 @@ class CoilFire(Value):
     @staticmethod
     def decode(data: bytes) -> "CoilFire":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = word_of(data)
         return CoilFire(
             ((word >> 4 & 0xF ^ 0x8) - 0x8),
             (word >> 8 & 0x3),
@@ -217,7 +217,7 @@ class CoilDipole(Value):
     @staticmethod
     def decode(data: bytes) -> "CoilDipole":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return CoilDipole(
             ((word >> 4 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 21 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
@@ -252,7 +252,7 @@ class WheelTorque(Value):
     @staticmethod
     def decode(data: bytes) -> "WheelTorque":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = word_of(data)
         return WheelTorque(
             ((word >> 8 & 0xFFFFFF ^ 0x800000) - 0x800000) * 5.960464477539063e-08,
             (word >> 32 & 0xFF),
@@ -281,7 +281,7 @@ class TcMode(Value):
     @staticmethod
     def decode(data: bytes) -> "TcMode":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = word_of(data)
         return TcMode((word >> 4 & 0x7), (word & 0xF))
 
 
@@ -305,7 +305,7 @@ class TcClear(Value):
     @staticmethod
     def decode(data: bytes) -> "TcClear":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = word_of(data)
         return TcClear(word & 0xF)
 
 
@@ -330,7 +330,7 @@ class TcLaw(Value):
     @staticmethod
     def decode(data: bytes) -> "TcLaw":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = word_of(data)
         return TcLaw((word >> 8 & 0xFF), (word & 0xF))
 
 
@@ -355,7 +355,7 @@ class TcSpin(Value):
     @staticmethod
     def decode(data: bytes) -> "TcSpin":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = word_of(data)
         return TcSpin(((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06, (word & 0xF))
 
 
@@ -387,7 +387,7 @@ class TcGain(Value):
     @staticmethod
     def decode(data: bytes) -> "TcGain":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = word_of(data)
         return TcGain(
             (word >> 4 & 0xF),
             ((word >> 8 & 0xFF ^ 0x80) - 0x80),
@@ -425,7 +425,7 @@ class TcOrbitElement(Value):
     @staticmethod
     def decode(data: bytes) -> "TcOrbitElement":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = word_of(data)
         return TcOrbitElement(
             (word >> 4 & 0xF),
             ((word >> 8 & 0xFF ^ 0x80) - 0x80),
@@ -454,7 +454,7 @@ class TcOrbitLoad(Value):
     @staticmethod
     def decode(data: bytes) -> "TcOrbitLoad":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = word_of(data)
         return TcOrbitLoad(word & 0xF)
 
 
@@ -486,7 +486,7 @@ class TcParameter(Value):
     @staticmethod
     def decode(data: bytes) -> "TcParameter":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return TcParameter(
             (word >> 4 & 0x3F),
             ((word >> 16 & 0xFF ^ 0x80) - 0x80),
@@ -516,7 +516,7 @@ class TcFreeze(Value):
     @staticmethod
     def decode(data: bytes) -> "TcFreeze":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = word_of(data)
         return TcFreeze((word >> 4 & 0x1), (word & 0xF))
 
 
@@ -563,7 +563,7 @@ class CoilStatus(Value):
     @staticmethod
     def decode(data: bytes) -> "CoilStatus":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return CoilStatus(
             ((word >> 4 & 0xF ^ 0x8) - 0x8),
             (word >> 8 & 0x3),
@@ -603,7 +603,7 @@ class CoilDipoleStatus(Value):
     @staticmethod
     def decode(data: bytes) -> "CoilDipoleStatus":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return CoilDipoleStatus(
             ((word >> 4 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
             ((word >> 21 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
@@ -642,7 +642,7 @@ class CoilRefused(Value):
     @staticmethod
     def decode(data: bytes) -> "CoilRefused":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = word_of(data)
         return CoilRefused(
             (word >> 4 & 0x3), (word >> 8 & 0xFF), (word >> 16 & 0xFF), (word >> 24 & 0xFF), (word & 0xF)
         )
@@ -678,7 +678,7 @@ class MagField(Value):
     @staticmethod
     def decode(data: bytes) -> "MagField":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return MagField(
             (word >> 4 & 0x1),
             ((word >> 8 & 0xFFFF ^ 0x8000) - 0x8000) * 2.0,
@@ -718,7 +718,7 @@ class SunVector(Value):
     @staticmethod
     def decode(data: bytes) -> "SunVector":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return SunVector(
             (word >> 4 & 0x1),
             ((word >> 8 & 0xFFFF ^ 0x8000) - 0x8000) * 6.103515625e-05,
@@ -774,7 +774,7 @@ class SunCells(Value):
     @staticmethod
     def decode(data: bytes) -> "SunCells":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return SunCells(
             (word >> 4 & 0x1),
             (word >> 8 & 0xFF) * 0.0078125,
@@ -811,7 +811,7 @@ class _Attitude(Value):
     @classmethod
     def decode(cls, data: bytes) -> Self:
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return cls(
             (word >> 4 & 0x1),
             ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.52587890625e-05,
@@ -858,7 +858,7 @@ class _Rate(Value):
     @classmethod
     def decode(cls, data: bytes) -> Self:
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return cls(
             (word >> 4 & 0x1),
             ((word >> 5 & 0x1FFFF ^ 0x10000) - 0x10000) * 1.9073486328125e-06,
@@ -911,7 +911,7 @@ class WheelStatus(Value):
     @staticmethod
     def decode(data: bytes) -> "WheelStatus":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return WheelStatus(
             (word >> 4 & 0x1),
             (word >> 5 & 0x7),
@@ -1039,7 +1039,7 @@ class NavQuality(Value):
     @staticmethod
     def decode(data: bytes) -> "NavQuality":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return NavQuality(
             (word >> 4 & 0x7),
             (word >> 8 & 0xFFFF) * 6.103515625e-05,
@@ -1086,7 +1086,7 @@ class NavParameter(Value):
     @staticmethod
     def decode(data: bytes) -> "NavParameter":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return NavParameter(
             (word >> 4 & 0x3F),
             ((word >> 10 & 0xFF ^ 0x80) - 0x80),
@@ -1126,7 +1126,7 @@ class TcAck(Value):
     @staticmethod
     def decode(data: bytes) -> "TcAck":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return TcAck(
             (word >> 4 & 0xF),
             (word >> 8 & 0x7FF),
@@ -1185,7 +1185,7 @@ class _Event(Value):
     @classmethod
     def decode(cls, data: bytes) -> Self:
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return cls(
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
@@ -1238,7 +1238,7 @@ class FswEvent(Value):
     @staticmethod
     def decode(data: bytes) -> "FswEvent":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return FswEvent(
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
@@ -1278,7 +1278,7 @@ class CoilEvent(Value):
     @staticmethod
     def decode(data: bytes) -> "CoilEvent":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return CoilEvent(
             (word >> 4 & 0xF),
             (word >> 8 & 0xFF),
@@ -1349,7 +1349,7 @@ class _Boot(Value):
     @classmethod
     def decode(cls, data: bytes) -> Self:
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = word_of(data)
         return cls((word >> 4 & 0xF), (word >> 8 & 0xFF), (word >> 16 & 0xFFFFFFFF), (word & 0xF))
 
 
@@ -1455,7 +1455,7 @@ class _Heartbeat(Value):
     @classmethod
     def decode(cls, data: bytes) -> Self:
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data[:7], "little")
+        word = word_of(data)
         return cls(
             (word >> 4 & 0xF),
             (word >> 8 & 0xFFFF),
@@ -1564,7 +1564,7 @@ class PlantEnd(Value):
     @staticmethod
     def decode(data: bytes) -> "PlantEnd":
         """The values in the data bytes, unjudged."""
-        word = int.from_bytes(data, "little")
+        word = word_of(data)
         return PlantEnd((word >> 8 & 0xFFFFFF), (word & 0xF))
 
 
@@ -1832,4 +1832,4 @@ def intact(frame: Frame) -> bool:
     data = frame.data
     if len(data) != length:
         return False
-    return register < 0 or crc8(data[:-1], register) == data[-1]
+    return register < 0 or crc8(data, register) == REMAINDER

@@ -6,7 +6,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame, crc8, id_register, raw, seal
+from fsw.wire.frame import (
+    ERROR_FLAG,
+    EXTENDED_FLAG,
+    REMAINDER,
+    REMOTE_FLAG,
+    Frame,
+    crc8,
+    id_register,
+    raw,
+    seal,
+    word_of,
+)
 
 
 def crc8_by_bits(data: bytes) -> int:
@@ -51,6 +62,17 @@ class TestCrc:
             word ^= 1 << bit
         broken = word.to_bytes(len(sealed), "big")
         assert crc8_by_bits(broken[:-1]) != broken[-1]
+
+
+@given(st.binary(max_size=7), st.integers(0, 255))
+def test_bytes_with_their_own_crc_leave_the_same_whatever_they_are(data, register):
+    right = crc8(data, register)
+    assert [last for last in range(256) if crc8(data + bytes((last,)), register) == REMAINDER] == [right]
+
+
+@given(st.binary(max_size=8))
+def test_the_word_is_of_the_first_seven_bytes(data):
+    assert word_of(data) == int.from_bytes(data[:7], "little")
 
 
 def test_seal_puts_the_word_little_endian_before_the_crc():
