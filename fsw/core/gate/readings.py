@@ -175,7 +175,7 @@ def admit(frames: tuple[Frame, ...], state: GateState, skipped: bool = False) ->
         state: of the tick before; it becomes that of this one.
         skipped: the frames are those of several ticks.
     """
-    readings = Readings()
+    readings, inputs, commands = Readings(), b"", b""
     read = _latest(frames) if skipped else frames[:INBOX_LIMIT]
     state.overrun += len(frames) - len(read)
     whole = [intact(frame) for frame in read]
@@ -186,29 +186,33 @@ def admit(frames: tuple[Frame, ...], state: GateState, skipped: bool = False) ->
         if not whole[place] or (noisy and can_id in TELECOMMANDS):
             state.rejected += 1
         elif slot >= 0:
-            _judge(readings, frame, state, slot)
+            if not _judge(readings, frame, state, slot):
+                state.rejected += 1
+            elif can_id in _IN_ANY_PLACE:
+                commands += frame.data
+            else:
+                inputs += frame.data
         elif can_id in _OWN:
             readings.under_own_id = min(readings.under_own_id or can_id, can_id)
+    state.input_crc = crc32(inputs, state.input_crc)
+    if commands:
+        state.command_crc = crc32(commands, state.command_crc)
     return readings
 
 
-def _judge(readings: Readings, frame: Frame, state: GateState, slot: int) -> None:
-    """Judge an intact frame that is listened to by its counter and its values, and count it."""
+def _judge(readings: Readings, frame: Frame, state: GateState, slot: int) -> bool:
+    """Whether an intact frame that is listened to is accepted, by its counter and its values."""
     can_id, data, counters = frame.can_id, frame.data, state.counters
     if can_id == CoilBoot.ID:  # a board that boots counts anew
         for coil_slot in _COIL_SLOTS:
             counters[coil_slot] = -1
     counter, before = data[0] & 0xF, counters[slot]
     if not _take(readings, can_id, data, repeated=counter == before):
-        state.rejected += 1
-        return
+        return False
     if before >= 0:
         state.missed += (counter - before & 0xF) - 1
     counters[slot] = counter
-    if can_id in _IN_ANY_PLACE:
-        state.command_crc = crc32(data, state.command_crc)
-    else:
-        state.input_crc = crc32(data, state.input_crc)
+    return True
 
 
 def _take(readings: Readings, can_id: int, data: bytes, repeated: bool) -> bool:
