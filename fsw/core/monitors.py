@@ -8,10 +8,9 @@ The purpose of each is in ``docs/requirements.md``.
 """
 
 from enum import IntEnum
-from math import isfinite
 from typing import Final, final
 
-from fsw.core.algebra.vector import Vec3
+from fsw.core.algebra.vector import Vec3, is_finite
 from fsw.core.estimation.attitude import Attitude, rate_bounded
 from fsw.wire.messages import Mode
 from fsw.wire.value import Value
@@ -86,11 +85,11 @@ def first_violation(watched: MonitorInput) -> Monitor | None:
     q0, q1, q2, q3 = attitude.q_body_from_orbit
     w1, w2, w3 = attitude.omega_body_orbit_radps
     owed1, owed2, owed3 = watched.owed_impulse_body_nms
-    if not isfinite(w1 + w2 + w3 + q0 + q1 + q2 + q3):
+    if not is_finite(w1 + w2 + w3 + q0 + q1 + q2 + q3):
         violated = Monitor.ATTITUDE_FINITE
     elif not abs(q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3 - 1.0) < UNIT_TOLERANCE:
         violated = Monitor.QUATERNION_UNIT
-    elif not isfinite(owed1 + owed2 + owed3):
+    elif not is_finite(owed1 + owed2 + owed3):
         violated = Monitor.OWED_FINITE
     elif watched.field_age_ticks >= watched.stale_after_ticks:
         violated = Monitor.FIELD_FRESH

@@ -7,7 +7,7 @@ from typing import Final, final
 from fsw.core.actuation import dipoles, pulses
 from fsw.core.actuation.dipoles import DipoleConfig, RequestedDipole
 from fsw.core.actuation.pulses import PulseConfig, PulseState
-from fsw.core.algebra.vector import ZERO, Vec3, add, cross, scale
+from fsw.core.algebra.vector import ZERO, Vec3, add, cross, row, scale
 from fsw.core.gate.measurements import Measurements
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.plan.pulse_model import NEVER, NO_PULSE, Pulse
@@ -87,7 +87,7 @@ def update_view(view: CoilView, measurements: Measurements, tick: int, config: A
     view.idle_ticks = min(view.idle_ticks + 1, MOST_IDLE_TICKS) if idle else 0
     if config.dipoles is None:
         level_am2 = pulses.dipole_am2(view.driven_level, config.pulses.levels_am2)
-        view.driven_am2 = scale(level_am2, config.pulses.coil_axes[view.driven_coil])
+        view.driven_am2 = scale(level_am2, row(config.pulses.coil_axes, view.driven_coil))
         return
     view.requested.reported = measurements.dipole is not None
     if measurements.dipole is not None:

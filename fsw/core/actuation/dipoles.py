@@ -5,11 +5,10 @@ samples while it is off. An impulse law keeps the timing of the pulses; only its
 """
 
 from dataclasses import dataclass
-from math import isfinite
 from typing import Final, final
 
 from fsw.core.actuation.pulses import PulseConfig, PulseState
-from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, dot, scale, transform
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, dot, is_finite, scale, transform
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.predictive.genetic import search
 from fsw.core.laws.predictive.predictive import best_impulse
@@ -110,7 +109,7 @@ def saturate(m_body_am2: Vec3, config: DipoleConfig) -> CoilDipole:
     if config.coils_from_body is not None:
         m_body_am2 = transform(config.coils_from_body, m_body_am2)
     fractions = scale(1.0 / config.full_scale_am2, m_body_am2)
-    if not isfinite(sum(fractions, 0.0)):
+    if not is_finite(fractions[0] + fractions[1] + fractions[2]):
         return CoilDipole(0.0, 0.0, 0.0)
     most = max(abs(fractions[0]), abs(fractions[1]), abs(fractions[2]))
     x, y, z = scale(MOST / most, fractions) if most > MOST else fractions

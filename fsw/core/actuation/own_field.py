@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.actuation.pulses import dipole_am2
-from fsw.core.algebra.vector import ZERO, Mat3, Vec3, scale, sub, transform
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, row, scale, sub, transform
 from fsw.core.gate.measurements import FieldReading, Measurements
 from fsw.core.laws.plan.pulse_model import AXES
 
@@ -59,7 +59,7 @@ def _remember(view: CoilView, measurements: Measurements, config: OwnField) -> N
     if not _certain(measurements, config):
         view.past_am2 = ()
         return
-    m_am2 = scale(dipole_am2(view.driven_level, config.levels_am2), AXES[view.driven_coil])
+    m_am2 = scale(dipole_am2(view.driven_level, config.levels_am2), row(AXES, view.driven_coil))
     view.past_am2 = (m_am2, *view.past_am2)[: config.oldest + 1]
 
 

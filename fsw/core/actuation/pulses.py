@@ -18,7 +18,20 @@ from dataclasses import dataclass
 from math import copysign
 from typing import final
 
-from fsw.core.algebra.vector import ZERO, Mat3, Vec3, add, cross, dot, norm, scale, sub, transform
+from fsw.core.algebra.vector import (
+    ZERO,
+    Mat3,
+    Vec3,
+    add,
+    cross,
+    dot,
+    item,
+    norm,
+    row,
+    scale,
+    sub,
+    transform,
+)
 from fsw.core.laws.plan.pulse_model import AXES, NEVER, Pulse
 
 
@@ -161,16 +174,20 @@ def choose(
     best: Pulse | None = None
     least = 0.0
     for coil in range(3):
-        if tick < state.ready_tick[coil] or faults[coil]:
+        if tick < _of_coil(coil, state.ready_tick) or _of_coil(coil, faults):
             continue
-        gain = scale(config.pulse_s, cross(config.coil_axes[coil], b_body_t))
+        gain = scale(config.pulse_s, cross(row(config.coil_axes, coil), b_body_t))
         along, square = dot(weighted, gain), dot(gain, transform(metric, gain))
         for index in range(3):
-            level_am2 = config.levels_am2[index]
+            level_am2 = item(config.levels_am2, index)
             change = level_am2 * (level_am2 * square - 2.0 * abs(along))
             if change < least:
                 least, best = change, Pulse(coil, index + 1 if along > 0.0 else -index - 1)
     return best
+
+
+def _of_coil(coil: int, three: tuple[int, int, int]) -> int:
+    return three[0] if coil == 0 else three[1] if coil == 1 else three[2]
 
 
 def fire(state: PulseState, pulse: Pulse, paid_body_nms: Vec3, tick: int, config: PulseConfig) -> None:
@@ -189,10 +206,10 @@ def fire(state: PulseState, pulse: Pulse, paid_body_nms: Vec3, tick: int, config
 
 def impulse(pulse: Pulse, b_body_t: Vec3, config: PulseConfig) -> Vec3:
     """The impulse of a pulse, T_p m x b, body axes, N m s."""
-    dipole = scale(dipole_am2(pulse.level, config.levels_am2), config.coil_axes[pulse.coil])
+    dipole = scale(dipole_am2(pulse.level, config.levels_am2), row(config.coil_axes, pulse.coil))
     return scale(config.pulse_s, cross(dipole, b_body_t))
 
 
 def dipole_am2(level: int, levels_am2: Vec3) -> float:
     """The dipole of a level, A m^2, signed; zero for level 0."""
-    return copysign(levels_am2[abs(level) - 1], level) if level else 0.0
+    return copysign(item(levels_am2, abs(level) - 1), level) if level else 0.0

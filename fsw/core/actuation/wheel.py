@@ -9,10 +9,10 @@ refused request need no model there. Where a report is missing, the change comes
 """
 
 from dataclasses import dataclass
-from math import isfinite, sqrt
+from math import sqrt
 from typing import Final, final
 
-from fsw.core.algebra.vector import scale
+from fsw.core.algebra.vector import is_finite, scale
 from fsw.core.estimation.mekf_config import WheelMotion
 from fsw.core.gate.measurements import Measurements
 from fsw.core.laws.interface import Demand, Wheel
@@ -114,7 +114,7 @@ def request(view: WheelView, demand: Demand | None, tick: int, wheel: Wheel) -> 
     """
     wanted_nm = None if demand is None else demand.wheel_torque_nm
     view.requested_nm = 0.0
-    if wanted_nm is None or view.tick < 0 or not isfinite(wanted_nm):
+    if wanted_nm is None or view.tick < 0 or not is_finite(wanted_nm):
         return None
     torque_nm = wanted_nm + friction_nm(view.speed_radps, wheel)
     limit_nm = wheel.max_torque_nm - UNIT_NM

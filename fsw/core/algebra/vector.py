@@ -27,6 +27,21 @@ def scale(factor: float, a: Vec3) -> Vec3:
     return (factor * a[0], factor * a[1], factor * a[2])
 
 
+def row(m: Mat3, index: int) -> Vec3:
+    """The row of this index, 0 to 2."""
+    return m[0] if index == 0 else m[1] if index == 1 else m[2]
+
+
+def item(a: Vec3, index: int) -> float:
+    """The component of this index, 0 to 2."""
+    return a[0] if index == 0 else a[1] if index == 1 else a[2]
+
+
+def is_finite(number: float) -> bool:
+    """Whether it is a number: what is not, or is infinite, less itself is none."""
+    return number - number == 0.0
+
+
 def is_zero(a: Vec3) -> bool:
     """Whether all its components are zero."""
     return a[0] == 0.0 and a[1] == 0.0 and a[2] == 0.0

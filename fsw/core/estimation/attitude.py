@@ -1,6 +1,6 @@
 """The attitude as control and telemetry use it."""
 
-from typing import final
+from typing import Final, final
 
 from fsw.core.algebra.quaternion import Quaternion
 from fsw.core.algebra.vector import ZERO, Vec3
@@ -44,11 +44,11 @@ class Attitude(Value):
 
 UNKNOWN = Attitude((1.0, 0.0, 0.0, 0.0), ZERO, 4.0, 1.0, False)
 
-RATE_LIMIT_RADPS = 0.5
+RATE_LIMIT_RADPS: Final = 0.5
 """About each axis: no satellite is to turn as fast."""
 
 
 def rate_bounded(attitude: Attitude) -> bool:
     """Whether the rate is one that the satellite may have."""
     x, y, z = attitude.omega_body_orbit_radps
-    return max(abs(x), abs(y), abs(z)) < RATE_LIMIT_RADPS
+    return abs(x) < RATE_LIMIT_RADPS and abs(y) < RATE_LIMIT_RADPS and abs(z) < RATE_LIMIT_RADPS

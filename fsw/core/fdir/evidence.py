@@ -116,7 +116,11 @@ def misfit(nis: float, numbers: int) -> float:
     return max(-1.0, min(1.0, weight))
 
 
-def mean_misfit(means: tuple[float, ...], weights: EvidenceWeights) -> float:
+Means = tuple[float, float, float, float, float, float]
+"""Of field and Sun, three numbers each."""
+
+
+def mean_misfit(means: Means, weights: EvidenceWeights) -> float:
     """What the mean innovations of the sensor that is further off weigh against the estimate, nats.
 
     The log-likelihood ratio of a lasting deviation, and of a covariance ``INFLATION`` times the filter's:

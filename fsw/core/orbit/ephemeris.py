@@ -5,11 +5,11 @@ around a tick does not depend on earlier ticks.
 """
 
 from dataclasses import dataclass, replace
-from math import cos, isfinite, sin
+from math import cos, sin
 from typing import Final, final
 
 from fsw.core.algebra.quaternion import Quaternion, conjugate, from_dcm, rotate
-from fsw.core.algebra.vector import ZERO, Vec3, cross, dot, norm, scale, sub
+from fsw.core.algebra.vector import ZERO, Vec3, cross, dot, is_finite, norm, scale, sub
 from fsw.core.orbit.elements import Elements
 from fsw.core.orbit.field import FieldKind, OnboardField, field_eci_t, prepare_field
 from fsw.core.orbit.igrf_coefficients import MAX_DEGREE
@@ -198,7 +198,7 @@ def plausible(reference: Reference) -> bool:
         LEAST_RADIUS_M < reference.radius_m < MOST_RADIUS_M
         and norm(reference.b_eci_t) < MOST_FIELD_T
         and 0.9 < norm(reference.sun_eci) < 1.1
-        and isfinite(q0 + q1 + q2 + q3 + reference.orbit_rate_radps)
+        and is_finite(q0 + q1 + q2 + q3 + reference.orbit_rate_radps)
     )
 
 

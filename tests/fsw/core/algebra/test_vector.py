@@ -1,5 +1,7 @@
 """3-vectors and 3x3 matrices on plain floats, against numpy."""
 
+from math import inf, nan
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -32,6 +34,19 @@ def test_vector_algebra(a, b, factor):
 )
 def test_zero_is_every_component(a, zero):
     assert vector.is_zero(a) is zero
+
+
+@pytest.mark.parametrize(
+    ("number", "finite"), [(0.0, True), (-1.7e308, True), (inf, False), (-inf, False), (nan, False)]
+)
+def test_what_is_infinite_or_no_number_is_not_finite(number, finite):
+    assert vector.is_finite(number) is finite
+
+
+@given(matrices, vectors, st.integers(0, 2))
+def test_rows_and_components_are_found_by_their_index(m, a, index):
+    assert vector.row(m, index) == m[index]
+    assert vector.item(a, index) == a[index]
 
 
 @given(matrices, matrices, vectors)
