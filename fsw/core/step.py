@@ -3,7 +3,7 @@
 from fsw.core import telemetry
 from fsw.core.actuation import own_field, pulses, read_back, wheel
 from fsw.core.actuation.actuator import actuate, update_view, wait_ticks
-from fsw.core.actuation.driven import driven
+from fsw.core.actuation.drives import find_drives
 from fsw.core.actuation.wheel import WheelView
 from fsw.core.algebra.quaternion import rotate
 from fsw.core.algebra.vector import ZERO
@@ -140,7 +140,7 @@ def _predict(
     if state.estimator.estimate is not None or state.estimator.batch.samples:
         driven_am2 = fdir.driven_am2(state.health, state.coil, config.fdir)
         ticks, reported = range(before + 1, tick + 1), state.status_tick == tick
-        drives = driven(state.coil, driven_am2, reported, ticks, config.coils)
+        drives = find_drives(state.coil, driven_am2, reported, ticks, config.coils)
         predict(state.estimator, reference, drives, config.estimator, motion)
     return reference
 

@@ -10,7 +10,7 @@ from gate_samples import measured
 
 from fsw.core.actuation.actuator import CoilView, update_view
 from fsw.core.actuation.dipoles import DipoleConfig, RequestedDipole
-from fsw.core.actuation.driven import driven
+from fsw.core.actuation.drives import find_drives
 from fsw.core.laws.plan.pulse_model import Pulse
 from fsw.wire.messages import CoilDipoleStatus, CoilStatus
 
@@ -42,7 +42,7 @@ def drives(coils):
         tick = TICK + ticks_after
         after = then(update_view, view, measured(coil=status), tick, coils)
         ticks = range(tick - skipped, tick + 1)
-        return pairs(driven(after, after.driven_am2, status is not None, ticks, coils))
+        return pairs(find_drives(after, after.driven_am2, status is not None, ticks, coils))
 
     return over
 
@@ -102,16 +102,16 @@ def test_whatever_ticks_of_a_pulse_are_unknown_their_sum_is_in_doubt_by_no_less(
 
 
 def test_a_stray_current_that_the_filter_knows_of_is_no_doubt(coils):
-    now = driven(FIRED, (0.3, 0.0, 0.0), True, range(TICK + 50, TICK + 51), coils)
+    now = find_drives(FIRED, (0.3, 0.0, 0.0), True, range(TICK + 50, TICK + 51), coils)
     assert pairs(now) == [((0.3, 0.0, 0.0), ZERO)]
 
 
 def test_it_flows_in_skipped_ticks_too(coils):
     """For minutes as a rule: without it the filter would find the rate changed by nothing."""
     stray_am2 = (0.3, 0.0, -0.1)
-    skipped = driven(FIRED, stray_am2, True, range(TICK + 50, TICK + 53), coils)
+    skipped = find_drives(FIRED, stray_am2, True, range(TICK + 50, TICK + 53), coils)
     assert pairs(skipped) == [(stray_am2, ZERO)] * 3
-    under_way, off, _ = pairs(driven(FIRED, stray_am2, True, range(TICK + 3, TICK + 6), coils))
+    under_way, off, _ = pairs(find_drives(FIRED, stray_am2, True, range(TICK + 3, TICK + 6), coils))
     assert under_way == ((0.3, -8.0, -0.1), DOUBTED_AM2)
     assert off == (stray_am2, ZERO)
 
@@ -132,7 +132,9 @@ class TestContinuousDriver:
         def over(ticks_after, status=None, skipped=0, asked_am2=self.WANTED_AM2):
             tick, view = TICK + ticks_after, CoilView(requested=RequestedDipole(TICK, asked_am2))
             after = then(update_view, view, measured(dipole=status), tick, continuous)
-            return pairs(driven(after, after.driven_am2, True, range(tick - skipped, tick + 1), continuous))
+            return pairs(
+                find_drives(after, after.driven_am2, True, range(tick - skipped, tick + 1), continuous)
+            )
 
         return over
 

@@ -9,11 +9,11 @@ from math import sqrt
 
 from fsw.core.actuation.actuator import ActuatorConfig, CoilView, requested_level
 from fsw.core.actuation.pulses import dipole_am2
-from fsw.core.algebra.vector import Vec3, add, scale, sub
+from fsw.core.algebra.vector import Vec3, add, row, scale, sub
 from fsw.core.estimation.dynamics.error_dynamics import Driven
 
 
-def driven(
+def find_drives(
     view: CoilView, m_body_am2: Vec3, reported: bool, ticks: range, config: ActuatorConfig
 ) -> list[Driven]:
     """What the coils drove over each of these ticks, and how uncertain that is.
@@ -51,4 +51,4 @@ def _requested_am2(view: CoilView, tick: int, config: ActuatorConfig) -> Vec3:
     if config.dipoles is not None:
         return view.requested.over(tick)
     level, pulses = requested_level(view, tick, config.pulses), config.pulses
-    return scale(dipole_am2(level, pulses.levels_am2), pulses.coil_axes[view.fired.coil])
+    return scale(dipole_am2(level, pulses.levels_am2), row(pulses.coil_axes, view.fired.coil))
