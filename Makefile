@@ -87,7 +87,7 @@ test-interpreted: environment
 	$(interpreted)
 
 test-long: venv
-	$(bin)/pytest $(PYTEST_FLAGS) -m long
+	$(bin)/pytest $(PYTEST_FLAGS) --durations=15 -m long
 	$(interpreted) -m "interpreted and long"
 
 lint: environment
