@@ -43,10 +43,10 @@ COUNT = re.compile(r"^ *([\d,]+) \([^)]*\).*CPyDef_(step___|plant___Plant___)(\w
 TRIED = """## What holds more back
 
 Where a tick's instructions go is above. Beside step and plant, the lines of the log and their digests, the
-loop and the bus take a sixth. Of the step, the checksum of the state is the largest part that is not the
+loop and the bus take some tenth. Of the step, the checksum of the state is the largest part that is not the
 filter's: half of it is zlib's CRC-32, which takes 3.6 instructions a byte. Most of what is left is the making
-of arrays, tuples and messages, not arithmetic: a product of two 3x3 matrices by numpy costs 7000 instructions,
-an array that the kernel returns 1300, the lookup of a module's constant that is not final 100.
+of arrays, tuples and messages, not arithmetic: a product of two 3x3 matrices by numpy costs 7000
+instructions, an array that the kernel returns 1300, the lookup of a constant that is not final 100.
 
 Tried, and not worth what it costs: `-O1` in place of `-O2` builds in five sixths of the time, and the plant
 then takes 2 to 4 % more instructions; hidden symbols save 0.7 % and are kept. Not tried: link-time and
