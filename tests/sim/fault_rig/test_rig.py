@@ -98,7 +98,8 @@ def test_the_log_of_the_audit_has_the_frames_that_the_board_sent_not_those_recei
 def test_an_exception_in_a_step_is_noted_and_ends_fsw(flown):
     class Poison(Fault):
         def upset(self, state):
-            return None
+            state.sent.clear()
+            return state
 
     record = flown(Poison(Random(1), {}), 20, first=10, end=11)
     assert "tick 10" in record.crash

@@ -6,6 +6,7 @@ import pytest
 from fsw.core.algebra.vector import inverse
 from fsw.core.laws.plan.orbit_ahead import Sight
 from fsw.core.laws.plan.pulse_model import AXES, NEVER, NO_PULSE, Pulse, PulseModel, choices, kicks
+from fsw.core.laws.plan.riccati import regulator_problem
 
 INERTIA = ((1.02, 0.03, -0.05), (0.03, 1.85, 0.02), (-0.05, 0.02, 1.95))
 LEVELS_AM2, PULSE_S = (0.5, 2.0, 8.0), 3.0
@@ -16,7 +17,8 @@ FIELD_T = np.array([2.1e-5, -1.3e-5, 0.9e-5])
 
 def model_of(axes=AXES):
     pulses, turns = choices(LEVELS_AM2, PULSE_S, inverse(INERTIA), axes)
-    return PulseModel(pulses, turns, 103, 1, None, 6, Sight((), np.zeros((0, 0))))
+    problem = regulator_problem(INERTIA, (0.0, 0.0, 0.0), 1.04e-3, 3e-5, 103.0, 1e-3, 1.0)
+    return PulseModel(pulses, turns, 103, 1, problem, 6, Sight((), np.zeros((0, 0))))
 
 
 def test_there_are_eighteen_and_none():
