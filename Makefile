@@ -71,6 +71,7 @@ $(compiled): tools/compile_group.py $(shell find fsw hil_stub sim -name '*.py') 
 
 compiled: venv
 	@$(bin)/python tools/compile_group.py --check
+	@$(bin)/python -c 'import fsw, fsw.core.estimation._kalman_kernel'
 
 sil: venv
 	$(bin)/torquer sil

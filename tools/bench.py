@@ -43,7 +43,7 @@ COUNT = re.compile(r"^ *([\d,]+) \([^)]*\).*CPyDef_(step___|plant___Plant___)(\w
 TRIED = """## What holds more back
 
 Where a tick's instructions go is above. Beside step and plant, the lines of the log and their digests, the
-loop and the bus take some tenth. Of the step, the checksum of the state is the largest part that is not the
+loop and the bus take a seventh. Of the step, the checksum of the state is the largest part that is not the
 filter's: half of it is zlib's CRC-32, which takes 3.6 instructions a byte. Most of what is left is the making
 of arrays, tuples and messages, not arithmetic: a product of two 3x3 matrices by numpy costs 7000
 instructions, an array that the kernel returns 1300, the lookup of a constant that is not final 100.
@@ -106,13 +106,11 @@ def parts_of(scenario: str) -> dict[str, float]:
 
 def instructions(listed: str, ticks: int) -> dict[str, float]:
     """What ``callgrind_annotate`` lists of these functions, in thousands a tick, dearest first."""
-    found = COUNT.findall(listed)
-    return {
-        f"{of.removesuffix('___').replace('___', '.')}.{name.strip('_')}": int(count.replace(",", ""))
-        / ticks
-        / 1e3
-        for count, of, name in found
-    }
+    thousands = {}
+    for number, owner, name in COUNT.findall(listed):
+        place = owner.removesuffix("___").replace("___", ".")
+        thousands[f"{place}.{name.strip('_')}"] = int(number.replace(",", "")) / ticks / 1e3
+    return thousands
 
 
 def plans_of(scenario: str, orbits: float) -> dict[str, Any]:
