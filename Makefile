@@ -88,7 +88,8 @@ test-interpreted: environment
 	$(interpreted)
 
 test-long: venv
-	$(bin)/pytest $(PYTEST_FLAGS) --durations=15 -m long
+	$(bin)/pytest $(PYTEST_FLAGS) --durations=15 -m "long and not paced"
+	$(bin)/pytest $(PYTEST_FLAGS) -m "long and paced"
 	$(interpreted) -m "interpreted and long"
 
 lint: environment

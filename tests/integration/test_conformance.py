@@ -15,7 +15,7 @@ from contextlib import contextmanager
 
 import pytest
 
-pytestmark = pytest.mark.long
+pytestmark = [pytest.mark.long, pytest.mark.paced]
 
 LIMITS = ("--set", "coils.pulse_s=1.2", "--set", "coils.backoff_s=3.9", "--deadman-s", "2.0")
 BOARD = ("coil", "--pulse-s", "1.2", "--backoff-s", "3.9", "--deadman-s", "2.0")

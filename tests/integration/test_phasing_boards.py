@@ -17,7 +17,7 @@ from sim.record import run_dir
 from sim.record.pace import Pace
 from sim.scenario.schema import load, parse_settings
 
-pytestmark = pytest.mark.long
+pytestmark = [pytest.mark.long, pytest.mark.paced]
 
 QUICK = (
     "time.tick_hz=10",
