@@ -181,7 +181,8 @@ def _results(out: Path | None, whole: bool, record: bool, studies: Sequence[Stud
     flown = [study for study in all_studies(None) if isinstance(study, FlightStudy)] if record else []
     claimed = {claim.id: claim for study in flown for claim in claims_of(study)}
     ids = frozenset(study.id for study in studies)
-    return ResultFiles(page, figures, ids, judging_digests(), claimed, before)
+    judges = judging_digests() if any(study.has_flights for study in studies) else {}
+    return ResultFiles(page, figures, ids, judges, claimed, before)
 
 
 def _tell_left_out(meant: Sequence[Study], chosen: Sequence[Study]) -> None:
