@@ -18,6 +18,9 @@ MAX_ORDERS = 1000
 MAX_REORDERED = 1024
 """Most frames that are stored for another order; beyond that, only the logged order counts."""
 
+CHECKPOINT_FRAMES = 1000
+"""Frames between copies of the node: a copy takes longer than a step."""
+
 
 class ReplayedSoftware:
     """Answers the frames of a log as the flight software would.
@@ -40,9 +43,11 @@ class ReplayedSoftware:
         """The frames that fsw sends next, each with its tick."""
         self.ticks = 0
         """Ticks replayed."""
-        self._before: FlightNode | None = None  # before the inputs that are being answered
-        self._ticks_before = 0
-        self._inputs: list[Frame] = []  # the frames that are being answered
+        self._checkpoint: FlightNode | None = None  # a copy of the node
+        self._since: list[Frame] = []  # what it received after the copy and before the inputs
+        self._ticks_before = 0  # ticks replayed before the inputs
+        self._inputs: list[Frame] = []  # the frames that are being answered, as logged
+        self._order: list[Frame] = []  # the same as the node received them
         self._answer: list[Frame] = []  # the logged frames of the answer
 
     @property
@@ -53,15 +58,16 @@ class ReplayedSoftware:
     def reboot(self) -> None:
         """Restart, as after a FSW_BOOT that the plant asked for again."""
         self._node.start()
+        self._checkpoint = None
 
     def receive(self, frame: Frame) -> None:
         """Take a frame that fsw did not send."""
-        if not self.expected and (self._answer or self._before is None):
-            self._before, self._ticks_before = self._node.copy(), self.ticks
-            self._inputs, self._answer = [], []
+        if not self.expected and (self._answer or self._checkpoint is None):
+            self._begin_answer()
         self._inputs.append(frame)
+        self._order.append(frame)
         if len(self._inputs) > MAX_REORDERED:  # fsw was late for a long time
-            self._before, self._inputs = None, []
+            self._checkpoint, self._inputs, self._order = None, [], []
         self._step(frame)
 
     def explains(self, frame: Frame) -> bool:
@@ -70,7 +76,22 @@ class ReplayedSoftware:
         if self.expected and self.expected[0][1] == frame:
             self.expected.popleft()
             return True
-        return self._before is not None and self._reordered(self._before)
+        return self._checkpoint is not None and self._reordered(self._node_before(self._checkpoint))
+
+    def _begin_answer(self) -> None:
+        """The next frame is the first that the next answer is to."""
+        self._since += self._order
+        if self._checkpoint is None or len(self._since) > CHECKPOINT_FRAMES:
+            self._checkpoint, self._since = self._node.copy(), []
+        self._ticks_before = self.ticks
+        self._inputs, self._order, self._answer = [], [], []
+
+    def _node_before(self, checkpoint: FlightNode) -> FlightNode:
+        """The node before the inputs; it is the checkpoint from then on."""
+        for frame in self._since:
+            checkpoint.receive(frame)
+        self._since = []
+        return checkpoint
 
     def _step(self, frame: Frame) -> None:
         before = self._node.state.tick
@@ -91,6 +112,7 @@ class ReplayedSoftware:
             if explained == self._answer:
                 for _ in explained:
                     self.expected.popleft()
+                self._order = order
                 return True
         self._node, self.expected, self.ticks = logged_order
         return False
