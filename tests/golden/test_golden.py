@@ -57,6 +57,13 @@ def test_every_bit_is_as_recorded_on_the_same_platform(golden, shown):
         assert shown.command_exact
 
 
+def test_the_filter_by_filterpy_gives_the_same_commands(golden):
+    scenario = load(str(golden / run_dir.SCENARIO), {"flight": {"estimator": {"algebra": "filterpy"}}})
+    shown = replay(golden / run_dir.BUS_LOG, flight_config(flight_table(scenario)))
+    assert shown.ended
+    assert shown.first_command_difference is None
+
+
 def leaves(values, path=""):
     """Every value of nested tables by its full key."""
     if not isinstance(values, dict):
