@@ -1,4 +1,4 @@
-"""The filter by its kernel against the same by filterpy: satellites that differ from their tables, whole flights."""
+"""Kernel and filterpy give the same flights of satellites that differ from their tables."""
 
 import pytest
 
