@@ -3,6 +3,8 @@
 # make compiled   does the flight code run compiled? if not, why not, and an error
 # make test-interpreted   the tests, but for the long ones, all interpreted
 # make test-long   those of over a second: many orbits, processes, waits in real time; on a CAN interface where there is one: a quarter of an hour
+# make test-paced   of the long ones, those that keep deadlines in real time: they want a core for themselves
+# make test-unpaced   the other long ones
 # make lint   style, types, layers, generated code, pages and pictures
 # make validate   compute every claim and reference figure, into docs/validation.md: some hours; stopped, it goes on where it was
 # make validate-recorded the same whole, but flights that this code has flown and judged count as docs/validation.json has them: a minute or two
@@ -43,7 +45,7 @@ compiled := .venv/.compiled
 pip := TORQUER_INTERPRETED=1 $(bin)/pip install --quiet --disable-pip-version-check
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv environment compiled sil test test-interpreted test-long lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate validate-recorded same-flights fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv environment compiled sil test test-interpreted test-long test-unpaced test-paced lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate validate-recorded same-flights fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -77,7 +79,7 @@ sil: venv
 	$(bin)/torquer sil
 
 # a worker, a core
-test test-interpreted test-long: export OPENBLAS_NUM_THREADS = 1
+test test-interpreted test-unpaced test-paced: export OPENBLAS_NUM_THREADS = 1
 interpreted := TORQUER_INTERPRETED=1 $(bin)/pytest $(PYTEST_FLAGS)
 
 test: venv
@@ -87,10 +89,14 @@ test: venv
 test-interpreted: environment
 	$(interpreted)
 
-test-long: venv
+test-long: test-unpaced test-paced
+
+test-unpaced: venv
 	$(bin)/pytest $(PYTEST_FLAGS) --durations=15 -m "long and not paced"
-	$(bin)/pytest $(PYTEST_FLAGS) -m "long and paced"
 	$(interpreted) -m "interpreted and long"
+
+test-paced: venv
+	$(bin)/pytest $(PYTEST_FLAGS) -m "long and paced"
 
 lint: environment
 	$(bin)/ruff check
