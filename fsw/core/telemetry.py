@@ -228,8 +228,7 @@ def happenings(
     found += fault_events.happenings(before.faults, find_faults(state.health))
     if state.second_sender.detected and not before.second_sender:
         found.append(Happening(Event.SECOND_SENDER, state.second_sender.can_id))
-    if measurements.refused is not None:
-        found.append(Happening(Event.REQUEST_REFUSED, measurements.refused.reason))
+    found += [Happening(Event.REQUEST_REFUSED, refused.reason) for refused in measurements.refused]
     if state.time_error_s != before.time_error_s:
         found.append(Happening(Event.TIME_MISMATCH, state.time_error_s))
     return found

@@ -62,5 +62,11 @@ def measured(calibration=NO_CALIBRATION, **given):
     return measurements
 
 
+def taken(readings):
+    """The last that came of each kind, in the order of ``EVERY_KIND``."""
+    each = (getattr(readings, kind) for kind in KINDS)
+    return tuple(((None, *kind)[-1] if isinstance(kind, tuple) else kind) for kind in each)
+
+
 def broken(frame):
     return frame.replace(data=bytes((frame.data[0] ^ 0x20,)) + frame.data[1:])

@@ -8,7 +8,7 @@ from fsw.core.actuation import dipoles, pulses
 from fsw.core.actuation.dipoles import DipoleConfig, RequestedDipole
 from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.algebra.vector import ZERO, Vec3, add, cross, row, scale
-from fsw.core.gate.measurements import Measurements
+from fsw.core.gate.measurements import CoilReport, Measurements, Refusal
 from fsw.core.laws.interface import Demand
 from fsw.core.laws.plan.pulse_model import NEVER, NO_PULSE, Pulse
 from fsw.wire.messages import CoilDipole, CoilFire, CoilRefusedReason
@@ -69,8 +69,7 @@ def update_view(view: CoilView, measurements: Measurements, tick: int, config: A
     """
     if measurements.coil_booted:
         view.lockout_ms = LOCKOUT_UNKNOWN
-    if measurements.refused is not None:
-        view.refusals += 1
+    view.refusals += len(measurements.refused)
     status = measurements.coil
     if status is not None:
         a, b, c = view.lockout_ms
@@ -173,19 +172,18 @@ def actuate(
             return None
         dipoles.remember(view.requested, request, tick, config.dipoles)
         return request
-    if _refused(view, measurements, tick):
+    if any([_refuses(refused, view, measurements.coil, tick) for refused in measurements.refused]):
         state.owed_impulse_body_nms = add(state.owed_impulse_body_nms, view.paid_body_nms)
         view.fired, view.paid_body_nms = NO_PULSE, ZERO
     return _pulse(state, view, demand, b_body_t, measurements.coil is not None, tick, config.pulses, faults)
 
 
-def _refused(view: CoilView, measurements: Measurements, tick: int) -> bool:
-    """Whether the request of the tick before, or of the one before that, was refused.
+def _refuses(refused: Refusal, view: CoilView, status: CoilReport | None, tick: int) -> bool:
+    """Whether this is the refusal of the request of the tick before, or of the one before that.
 
     Not if the board reports that it is driven: then another frame of that tick was refused.
     """
-    refused, status = measurements.refused, measurements.coil
-    if refused is None or tick > view.fired_tick + 2 or refused.tick != view.fired_tick & 0xFF:
+    if tick > view.fired_tick + 2 or refused.tick != view.fired_tick & 0xFF:
         return False
     fired = view.fired
     if status is not None and status.level and status.coil == fired.coil and status.level == fired.level:

@@ -21,7 +21,7 @@ from fsw.core.gate.measurements import (
     WheelReading,
 )
 from fsw.core.gate.readings import Readings
-from fsw.wire.messages import CoilDipole, CoilFire, MagField
+from fsw.wire.messages import CoilDipole, CoilFire, CoilRefused, MagField
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,22 +109,26 @@ def _measure_sun(measurements: Measurements, readings: Readings, body_from_senso
 
 
 def _measure_coils(measurements: Measurements, readings: Readings, outputs: Outputs | None) -> None:
-    coil, refused, dipole = readings.coil, readings.refused, readings.dipole
+    coil, dipole = readings.coil, readings.dipole
     if coil is not None:
         axis, sign = (coil.coil, 1) if outputs is None else (outputs.axis[coil.coil], outputs.sign[coil.coil])
         current_ma = sign * coil.current_ma if coil.level else coil.current_ma
         measurements.coil = CoilReport(
             sign * coil.level, axis, coil.remaining_ms, current_ma, coil.lockout_ms, coil.seq
         )
-    if refused is not None:
-        axis = refused.coil
-        if outputs is not None and axis < len(outputs.axis):
-            axis = outputs.axis[axis]
-        measurements.refused = Refusal(axis, refused.seq, refused.reason, refused.tick)
+    measurements.refused = tuple([_refusal(refused, outputs) for refused in readings.refused])
     if dipole is not None:
         driven = (dipole.m_x, dipole.m_y, dipole.m_z)
         measurements.dipole = driven if outputs is None else _dipole_by_axis(driven, outputs)
     measurements.coil_booted = readings.coil_boot is not None
+
+
+def _refusal(refused: CoilRefused, outputs: Outputs | None) -> Refusal:
+    """By coil axis; the board names what was requested, and that may be no output."""
+    axis = refused.coil
+    if outputs is not None and axis < len(outputs.axis):
+        axis = outputs.axis[axis]
+    return Refusal(axis, refused.seq, refused.reason, refused.tick)
 
 
 def _dipole_by_axis(driven: Vec3, outputs: Outputs) -> Vec3:

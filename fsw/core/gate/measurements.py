@@ -108,9 +108,9 @@ class Measurements:
 
     ``dipole``: what a continuous driver drove, as fractions of full scale. ``coil_booted``: the coil driver
     has started in this tick. ``end_ticks``: those flown by a PLANT_END after which the flight has gone on, -1
-    without one. Telecommands are all taken, in order of reception; ``repeated`` are those with the counter of
-    the one before. ``under_own_id`` is the lowest identifier of fsw itself under which an intact frame came,
-    0 if none did.
+    without one. Refusals and telecommands are all taken, in order of reception; ``repeated`` are telecommands
+    with the counter of the one before. ``under_own_id`` is the lowest identifier of fsw itself under which an
+    intact frame came, 0 if none did.
 
     ``saturated``: for each axis of the magnetometer that is at the end of its range, the direction of
     ``field``, body axes, that follows from its reading. ``quiet``: no coil has been driven for as long as a
@@ -124,7 +124,7 @@ class Measurements:
     field: FieldReading | None = None
     sun: SunReading | None = None
     coil: CoilReport | None = None
-    refused: Refusal | None = None
+    refused: tuple[Refusal, ...] = ()
     ref_attitude: ReferenceReading | None = None
     ref_rate: ReferenceReading | None = None
     dipole: Vec3 | None = None

@@ -103,9 +103,9 @@ _COIL_SLOTS: Final = [slot for can_id, slot in _SLOT.items() if SENDERS[can_id] 
 class Readings(Value):
     """The last accepted message of each kind in this tick, as it was sent; None where there was none.
 
-    Telecommands are all taken, in order of reception; ``repeated`` are those with the counter of the one
-    before. ``under_own_id`` is the lowest identifier of fsw itself under which an intact frame came, 0 if
-    none did. ``end`` is a PLANT_END after which the flight has gone on. Filled by ``admit``.
+    Refusals and telecommands are all taken, in order of reception; ``repeated`` are telecommands with the
+    counter of the one before. ``under_own_id`` is the lowest identifier of fsw itself under which an intact
+    frame came, 0 if none did. ``end`` is a PLANT_END after which the flight has gone on. Filled by ``admit``.
     """
 
     FIELDS = (
@@ -119,7 +119,7 @@ class Readings(Value):
         field: MagField | None = None,
         sun: SunVector | None = None,
         coil: CoilStatus | None = None,
-        refused: CoilRefused | None = None,
+        refused: tuple[CoilRefused, ...] = (),
         ref_attitude: RefAttitude | None = None,
         ref_rate: RefRate | None = None,
         dipole: CoilDipoleStatus | None = None,
@@ -218,8 +218,8 @@ def _judge(readings: Readings, frame: Frame, state: GateState, slot: int) -> boo
 def _take(readings: Readings, can_id: int, data: bytes, repeated: bool) -> bool:
     """Whether a message is accepted: it is no repetition, and its values are possible.
 
-    It is then kept, in the place of an earlier one of its kind; telecommands are all kept, those that are
-    repeated apart. ``commands`` judges and answers their values.
+    It is then kept, in the place of an earlier one of its kind; refusals and telecommands are all kept,
+    telecommands that are repeated apart. ``commands`` judges and answers their values.
     """
     if can_id in TELECOMMANDS:
         telecommand = TELECOMMANDS[can_id].decode(data)
@@ -260,7 +260,7 @@ def _keep(readings: Readings, can_id: int, data: bytes) -> None:
     elif can_id == WheelStatus.ID:
         readings.wheel = WheelStatus.decode(data)
     elif can_id == CoilRefused.ID:
-        readings.refused = CoilRefused.decode(data)
+        readings.refused = (*readings.refused, CoilRefused.decode(data))
     elif can_id == RefRate.ID:
         readings.ref_rate = RefRate.decode(data)
     elif can_id == CoilBoot.ID:

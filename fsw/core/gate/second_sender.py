@@ -63,7 +63,7 @@ def watch_senders(
         config: the limits.
     """
     can_id, elapsed = measurements.under_own_id, tick - watch.tick
-    if not can_id and measurements.refused is not None and pulsed and _of_another(measurements.refused, seq):
+    if not can_id and pulsed and any([_of_another(refused, seq) for refused in measurements.refused]):
         can_id = CoilFire.ID
     if can_id:
         apart = config.request_ticks if can_id in REQUESTS or watch.detected else config.other_ticks

@@ -253,9 +253,10 @@ class TestEvents:
         assert self.found(lost, again) == [Happening(Event.FILTER_STARTED, 1)]
         assert self.found(running, again) == [Happening(Event.FILTER_RESTARTED, 1)]
 
-    def test_a_refusal_is_told_with_its_reason(self, state):
-        refused = measured(refused=CoilRefused(1, 9, 8, 0))
-        assert self.found(state, state, refused) == [Happening(Event.REQUEST_REFUSED, 8)]
+    def test_each_refusal_is_told_with_its_reason(self, state):
+        refused = measured(refused=(CoilRefused(1, 9, 8, 0), CoilRefused(1, 9, 3, 0)))
+        told = [Happening(Event.REQUEST_REFUSED, 8), Happening(Event.REQUEST_REFUSED, 3)]
+        assert self.found(state, state, refused) == told
 
     @pytest.mark.parametrize("error_s", [1, -1, -86400])
     def test_a_clock_that_is_off_is_told_when_it_changes(self, state, error_s):

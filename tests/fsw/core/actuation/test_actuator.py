@@ -166,7 +166,7 @@ def refused_at(ticks_later, of_tick=TICK):
     state, view, request = run(config=config)
     assert request is not None
     assert state.owed_impulse_body_nms == pytest.approx(ZERO, abs=1e-18)
-    readings = measured(coil=status(0), refused=refusal(of_tick))
+    readings = measured(coil=status(0), refused=(refusal(of_tick),))
     state, view, again = run(state, view, readings=readings, tick=TICK + ticks_later, config=config)
     assert again is None, "the own timers run whatever the board did"
     return state, view, config
@@ -176,7 +176,7 @@ def refused_at(ticks_later, of_tick=TICK):
 def test_what_a_refused_request_paid_is_owed_again_and_only_once(ticks_later):
     state, view, config = refused_at(ticks_later)
     assert state.owed_impulse_body_nms == pytest.approx(OWED_FOR[0])
-    readings = measured(coil=status(0), refused=refusal(TICK))
+    readings = measured(coil=status(0), refused=(refusal(TICK),))
     again, _, _ = run(state, view, readings=readings, tick=TICK + ticks_later + 1, config=config)
     assert again.owed_impulse_body_nms == state.owed_impulse_body_nms
 
@@ -187,10 +187,22 @@ def test_a_refusal_that_is_heard_twice_gives_back_once():
     owed = (0.0, -3.0 * 0.5 * 2e-5, 0.0)
     state, view, request = run(ready(owed), config=config)
     assert abs(request.level) == 1
-    readings = measured(coil=status(0), refused=refusal(TICK))
+    readings = measured(coil=status(0), refused=(refusal(TICK),))
     for tick in (TICK + 1, TICK + 2):
         state, view, _ = run(state, view, readings=readings, tick=tick, config=config)
         assert state.owed_impulse_body_nms == pytest.approx(owed)
+
+
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_a_refusal_counts_wherever_it_stands_among_others_of_its_tick(place):
+    """A node that babbles, or a broken frame, must not hide that the own request was refused."""
+    state, view, _ = run(config=replace(CONFIG, leak_s=inf))
+    others = [refusal(TICK).replace(coil=1), refusal(TICK - 1)]
+    others.insert(place, refusal(TICK))
+    readings = measured(coil=status(0), refused=tuple(others))
+    state, view, _ = run(state, view, readings=readings, tick=TICK + 1, config=replace(CONFIG, leak_s=inf))
+    assert state.owed_impulse_body_nms == pytest.approx(OWED_FOR[0])
+    assert view.fired == NO_PULSE
 
 
 def test_a_request_that_was_refused_does_not_count_as_driven():
@@ -209,7 +221,7 @@ def test_a_refusal_of_another_request_or_one_that_comes_too_late_gives_nothing_b
 
 
 def test_a_refusal_before_the_first_request_gives_nothing_back():
-    state, _, _ = run(ready(ZERO), readings=measured(coil=status(0), refused=refusal(255)), tick=1)
+    state, _, _ = run(ready(ZERO), readings=measured(coil=status(0), refused=(refusal(255),)), tick=1)
     assert state.owed_impulse_body_nms == ZERO
 
 
@@ -219,7 +231,7 @@ def test_a_request_that_is_reported_as_driven_was_not_refused(seq, reason):
     """Another frame of that tick was: a broken one, a repeated one, or that of another sender."""
     state, view, request = run()
     driven = status(request.coil, level=request.level, seq=request.seq)
-    readings = measured(coil=driven, refused=CoilRefused(request.coil, seq, reason, TICK & 0xFF))
+    readings = measured(coil=driven, refused=(CoilRefused(request.coil, seq, reason, TICK & 0xFF),))
     view = then(update_view, view, readings, TICK + 1, COILS)
     assert run(state, view, readings=readings, tick=TICK + 1)[1].fired == view.fired
 
@@ -227,22 +239,22 @@ def test_a_request_that_is_reported_as_driven_was_not_refused(seq, reason):
 @pytest.mark.parametrize("reason", OF_ANY_FRAME)
 def test_a_broken_frame_without_a_status_may_be_any(reason):
     state, view, _ = run()
-    lost = measured(refused=refusal(TICK).replace(reason=reason))
+    lost = measured(refused=(refusal(TICK).replace(reason=reason),))
     assert run(state, view, readings=lost, tick=TICK + 1)[1].fired == view.fired
-    off = measured(refused=refusal(TICK).replace(reason=reason), coil=status(0))
+    off = measured(refused=(refusal(TICK).replace(reason=reason),), coil=status(0))
     assert run(state, view, readings=off, tick=TICK + 1)[1].fired == NO_PULSE
 
 
 def test_a_refusal_of_another_coil_is_not_of_this_request():
     state, view, _ = run()
-    readings = measured(coil=status(0), refused=refusal(TICK).replace(coil=1))
+    readings = measured(coil=status(0), refused=(refusal(TICK).replace(coil=1),))
     assert run(state, view, readings=readings, tick=TICK + 1)[1].fired == view.fired
 
 
 def test_a_refused_impulse_is_not_owed():
     """It was never: the law that missed it asks anew."""
     state, view, _ = run(ready(ZERO), demand=Demand(impulse_body_nms=OWED_FOR[0]))
-    readings = measured(coil=status(0), refused=refusal(TICK))
+    readings = measured(coil=status(0), refused=(refusal(TICK),))
     state, _, _ = run(state, view, readings=readings, tick=TICK + 1)
     assert state.owed_impulse_body_nms == ZERO
 
@@ -265,7 +277,7 @@ def test_without_a_law_nothing_is_fired_and_nothing_owed(fresh, lockout_ms):
 
 def test_a_refusal_that_comes_while_no_law_flies_is_not_owed_either():
     state, view, _ = run()
-    state, view, _ = run_safe(state, view, measured(coil=status(0), refused=refusal(TICK)), TICK + 1)
+    state, view, _ = run_safe(state, view, measured(coil=status(0), refused=(refusal(TICK),)), TICK + 1)
     assert state.owed_impulse_body_nms == ZERO
 
 

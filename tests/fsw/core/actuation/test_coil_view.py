@@ -90,10 +90,11 @@ def test_a_board_that_has_booted_has_not_told_its_lockouts(coil, coils):
 
 
 @pytest.mark.parametrize("said", [None, status(1)], ids=["status lost", "status heard"])
-def test_a_refusal_is_counted_with_or_without_a_status(said, coils):
+def test_each_refusal_is_counted_with_or_without_a_status(said, coils):
     view = CoilView(refusals=2)
-    refused = measured(coil=said, refused=refusal(TICK))
-    assert then(update_view, view, refused, TICK, coils).refusals == 3
+    for count in (1, 2, 7):
+        refused = measured(coil=said, refused=(refusal(TICK),) * count)
+        assert then(update_view, view, refused, TICK, coils).refusals == 2 + count
     assert then(update_view, view, measured(coil=said), TICK, coils).refusals == 2
 
 

@@ -60,7 +60,7 @@ class TestPlannedPulses:
 
     def test_that_are_refused_are_not_owed(self):
         _, view, _ = run(ready(ZERO), demand=Demand(pulse=Pulse(1, 2)))
-        readings = measured(coil=status(0), refused=refusal(TICK).replace(coil=1))
+        readings = measured(coil=status(0), refused=(refusal(TICK).replace(coil=1),))
         after, view, _ = run(ready(ZERO), view, Demand(pulse=NO_PULSE), readings, TICK + 1)
         assert after.owed_impulse_body_nms == ZERO
         assert view.fired == NO_PULSE

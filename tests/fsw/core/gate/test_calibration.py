@@ -141,9 +141,9 @@ def test_a_current_without_a_level_stays_as_it_was_read(output):
 def test_a_refusal_names_the_axis_and_one_of_no_coil_stays():
     for output, axis in ((0, 2), (3, 3)):
         sent = CoilRefused(output, 9, CoilRefusedReason.BAD_COIL, 4)
-        found = measured(Calibration(outputs=OUTPUTS), refused=sent).refused
-        assert found == Refusal(axis, 9, CoilRefusedReason.BAD_COIL, 4)
-        assert measured(refused=sent).refused == Refusal(output, 9, CoilRefusedReason.BAD_COIL, 4)
+        found = measured(Calibration(outputs=OUTPUTS), refused=(sent,)).refused
+        assert found == (Refusal(axis, 9, CoilRefusedReason.BAD_COIL, 4),)
+        assert measured(refused=(sent,)).refused == (Refusal(output, 9, CoilRefusedReason.BAD_COIL, 4),)
 
 
 def test_a_continuous_dipole_goes_out_and_comes_back_the_same():

@@ -14,7 +14,6 @@ from gate_samples import (
     EVERY_KIND,
     EVERY_MESSAGE,
     FIELD,
-    KINDS,
     REFUSED,
     SLOT,
     SUN,
@@ -22,6 +21,7 @@ from gate_samples import (
     admitted,
     broken,
     frames,
+    taken,
 )
 
 from fsw.core.gate.readings import (
@@ -45,11 +45,6 @@ from fsw.wire.messages import (
     TcFreeze,
     TickDone,
 )
-
-
-def taken(readings):
-    """What came of each kind, in the order of ``EVERY_KIND``."""
-    return tuple(getattr(readings, kind) for kind in KINDS)
 
 
 def test_an_empty_inbox_tells_nothing_and_changes_nothing():
@@ -116,11 +111,24 @@ class TestEachMessage:
 
     def test_the_last_of_several_counts(self, message):
         readings, _ = admitted(*(message.replace(counter=n) for n in (3, 4, 5)))
-        assert getattr(readings, KINDS[SLOT[message.ID]]).counter == 5
+        assert taken(readings)[SLOT[message.ID]].counter == 5
+
+
+def test_every_refusal_of_a_tick_is_taken():
+    """The board sends one for each request; those of another sender must not hide the own one."""
+    sent = tuple(REFUSED.replace(seq=n, counter=n) for n in range(9))
+    assert admitted(*sent)[0].refused == sent
+
+
+def test_no_more_refusals_are_taken_than_frames_are_read():
+    sent = [REFUSED.replace(seq=n, counter=n % 16) for n in range(100)]
+    readings, state = admitted(*sent)
+    assert len(readings.refused) == INBOX_LIMIT
+    assert state.overrun == 100 - INBOX_LIMIT
 
     def test_a_broken_one_does_not_displace_a_good_one(self, message):
         readings, _ = admitted(message.replace(counter=3), broken(message.replace(counter=4).encode()))
-        assert getattr(readings, KINDS[SLOT[message.ID]]).counter == 3
+        assert taken(readings)[SLOT[message.ID]].counter == 3
 
     def test_the_counters_of_others_do_not_move(self, message):
         _, state = admitted(*EVERY_KIND)
@@ -133,7 +141,7 @@ class TestEachMessage:
 class TestEachCounter:
     def test_repeated(self, message):
         readings, state = admitted(message, message)
-        assert getattr(readings, KINDS[SLOT[message.ID]]) is not None
+        assert taken(readings)[SLOT[message.ID]] is not None
         assert (state.rejected, state.missed) == (1, 0)
 
     @pytest.mark.parametrize("counter", [0, 5, 15])
@@ -197,27 +205,27 @@ class TestRange:
         assert state.rejected == (coil == 3)
 
     @pytest.mark.parametrize(
-        ("length", "taken"), [(0.88, False), (0.91, True), (1.0, True), (1.09, True), (1.11, False)]
+        ("length", "plausible"), [(0.88, False), (0.91, True), (1.0, True), (1.09, True), (1.11, False)]
     )
-    def test_a_direction_is_nearly_a_unit_vector(self, length, taken):
+    def test_a_direction_is_nearly_a_unit_vector(self, length, plausible):
         sun = SUN.replace(s_x=0.6 * length, s_y=-0.48 * length, s_z=0.64 * length)
         readings, state = admitted(sun)
-        assert (readings.sun is not None) is taken
-        assert state.rejected == (not taken)
+        assert (readings.sun is not None) is plausible
+        assert state.rejected == (not plausible)
 
     def test_a_sun_sensor_that_sees_nothing_may_say_zero(self):
         readings, _ = admitted(SunVector(0, 0.0, 0.0, 0.0))
         assert readings.sun == SunVector(0, 0.0, 0.0, 0.0)
 
     @pytest.mark.parametrize(
-        ("vector", "taken"),
+        ("vector", "plausible"),
         [((0.6, -0.48, 0.64), True), ((0.999985, 0.0, 0.0), True), ((0.6, -0.48, 0.66), False)],
     )
-    def test_a_reference_attitude_is_a_rotation(self, vector, taken):
+    def test_a_reference_attitude_is_a_rotation(self, vector, plausible):
         """The vector part of a unit quaternion is no longer than one, up to the wire's rounding."""
         readings, state = admitted(RefAttitude(1, *vector))
-        assert (readings.ref_attitude is not None) is taken
-        assert state.rejected == (not taken)
+        assert (readings.ref_attitude is not None) is plausible
+        assert state.rejected == (not plausible)
 
 
 class TestTheRest:

@@ -34,7 +34,7 @@ def under(can_id):
 
 
 def refusal(seq, reason=CoilRefusedReason.LOCKOUT):
-    return measured(refused=CoilRefused(1, seq & 0xFF, reason, 0))
+    return measured(refused=(CoilRefused(1, seq & 0xFF, reason, 0),))
 
 
 def watched(heard, pulsed=True, seq=SEQ):
@@ -57,6 +57,12 @@ class TestNamed:
         known = watched({tick: refusal(SEQ + 2 + tick) for tick in range(SIGNS)})
         assert known.detected
         assert known.can_id == CoilFire.ID
+
+    @pytest.mark.parametrize("foreign_first", [True, False])
+    def test_by_a_refusal_beside_one_of_its_own(self, foreign_first):
+        own, foreign = CoilRefused(1, SEQ, 8, 0), CoilRefused(1, SEQ + 9, 8, 0)
+        both = (foreign, own) if foreign_first else (own, foreign)
+        assert watched({tick: measured(refused=both) for tick in range(SIGNS)}).detected
 
     @pytest.mark.parametrize(
         ("can_id", "apart", "named"),
