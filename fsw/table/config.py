@@ -8,7 +8,7 @@ from fsw.core.actuation.actuator import ActuatorConfig
 from fsw.core.actuation.dipoles import DipoleConfig
 from fsw.core.actuation.pulses import PulseConfig, pulse_timing
 from fsw.core.actuation.read_back import ReadBackConfig
-from fsw.core.algebra.vector import inverse, product, transpose
+from fsw.core.algebra.vector import ZERO, Vec3, inverse, product, scale, transform, transpose
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.coils.health import CoilHealthConfig
@@ -162,8 +162,18 @@ def _fdir(table: FlightTable, timing: PulseConfig, mekf: MekfConfig) -> FdirConf
             mekf=mekf,
             retest_ticks=_ticks(given.coil_retest_s, tick_hz),
             stray_axes=stray_axes(table.calibration.coils),
+            left_ma_per_am2=_left_ma_per_am2(table),
         ),
     )
+
+
+def _left_ma_per_am2(table: FlightTable) -> Vec3:
+    """Of a continuous driver that need not be off when the sensors sample: only a filter needs that."""
+    coils = table.coils
+    if coils.driver == "pulsed" or table.knowledge == "filter":
+        return ZERO
+    ma_per_am2 = 1000.0 / (coils.dipole_per_ampere_am2 * coils.on_fraction)
+    return scale(ma_per_am2, transform(inverse(stray_axes(table.calibration.coils)), (1.0, 1.0, 1.0)))
 
 
 def _stuck_ticks(table: FlightTable) -> int:

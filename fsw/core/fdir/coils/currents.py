@@ -7,7 +7,7 @@ from typing import Final
 
 from fsw.core.actuation.actuator import CoilView
 from fsw.core.actuation.pulses import PulseConfig
-from fsw.core.algebra.vector import ZERO
+from fsw.core.algebra.vector import ZERO, dot
 from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig, isolate_coil, with_item
 from fsw.core.fdir.evidence import weigh
 from fsw.core.fdir.faults import CoilFault, coil_fault
@@ -40,8 +40,9 @@ def judge_current(
     status = measurements.coil
     if status is None:
         return
-    if unasked or (status.level == 0 and abs(status.current_ma) > config.stuck_ma):
-        _judge_unrequested(health, status, unasked, config)
+    stray_ma = _beyond_requested(status, view, tick, config) if status.level == 0 else 0
+    if unasked or abs(stray_ma) > config.stuck_ma:
+        _judge_unrequested(health, status.coil, stray_ma, unasked, config)
         return
     if health.unrequested_ticks:
         health.unrequested_ticks, health.stray_ma, health.stuck, health.stray_parts = 0, 0, False, ZERO
@@ -72,16 +73,27 @@ def _judged_after(pulses: PulseConfig) -> int:
     return 1 if pulses.duration_ms >= 1000.0 * pulses.tick_s - WHOLE_MS else -1
 
 
+def _beyond_requested(status: CoilReport, view: CoilView, tick: int, config: CoilHealthConfig) -> int:
+    """What of a current without a level no request explains, mA.
+
+    The coils of a continuous driver may be on until the tick: between no current and all that was requested,
+    any may flow.
+    """
+    left_ma = round(dot(config.left_ma_per_am2, view.requested.over(tick)))
+    explained_ma = max(min(0, left_ma), min(status.current_ma, max(0, left_ma)))
+    return status.current_ma - explained_ma
+
+
 def _judge_unrequested(
-    health: CoilHealth, status: CoilReport, unasked: bool, config: CoilHealthConfig
+    health: CoilHealth, coil: int, stray_ma: int, unasked: bool, config: CoilHealthConfig
 ) -> None:
     """Judge what flows without a request; a level that lasts for ``stuck_ticks`` isolates its coil.
 
     Of a pulse longer than a tick one report proves nothing: it may be one that was delayed.
     """
     health.unrequested_ticks = ticks = health.unrequested_ticks + 1
-    health.stray_ma = 0 if status.level else status.current_ma
+    health.stray_ma = stray_ma
     lasts = ticks >= config.stuck_ticks
     health.stuck = lasts or (unasked and ticks >= min(2, config.pulses.pulse_ticks))
     if unasked and lasts:
-        isolate_coil(health, status.coil, CoilFault.STUCK, config)
+        isolate_coil(health, coil, CoilFault.STUCK, config)

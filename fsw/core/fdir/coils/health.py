@@ -18,6 +18,8 @@ class CoilHealthConfig:
 
     ``weak`` tells a weak coil from a sound one; a stray current means a stuck coil after ``stuck_ticks``.
     ``stray_axes``: by coil, the dipole per nominal one of a current in the sense of its output, body axes.
+    ``left_ma_per_am2``: current in the supply per dipole requested over a tick, body axes, where it may still
+    flow at the end of the tick; zero where it is over by then.
     """
 
     current_ma: Vec3
@@ -28,6 +30,7 @@ class CoilHealthConfig:
     mekf: MekfConfig
     retest_ticks: int
     stray_axes: Mat3 = AXES
+    left_ma_per_am2: Vec3 = ZERO
 
 
 NONE_OLDER = (NOTHING_OLDER, NOTHING_OLDER, NOTHING_OLDER)

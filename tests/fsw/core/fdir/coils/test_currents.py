@@ -7,10 +7,15 @@ import pytest
 from gate_samples import measured
 
 from fsw.core.actuation.actuator import CoilView
+from fsw.core.actuation.dipoles import RequestedDipole
+from fsw.core.events import Event
 from fsw.core.fdir.coils.currents import judge_current
 from fsw.core.fdir.coils.health import CoilHealth
 from fsw.core.laws.plan.pulse_model import Pulse
-from fsw.wire.messages import CoilStatus
+from fsw.core.monitors import Monitor
+from fsw.wire.messages import CoilStatus, FswEvent, Mode
+from sim.plant.coil_drive import CoilDrive
+from sim.plant.interference import Interference
 
 TICK = 700
 FIRED = CoilView(fired_tick=TICK, fired=Pulse(1, -3))
@@ -79,3 +84,78 @@ def test_it_is_judged_by_the_current_of_its_level_and_its_sign(make_world, level
     health = CoilHealth(nats=(0.0, 1.0, 0.0))
     judge_current(health, view, said, False, TICK + limits.pulses.pulse_ticks - 1, limits)
     assert health.nats[1] == (1.0 + 0.5 * limits.weak.threshold if speaks_against else 0.0)
+
+
+AMPERE = 0.3
+"""Above the current of every level."""
+
+
+class Stuck(Interference):
+    """``AMPERE`` flow through one coil, whatever the board commands."""
+
+    def __init__(self, coil):
+        self.coil = coil
+
+    def coil_drive(self, drive):
+        flows = [AMPERE if coil == self.coil else drive.current_a[coil] for coil in range(3)]
+        held = [AMPERE if coil == self.coil else drive.held_a[coil] for coil in range(3)]
+        return CoilDrive(tuple(flows), drive.fraction, tuple(held))
+
+
+@pytest.mark.requirement("REQ-TRIP-07")
+class TestAContinuousDriverThatIsOnWhenTheCurrentIsRead:
+    """Where the attitude is known without sensors the coils need not be off when those sample."""
+
+    @pytest.fixture(
+        params=[(1.0, 1), (0.99, 1), (0.8, 10), (0.8, 1)], ids=lambda case: "{} at {} Hz".format(*case)
+    )
+    def world(self, make_world, request):
+        on_fraction, tick_hz = request.param
+        coils = {"driver": "continuous", "max_dipole_am2": 12.0, "on_fraction": on_fraction}
+        world = make_world(knowledge="perfect", coils=coils, time={"tick_hz": tick_hz})
+        world.tick_hz = tick_hz
+        return world
+
+    def tripped(self, world, seconds):
+        said = [message for tick in world.fly(seconds * world.tick_hz) for message in tick]
+        events = [(m.event, m.argument) for m in said if isinstance(m, FswEvent)]
+        return (Event.MONITOR_TRIPPED, Monitor.COIL_AS_COMMANDED) in events
+
+    def test_its_requests_are_no_stray_current(self, world):
+        assert not self.tripped(world, 120)
+        assert world.state.modes.mode is not Mode.SAFE
+        assert world.state.coil.requested.m_body_am2 != (0.0, 0.0, 0.0)
+
+    @pytest.mark.parametrize("coil", [0, 1, 2])
+    def test_a_coil_that_stays_on_is_named(self, world, coil):
+        assert not self.tripped(world, 40)
+        world.plant.interference = Stuck(coil)
+        assert self.tripped(world, 120)
+
+
+@pytest.mark.parametrize(
+    ("asked_ma", "read_ma", "stray_ma"),
+    [
+        (100, 100, 0),
+        (100, 37, 0),
+        (100, 0, 0),
+        (-100, -60, 0),
+        (100, 150, 50),
+        (100, -50, -50),
+        (-100, 40, 40),
+        (0, 40, 40),
+    ],
+)
+def test_between_none_and_all_that_was_requested_any_current_may_flow(
+    make_world, asked_ma, read_ma, stray_ma
+):
+    coils = {"driver": "continuous", "max_dipole_am2": 12.0, "on_fraction": 1.0}
+    limits = make_world(knowledge="perfect", coils=coils).config.fdir.coils
+    per_am2 = limits.left_ma_per_am2[0]
+    view = CoilView(requested=RequestedDipole(TICK - 1, (asked_ma / per_am2, 0.0, 0.0)))
+    health = CoilHealth()
+    judge_current(health, view, measured(coil=CoilStatus(0, 1, 0, read_ma, 0, 0)), False, TICK, limits)
+    assert health.stray_ma == (stray_ma if abs(stray_ma) > limits.stuck_ma else 0)
+    late = CoilHealth()
+    judge_current(late, view, measured(coil=CoilStatus(0, 1, 0, read_ma, 0, 0)), False, TICK + 1, limits)
+    assert late.stray_ma == (read_ma if abs(read_ma) > limits.stuck_ma else 0), "a request is for one tick"
