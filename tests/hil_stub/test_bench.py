@@ -19,6 +19,8 @@ from fsw.wire.messages import (
 from hil_stub.bench import Bench, DipoleBoard, MagnetometerBoard, SunBoard
 from hil_stub.sensors.stimulus import constant
 
+LAST_TICK = 2**32 - 1
+
 
 def fly(bench, ticks):
     """Lockstep: in each tick SYNC, then fsw's answer; what the board sent in the last."""
@@ -131,6 +133,22 @@ class TestLosingCount:
         assert isinstance(boot, CoilBoot)
         assert (status.coil, status.lockout_ms) == (second % 3, 100_000)
         assert bench.receive(Sync(second, 0).encode()) == [], "it is in that tick now"
+
+    @pytest.mark.parametrize(("first", "second"), [(0, 1), (0, 0), (1, 2)])
+    def test_the_count_does_not_wrap_but_starts_anew_after_its_last_tick(self, bench, read, first, second):
+        """A pulse that ends with the count may be followed by none before a full back-off."""
+        bench.switch_on(LAST_TICK - 110)
+        for tick in range(LAST_TICK - 110, LAST_TICK):
+            status, *_ = read(fly(bench, [tick]))
+        assert status.lockout_ms == 0, "in the last tick it counts as in any other"
+        bench.receive(Sync(LAST_TICK, 0).encode())
+        bench.receive(CoilFire(3, status.coil, 5, LAST_TICK, 3000).encode())
+        status, *_ = read(bench.receive(TickDone(LAST_TICK, 0).encode()))
+        assert (status.level, status.remaining_ms) == (3, 2000), "a request is taken in the last tick"
+        assert bench.receive(Sync(first, 0).encode()) == []
+        boot, status = read(bench.receive(Sync(second, 0).encode()))
+        assert isinstance(boot, CoilBoot)
+        assert (status.level, status.lockout_ms) == (0, 100_000)
 
     def test_two_with_a_good_one_between_them_move_nothing(self, bench, read):
         fly(bench, range(10))

@@ -347,6 +347,22 @@ def test_one_sync_of_an_absurd_tick_is_a_violation_of_sync(bus_log, tick_hz, at_
     assert report.exit_code == 1
 
 
+@pytest.mark.parametrize("beyond", [0, 1, 200])
+def test_a_log_may_end_with_the_last_tick_and_not_go_on_after_it(bus_log, beyond):
+    """The count does not wrap: a SYNC(0) after the last tick is one of another count."""
+    log, last = bus_log(100, 500), 2**32 - 1
+    entries, first = [], last - 499 + beyond
+    for entry in log.entries():
+        frame = entry.frame
+        if frame.can_id == Sync.ID:
+            tick = first + Sync.decode(frame.data).tick
+            frame = Sync(tick, log.epoch_s + tick // 100).encode()
+        entries.append(entry._replace(timestamp_us=entry.timestamp_us + first * 10_000, frame=frame))
+    report = audit(entries, AuditLimits(tick_hz=100))
+    assert (ViolationKind.SYNC in {one.kind for one in report.violations}) is (beyond > 0)
+    assert report.exit_code == (1 if beyond else 0)
+
+
 def test_nothing_is_judged_of_nothing():
     report = audit([], AuditLimits())
     assert not report.ok

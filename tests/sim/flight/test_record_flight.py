@@ -40,6 +40,14 @@ class TestLength:
         with pytest.raises(HarnessError, match=rf"--orbits {orbits:g}: a run has at most {MOST_TICKS} ticks"):
             ticks_of(load("microsat", parse_settings(("time.tick_hz=10",))), orbits)
 
+    @pytest.mark.parametrize("tick_hz", [1, 10, 100])
+    def test_ends_with_the_last_number_of_a_tick(self, tick_hz):
+        scenario = load("microsat", parse_settings((f"time.tick_hz={tick_hz}",)))
+        orbits = MOST_TICKS / (orbit_period_s(scenario) * tick_hz)
+        assert MOST_TICKS - 10 <= ticks_of(scenario, orbits * (1.0 - 1e-12)) <= MOST_TICKS < 2**32
+        with pytest.raises(HarnessError, match=f"at most {MOST_TICKS} ticks"):
+            ticks_of(scenario, orbits * (1.0 + 1e-9))
+
     def test_allows_a_month_at_ten_hertz(self):
         month = load("microsat", parse_settings(("time.tick_hz=10",)))
         orbits = 30 * 86400 / orbit_period_s(month)

@@ -149,6 +149,20 @@ class TestTwoStrange:
         assert count.answers(FAR, FAR, FAR + 1, FAR + 2) == [FAR, FAR + 1, FAR + 2]
 
 
+class TestTheLastTick:
+    """The count does not wrap: what comes after its last tick is a plant that has started anew."""
+
+    def test_is_believed_like_any_other(self):
+        count = Count(LAST - 3)
+        assert [count.hear(tick) for tick in range(LAST - 2, LAST + 1)] == [Belief.NEXT] * 3
+
+    @pytest.mark.parametrize(("first", "second"), [(0, 0), (0, 1), (1, 2)])
+    def test_is_followed_by_a_restart(self, first, second):
+        count = Count(LAST)
+        assert [count.hear(first), count.hear(second)] == [Belief.IGNORED, Belief.RESTARTED]
+        assert count.tick == second
+
+
 class TestTheTime:
     """Whether field and Sun may be those of another time."""
 
