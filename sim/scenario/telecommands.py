@@ -203,6 +203,16 @@ def uplink(telecommands: Sequence[TelecommandSection], tick_hz: int) -> Uplink:
     return lambda tick: frames.get(tick, [])
 
 
+def unsent_telecommands(telecommands: Sequence[Telecommand], tick_hz: int, ticks: int) -> list[str]:
+    """A sentence for each telecommand that ``uplink`` does not send in so many ticks: it comes after them."""
+    return [
+        f"telecommand[{place}], {telecommand.message} at {telecommand.at_s:g} s, will not be sent: "
+        f"the last tick is at {(ticks - 1) / tick_hz:g} s"
+        for place, telecommand in enumerate(telecommands)
+        if first_tick(telecommand, tick_hz) >= ticks
+    ]
+
+
 def digits_of(value: Decimal) -> tuple[int, int]:
     """Mantissa and exponent of a decimal number, as on the wire.
 

@@ -19,12 +19,12 @@ from sim.flight.record_flight import ticks_of
 from sim.scenario.assemble import plant_config
 from sim.scenario.residual_errors import coil_errors, magnetometer_errors, reading_of
 from sim.scenario.schema import Scenario, flight_table
+from sim.scenario.telecommands import unsent_telecommands
 from sim.sizing.expectation import expect, field_across
 from sim.sizing.ignored_keys import ignored_keys
 from sim.sizing.levels import TOO_WEAK, levels_against
 from sim.sizing.torques import surface_torque
 from sim.sizing.unbegun_faults import unbegun_faults
-from sim.sizing.unsent_telecommands import unsent_telecommands
 
 DAY_S = 86400.0
 OLD_TLE_DAYS = 366.0
@@ -52,7 +52,8 @@ def doubts(scenario: Scenario, ticks: int | None = None) -> list[str]:
     told = [doubt for judge in _JUDGES for doubt in judge(scenario)]
     flown = ticks_of(scenario, None) if ticks is None else ticks
     told += ignored_keys(scenario)
-    return told + unsent_telecommands(scenario, flown) + unbegun_faults(scenario, flown)
+    told += unsent_telecommands(scenario.telecommand, scenario.time.tick_hz, flown)
+    return told + unbegun_faults(scenario, flown)
 
 
 def _epoch(scenario: Scenario) -> Iterator[str]:

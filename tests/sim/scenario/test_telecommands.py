@@ -49,7 +49,7 @@ from sim.record.pace import Pace
 from sim.record.run_dir import BUS_LOG
 from sim.replay.log_replay import replay
 from sim.scenario.schema import flight_table, load
-from sim.scenario.telecommands import SendLaw, digits_of, elements_of, uplink
+from sim.scenario.telecommands import SendLaw, digits_of, elements_of, unsent_telecommands, uplink
 
 ITAMSAT = (
     "1 22826U 93061D   15086.11593543  .00000251  00000-0  11414-3 0  9992",
@@ -115,6 +115,33 @@ class TestSchedule:
     def test_nothing_is_sent_where_nothing_is_asked_for(self):
         assert load("microsat").telecommand == ()
         assert sent_by() == {}
+
+
+class TestUnsent:
+    """Telecommands that a run is too short for."""
+
+    TIMES_S = (0.0, 59.3, 60.0, 60.01, 1e9)
+
+    def sent_at(self, *times_s):
+        return load(
+            "microsat", {"telecommand": [{"at_s": at_s, "message": "TC_CLEAR"} for at_s in times_s]}
+        ).telecommand
+
+    @pytest.mark.parametrize("tick_hz", [1, 3, 10])
+    @pytest.mark.parametrize("seconds", [1, 60, 61])
+    def test_are_those_that_no_tick_of_the_run_sends(self, tick_hz, seconds):
+        telecommands, ticks = self.sent_at(*self.TIMES_S), seconds * tick_hz
+        frames = uplink(telecommands, tick_hz)
+        sent = sum(len(frames(tick)) for tick in range(ticks))
+        unsent = unsent_telecommands(telecommands, tick_hz, ticks)
+        assert len(unsent) == len(self.TIMES_S) - sent
+        assert [sentence.partition(",")[0] for sentence in unsent] == [
+            f"telecommand[{place}]" for place in range(sent, len(self.TIMES_S))
+        ]
+
+    def test_are_told_with_the_end_of_the_run(self):
+        (sentence,) = unsent_telecommands(self.sent_at(12.0, 600.0), 1, 500)
+        assert sentence == "telecommand[1], TC_CLEAR at 600 s, will not be sent: the last tick is at 499 s"
 
 
 class TestNumbers:

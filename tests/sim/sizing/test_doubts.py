@@ -2,6 +2,7 @@
 
 import pytest
 
+from sim.flight.record_flight import ticks_of
 from sim.scenario.schema import load, parse_settings, shipped
 from sim.sizing.doubts import doubts
 
@@ -159,3 +160,24 @@ def test_a_telecommand_that_will_be_refused(content, answer):
 )
 def test_one_that_may_be_carried_out_is_not_doubted(content):
     assert doubts(load("microsat", telecommand(**content))) == []
+
+
+def with_telecommands(*times_s):
+    sent = [{"at_s": at_s, "message": "TC_CLEAR"} for at_s in times_s]
+    return load("microsat", {"telecommand": sent})
+
+
+def test_a_scenario_that_is_shorter_than_its_telecommands_is_doubted():
+    ticks = ticks_of(with_telecommands(), None)
+    assert doubts(with_telecommands(ticks - 1.0)) == []
+    (doubt,) = doubts(with_telecommands(float(ticks)))
+    assert "will not be sent" in doubt
+
+
+def test_what_counts_is_how_long_the_run_is():
+    asked = with_telecommands(600.0)
+    assert doubts(asked, 601) == []
+    (doubt,) = doubts(asked, 600)
+    assert "at 600 s, will not be sent: the last tick is at 599 s" in doubt
+    late = with_telecommands(float(ticks_of(asked, None)))
+    assert doubts(late, 2 * ticks_of(asked, None)) == []
