@@ -10,6 +10,7 @@ from fsw.core.algebra.vector import Mat3, Vec3
 from fsw.core.laws.interface import MAX_GAIN, MAX_SPIN_RADPS
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.propagation import sgp4_orbit
+from fsw.core.orbit.tle import plain_line
 from fsw.input.near import did_you_mean
 from fsw.input.own_code import short_name
 from fsw.input.schema import NotNegative, Positive, Section, Square, StepNt, StepOfOne, Triple
@@ -49,6 +50,11 @@ class OrbitTable(Section):
     inclination_deg: float = Field(default=0.0, ge=0.0, le=180.0)
     raan_deg: float = Field(default=0.0, ge=-360.0, le=360.0)
     u0_deg: float = Field(default=0.0, ge=-360.0, le=360.0)
+
+    @field_validator("tle")
+    @classmethod
+    def _plain(cls, value: tuple[str, str] | None) -> tuple[str, str] | None:
+        return None if value is None else (plain_line(value[0]), plain_line(value[1]))
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:

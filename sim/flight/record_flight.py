@@ -4,6 +4,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from fsw.bus.interface import Bus
+from fsw.core.orbit.propagation import sgp4_orbit
+from fsw.table.flown_elements import check_flown
 from fsw.wire.frame import Frame
 from sim.errors import HarnessError
 from sim.faults.section import make_plant
@@ -28,7 +30,7 @@ def ticks_of(scenario: Scenario, orbits: float | None, most: int = MOST_TICKS) -
     """How many ticks a flight of ``orbits`` takes; None: as many as the scenario says. At least one.
 
     Raises:
-        HarnessError: more than ``most``.
+        HarnessError: more than ``most``, or the orbit's elements do not hold so long.
     """
     ticks_per_orbit = orbit_period_s(scenario) * scenario.time.tick_hz
     chosen = scenario.time.orbits if orbits is None else orbits
@@ -36,7 +38,24 @@ def ticks_of(scenario: Scenario, orbits: float | None, most: int = MOST_TICKS) -
         option = f"time.orbits={chosen:g}" if orbits is None else f"--orbits {chosen:g}"
         most_orbits = most / ticks_per_orbit
         raise HarnessError(f"{option}: a run has at most {most} ticks, here {most_orbits:.0f} orbits")
-    return max(1, round(chosen * ticks_per_orbit))
+    ticks = max(1, round(chosen * ticks_per_orbit))
+    check_elements(scenario, ticks)
+    return ticks
+
+
+def check_elements(scenario: Scenario, ticks: int) -> None:
+    """Check that the elements of a scenario are those of an orbit during a flight of so many ticks.
+
+    Raises:
+        HarnessError: when and why they are not.
+    """
+    tle, begin_s = scenario.orbit.tle, scenario.epoch_unix_s
+    if tle is None:
+        return
+    try:
+        check_flown(sgp4_orbit(*tle), begin_s, begin_s + ticks / scenario.time.tick_hz)
+    except ValueError as error:
+        raise HarnessError(f"scenario {scenario.name}: orbit.tle: {error}") from None
 
 
 def check_can_fly(scenario: Scenario, seed: int) -> None:

@@ -14,7 +14,7 @@ from pydantic import AfterValidator, Field, Strict, field_validator
 
 from fsw.core.laws.table import LAWS, number_of
 from fsw.core.orbit.propagation import sgp4_orbit
-from fsw.core.orbit.tle import tle_elements
+from fsw.core.orbit.tle import plain_line, tle_elements
 from fsw.input.schema import Section
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
@@ -136,8 +136,10 @@ class SendOrbit(TelecommandSection):
     @field_validator("tle")
     @classmethod
     def _is_one(cls, value: tuple[str, str] | None) -> tuple[str, str] | None:
-        if value is not None:
-            sgp4_orbit(*value)
+        if value is None:
+            return None
+        value = plain_line(value[0]), plain_line(value[1])
+        sgp4_orbit(*value)
         return value
 
     def messages(self) -> list[CountedMessage]:

@@ -1,12 +1,12 @@
 """The orbit: SGP4 on a two-line element set or on elements from the ground, or a circular Kepler orbit."""
 
 from dataclasses import dataclass, field
-from math import cos, isfinite, pi, radians, sin, sqrt
+from math import cos, inf, isfinite, pi, radians, sin, sqrt
 from typing import Any, Final
 
 from sgp4.api import SGP4_ERRORS, WGS72, Satrec
 
-from fsw.core.algebra.vector import Vec3
+from fsw.core.algebra.vector import Vec3, dot, norm
 from fsw.core.orbit.earth import MU_M3PS2, RADIUS_M
 from fsw.core.orbit.elements import Elements
 from fsw.core.orbit.tle import DAY_MIN, DAY_S, UNIX_EPOCH_JD, read_tle
@@ -17,8 +17,9 @@ State = tuple[Vec3, Vec3]
 _SGP4_EPOCH_DAY = -7306.0
 """1949-12-31 in days since 1970-01-01."""
 
-MAX_KM: Final = 50_000.0
-"""Far beyond any orbit of less than 225 minutes; SGP4 gets there, without an error, weeks past a decay."""
+MOST_AXIS_PART: Final = 0.05
+"""By so much the osculating semi-major axis may differ from that of the mean motion: perturbations move it by
+less than 1 %, and SGP4 gets far beyond, without an error, around a decay."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,12 +133,29 @@ def state_eci(orbit: Orbit, unix_s: float) -> State | None:
         return _circular_state(orbit, unix_s)
     days, seconds = divmod(unix_s, DAY_S)
     error, r_km, v_kmps = orbit.satellite.sgp4(UNIX_EPOCH_JD + days, seconds / DAY_S)
-    if error or not max(map(abs, r_km)) < MAX_KM:
+    if error or not axis_holds(orbit.satellite, axis_km(orbit.satellite, r_km, v_kmps)):
         return None
     return (
         (1000.0 * r_km[0], 1000.0 * r_km[1], 1000.0 * r_km[2]),
         (1000.0 * v_kmps[0], 1000.0 * v_kmps[1], 1000.0 * v_kmps[2]),
     )
+
+
+def axis_km(satellite: Any, r_km: Vec3, v_kmps: Vec3) -> float:  # noqa: ANN401  (of a library without types)
+    """The osculating semi-major axis, 1 / (2 / r - v^2 / mu); infinite on an orbit that is not closed."""
+    inverse = 2.0 / norm(r_km) - dot(v_kmps, v_kmps) / satellite.mu
+    return 1.0 / inverse if inverse > 0.0 else inf
+
+
+def mean_axis_km(satellite: Any) -> float:  # noqa: ANN401  (of a library without types)
+    """The semi-major axis of the mean motion n at the epoch, (mu / n^2)^(1/3)."""
+    return float(satellite.a * satellite.radiusearthkm)
+
+
+def axis_holds(satellite: Any, osculating_km: float) -> bool:  # noqa: ANN401  (of a library without types)
+    """Whether an osculating semi-major axis is still that of the elements."""
+    mean_km = mean_axis_km(satellite)
+    return abs(osculating_km - mean_km) <= MOST_AXIS_PART * mean_km
 
 
 def _circular_state(orbit: CircularKeplerOrbit, unix_s: float) -> State:

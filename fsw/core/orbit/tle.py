@@ -19,7 +19,8 @@ _ANGLE = r"(?:[0-9]{3}| [0-9]{2}|  [0-9])\.[0-9]{4}"
 _EXPONENTIAL = r"[ +-][0-9]{5}[+-][0-9]"
 _COUNT = r" *[0-9]+"
 _LINE_1 = re.compile(
-    rf"(?=.{{69}}$)1 {_SATELLITE}[A-Z] [ 0-9A-Z]{{8}} [0-9]{{5}}\.[0-9]{{8}} [ +-]\.[0-9]{{8}}"
+    rf"(?=.{{69}}$)1 {_SATELLITE}[A-Z] [ 0-9A-Z]{{8}} (?P<year>[0-9]{{2}})(?P<day>[0-9]{{3}})\.[0-9]{{8}}"
+    rf" [ +-]\.[0-9]{{8}}"
     rf" {_EXPONENTIAL} {_EXPONENTIAL} [ 0-9] {_COUNT}"
 )
 _LINE_2 = re.compile(
@@ -28,16 +29,30 @@ _LINE_2 = re.compile(
 )
 
 
+def plain_line(line: str) -> str:
+    """An element line with common blanks for those of any kind, capitals, and no blanks after it."""
+    return "".join(" " if letter.isspace() else letter for letter in line).upper().rstrip()
+
+
 def read_tle(line1: str, line2: str) -> Satrec:
     """The element set; blanks and line ends after the lines are ignored.
 
     Raises:
-        ValueError: a line is malformed or its checksum wrong, or the lines are of two satellites.
+        ValueError: a line is malformed or its checksum wrong, the year has no such day, or the lines are of
+            two satellites.
     """
     line1, line2 = line1.rstrip(), line2.rstrip()
     first, second = _checked(line1, 1, _LINE_1), _checked(line2, 2, _LINE_2)
-    if first != second:
-        raise ValueError(f"the element lines are of two satellites, {first} and {second}")
+    if first["satellite"] != second["satellite"]:
+        raise ValueError(
+            f"the element lines are of two satellites, {first['satellite']} and {second['satellite']}"
+        )
+    days = 366 if int(first["year"]) % 4 == 0 else 365
+    if int(first["day"]) > days:
+        raise ValueError(
+            f"element line 1 has day {first['day']} of the year, and year {first['year']} has {days}: "
+            f"{line1!r}"
+        )
     return Satrec.twoline2rv(line1, line2)
 
 
@@ -75,15 +90,15 @@ def tle_epoch_unix_s(line1: str, line2: str) -> int:
     return round(elements.epoch_day) * DAY_S - (-parts * DAY_S // 10**8)
 
 
-def _checked(line: str, number: int, form: re.Pattern[str]) -> str:
-    """The satellite of a line that is sound."""
+def _checked(line: str, number: int, form: re.Pattern[str]) -> re.Match[str]:
+    """The parts of a line that is sound."""
     found = form.fullmatch(line)
     if not found:
         raise ValueError(f"element line {number} is not in the two-line format: {line!r}")
     checksum = compute_checksum(line)
     if checksum != int(line[-1]):
         raise ValueError(f"element line {number} has checksum {line[-1]} but adds up to {checksum}: {line!r}")
-    return found["satellite"]
+    return found
 
 
 def _degrees(angle_rad: float) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, ephemeris_model, reference_at
+from fsw.table.flown_elements import check_flown
 from sim.commissioning.recorded.element_sets import ElementSet, nearest_elements
 from sim.commissioning.recorded.recorded_pass import RecordedPass
 from sim.console import warn
@@ -94,6 +95,7 @@ def along(recorded: RecordedPass, elements: ElementSet) -> Along:
     start_unix_s = round(recorded.utc_unix_s[0])  # of the orbit, which half a second moves by 4 km
     hertz = _tick_hz(since_s)
     try:
+        check_flown(elements.orbit, float(recorded.utc_unix_s[0]), float(recorded.utc_unix_s[-1]))
         model = ephemeris_model(elements.orbit, start_unix_s, hertz)
     except ValueError as error:
         raise HarnessError(f"{recorded.name}: {error}") from None

@@ -14,6 +14,8 @@ Array = npt.NDArray[np.float64]
 MU_M3PS2 = 3.986004418e14
 EARTH_RADIUS_M = 6378.137e3
 DAY_S = 86400
+MOST_AXIS_PART = 0.05
+"""By so much the semi-major axis may leave that of the mean motion: around a decay SGP4 does without an error."""
 UNIX_EPOCH_JD = 2440587.5
 
 
@@ -78,6 +80,15 @@ class Sgp4Orbit:
         if errors.any():
             first = int(np.flatnonzero(errors)[0])
             raise ValueError(f"SGP4 at {t_s[first]:.0f} s after the epoch: {SGP4_ERRORS[int(errors[first])]}")
+        inverse = 2.0 / np.linalg.norm(r_km, axis=1) - np.sum(v_kmps**2, axis=1) / self._satellite.mu
+        mean_km = self._satellite.a * self._satellite.radiusearthkm
+        off = ~(np.abs(1.0 - mean_km * inverse) <= MOST_AXIS_PART * mean_km * inverse)
+        if off.any():
+            first = int(np.flatnonzero(off)[0])
+            raise ValueError(
+                f"SGP4 at {t_s[first]:.0f} s after the epoch: its semi-major axis is no longer that of the "
+                f"mean motion, {mean_km:.0f} km"
+            )
         return 1e3 * r_km, 1e3 * v_kmps
 
 

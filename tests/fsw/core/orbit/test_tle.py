@@ -8,7 +8,7 @@ from random import Random
 import pytest
 
 from fsw.core.orbit.elements import Elements
-from fsw.core.orbit.tle import read_tle, tle_elements, tle_epoch_unix_s
+from fsw.core.orbit.tle import plain_line, read_tle, tle_elements, tle_epoch_unix_s
 
 ROUNDS = 2000
 
@@ -59,6 +59,30 @@ def test_lines_in_the_wrong_order_are_refused(tle):
 def test_lines_of_two_satellites_are_refused(tle):
     with pytest.raises(ValueError, match="two satellites, 22826 and 14781"):
         read_tle(tle["ITAMSAT"][0], tle["UO-11"][1])
+
+
+@pytest.mark.parametrize(
+    ("day", "days"), [("17366.0", 365), ("17500.5", 365), ("20367.0", 366), ("00999.9", 366)]
+)
+def test_a_day_that_its_year_does_not_have_is_refused(tle, checksummed, day, days):
+    line1, line2 = tle["ITAMSAT"]
+    sentence = f"element line 1 has day {day[2:5]} of the year, and year {day[:2]} has {days}"
+    with pytest.raises(ValueError, match=sentence):
+        read_tle(checksummed(replaced(line1, 19, day)), line2)
+
+
+def test_the_last_day_of_a_leap_year_is_one(epoch_of):
+    assert epoch_of("20366.00000000") == int(datetime(2020, 12, 31, tzinfo=UTC).timestamp())
+
+
+def test_day_0_is_the_last_day_of_the_year_before(epoch_of):
+    assert epoch_of("21000.00000000") == int(datetime(2020, 12, 31, tzinfo=UTC).timestamp())
+
+
+@pytest.mark.parametrize("blank", ["\u00a0", "\u2007", "\t"])
+def test_a_plain_line_has_common_blanks_and_capitals(tle, blank):
+    for line in tle["ITAMSAT"]:
+        assert plain_line(line.replace(" ", blank).lower() + " \r\n") == line
 
 
 @pytest.fixture
