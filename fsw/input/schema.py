@@ -59,7 +59,7 @@ def read_toml(path: Path) -> Nested:
         raise TableError(f"{path}: cannot be read ({error.strerror or error})") from None
     except BoundsError as error:
         raise TableError(f"{path}: {error}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except tomllib.TOMLDecodeError as error:
         raise TableError(f"{path}: not TOML: {error}") from None
 
 

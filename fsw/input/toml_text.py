@@ -6,11 +6,12 @@ number of digits. What no scenario, table or script needs is refused before anyt
 
 import re
 import tomllib
+import unicodedata
 from math import inf
 from pathlib import Path
 from typing import Any
 
-from fsw.input.regular_file import read_regular
+from fsw.input.text_file import read_text
 
 MOST_BYTES = 1_000_000
 MOST_LEVELS = 32
@@ -35,10 +36,10 @@ def load_toml(path: Path) -> dict[str, Any]:
     """The content of a TOML file.
 
     Raises:
-        OSError: it cannot be read, or is larger than ``MOST_BYTES``.
-        ValueError: as for ``parse_toml``, or it is not UTF-8.
+        OSError: it cannot be read, is larger than ``MOST_BYTES`` or no text.
+        ValueError: as for ``parse_toml``.
     """
-    return parse_toml(read_regular(path, MOST_BYTES).decode("utf-8"))
+    return parse_toml(read_text(path, MOST_BYTES))
 
 
 def parse_toml(text: str) -> dict[str, Any]:
@@ -54,12 +55,24 @@ def parse_toml(text: str) -> dict[str, Any]:
         values = tomllib.loads(text)
     except RecursionError:
         raise BoundsError(_TOO_DEEP) from None
-    except tomllib.TOMLDecodeError:
-        raise
+    except tomllib.TOMLDecodeError as error:
+        raise tomllib.TOMLDecodeError(f"{error}{_odd_letter(text, str(error))}") from None
     except ValueError:  # of int(), which counts digits
         raise BoundsError(f"an integer is {_BEYOND}") from None
     _check(values, "", 0)
     return values
+
+
+def _odd_letter(text: str, message: str) -> str:
+    """A clause that names the character at the place of an error where a reader cannot see what it is."""
+    place = re.search(r"at line (\d+), column (\d+)", message)
+    if place is None:
+        return ""
+    letter = text.split("\n")[int(place[1]) - 1][int(place[2]) - 1 :][:1]
+    if letter.isascii():
+        return ""
+    name = unicodedata.name(letter, "a character without a name").lower()
+    return f": U+{ord(letter):04X}, {name}, stands there"
 
 
 def _longest_key(text: str) -> int:

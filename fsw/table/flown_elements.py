@@ -1,4 +1,4 @@
-"""Whether elements are those of an orbit while they are flown: SGP4 goes on after a decay, without an error."""
+"""Whether elements are those of an orbit while they are flown: SGP4 goes on after a decay."""
 
 from datetime import UTC, datetime
 from math import pi

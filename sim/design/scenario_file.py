@@ -6,7 +6,7 @@ import shutil
 import tomllib
 from pathlib import Path
 
-from fsw.input.regular_file import read_regular
+from fsw.input.text_file import read_text
 from fsw.input.toml_text import MOST_BYTES, BoundsError, parse_toml
 from sim.design.theory.linear import Gains, Number
 from sim.errors import HarnessError
@@ -54,12 +54,12 @@ def write_gains(path: Path, gains: Gains) -> None:
 def _edited(path: Path, gains: Gains) -> str:
     values = {"k_w": _gain_text(gains.k_w), "k_a": _gain_text(gains.k_a)}
     try:
-        after = _with_values(read_regular(path, MOST_BYTES).decode("utf-8"), values)
+        after = _with_values(read_text(path, MOST_BYTES), values)
     except OSError as error:
         raise HarnessError(f"{path}: cannot be read ({error.strerror or error})") from None
     except BoundsError as error:
         raise HarnessError(f"{path}: {error}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except tomllib.TOMLDecodeError as error:
         raise HarnessError(f"{path}: not TOML: {error}") from None
     if after is None:
         raise HarnessError(f"{path}: gains can be written only where [control] gives k_w and k_a a line each")

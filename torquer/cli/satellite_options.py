@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _ABOVE_0 = Number(min=0.0, min_open=True)
 _THREE = (float, float, float)
 _OPTIONS = (
-    click.option("--tle", metavar="FILE", type=click.Path(path_type=Path), help="Orbit: two TLE lines."),
+    click.option("--tle", metavar="FILE", type=click.Path(path_type=Path), help="Orbit: TLE or OMM."),
     click.option("--altitude-km", type=Number(150.0, 40_000.0), help="Orbit: circular."),
     click.option("--inclination-deg", type=Number(0.0, 180.0), help="Of the circular orbit."),
     click.option("--mass-kg", type=_ABOVE_0, help="Of a homogeneous box, with --size-m."),
@@ -48,31 +48,20 @@ def satellite(name: str, tle: Path | None, figures: dict[str, Any]) -> "NewSatel
 
 
 def tle_lines(file: Path) -> tuple[str, str]:
-    """The two lines of a file; one with the satellite's name may stand before them.
+    """The two lines of a file of element sets, of several the newest, which is said.
 
     Raises:
-        HarnessError: it cannot be read, or holds no two lines that are elements.
+        HarnessError: it cannot be read, holds no elements, or those of several satellites.
     """
-    from fsw.core.orbit.tle import read_tle
-    from fsw.input.regular_file import read_regular
-    from fsw.input.toml_text import MOST_BYTES
+    from sim.console import warn
+    from sim.scenario.element_file import check_one_satellite, read_element_file
 
-    try:
-        lines = [
-            line.rstrip()
-            for line in read_regular(file, MOST_BYTES).decode("ascii").splitlines()
-            if line.strip()
-        ]
-    except (OSError, UnicodeDecodeError) as error:
-        raise HarnessError(f"{file}: cannot be read ({getattr(error, 'strerror', None) or error})") from None
-    if len(lines) not in (2, 3):
-        raise HarnessError(f"{file}: {len(lines)} lines, and a TLE has two, or three with a name")
-    first, second = lines[-2:]
-    try:
-        read_tle(first, second)
-    except ValueError as error:
-        raise HarnessError(f"{file}: {error}") from None
-    return first, second
+    found = read_element_file(file)
+    check_one_satellite(file, found)
+    newest = max(found, key=lambda one: one.epoch_day)
+    if len(found) > 1:
+        warn(f"{file}: of {len(found)} sets of {newest.title} the newest is used, {newest.where}")
+    return newest.lines
 
 
 def asked(figures: dict[str, Any], tle: Path | None) -> tuple[dict[str, Any], Path | None]:

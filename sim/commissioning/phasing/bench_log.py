@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from fsw.input.regular_file import read_regular
+from fsw.input.text_file import read_text
 from sim.commissioning.phasing.bench_steps import Edge, Share, Step, fall_as_rise, step_of
 from sim.errors import HarnessError
 
@@ -99,7 +99,7 @@ def read_recording(path: Path) -> Recording:
 def _rows(path: Path) -> Iterator[tuple[int, dict[str, str | None]]]:
     """Each row with the number of its line; None where a line ends before a column."""
     try:
-        text = read_regular(path, MOST_BYTES).decode("utf-8-sig")
+        text = read_text(path, MOST_BYTES)
         reader = csv.DictReader(StringIO(text, newline=""))
         names = list(reader.fieldnames or ())
         missing = sorted({TIME, CHANNEL, *FIELD, *COMMANDED} - set(names))
@@ -109,7 +109,7 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str | None]]]:
             raise HarnessError(f"{path}: there are two columns {twice[0]!r}")
         for row in reader:
             yield reader.line_num, row
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+    except (OSError, csv.Error) as error:
         why = getattr(error, "strerror", None) or error
         raise HarnessError(f"{path}: cannot be read: {why}") from None
 

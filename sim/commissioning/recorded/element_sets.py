@@ -1,14 +1,13 @@
-"""A file of two-line element sets, with or without names between them, and the one nearest in time."""
+"""Of a file of element sets the one nearest in time."""
 
 from pathlib import Path
 from typing import NamedTuple
 
 from fsw.core.orbit.propagation import TleOrbit, sgp4_orbit
 from fsw.core.orbit.tle import tle_epoch_unix_s
-from fsw.input.regular_file import read_regular
 from sim.errors import HarnessError
+from sim.scenario.element_file import check_one_satellite, read_element_file
 
-MOST_BYTES = 20_000_000
 DAY_S = 86400.0
 
 
@@ -29,44 +28,11 @@ def nearest_elements(path: Path, unix_s: float) -> ElementSet:
     Raises:
         HarnessError: the file cannot be read, holds no set, a malformed one, or sets of several satellites.
     """
+    found = read_element_file(path)
+    check_one_satellite(path, found)
+    epochs = [tle_epoch_unix_s(*one.lines) for one in found]
+    number = min(range(len(found)), key=lambda one: abs(epochs[one] - unix_s))
     try:
-        lines = read_regular(path, MOST_BYTES).decode("utf-8", errors="replace").splitlines()
-    except OSError as error:
-        raise HarnessError(f"{path}: cannot be read ({error.strerror or error})") from None
-    pairs = _pairs(path, lines)
-    satellites = sorted({first[2:7].strip() for _, first, _ in pairs})
-    if not pairs:
-        raise HarnessError(f"{path}: there is no two-line element set in it")
-    if len(satellites) > 1:
-        raise HarnessError(
-            f"{path}: it holds sets of {len(satellites)} satellites ({', '.join(satellites[:4])}): keep one"
-        )
-    epochs = [_epoch(path, *pair) for pair in pairs]
-    number = min(range(len(pairs)), key=lambda one: abs(epochs[one] - unix_s))
-    line, first, second = pairs[number]
-    try:
-        return ElementSet(sgp4_orbit(first, second), epochs[number])
+        return ElementSet(sgp4_orbit(*found[number].lines), epochs[number])
     except ValueError as error:
-        raise HarnessError(f"{path}: line {line}: {error}") from None
-
-
-def _pairs(path: Path, lines: list[str]) -> list[tuple[int, str, str]]:
-    """Number of the first line, and both lines, of each set."""
-    pairs, number = [], 0
-    while number < len(lines):
-        if lines[number].startswith("1 ") and len(lines[number].rstrip()) == 69:
-            if number + 1 == len(lines) or not lines[number + 1].startswith("2 "):
-                raise HarnessError(f"{path}: after line {number + 1} its second element line is missing")
-            pairs.append((number + 1, lines[number], lines[number + 1]))
-            number += 1
-        elif lines[number].startswith(("1 ", "2 ")) and len(lines[number].split()) > 6:
-            raise HarnessError(f"{path}: line {number + 1} is no element line of 69 characters in its place")
-        number += 1
-    return pairs
-
-
-def _epoch(path: Path, line: int, first: str, second: str) -> int:
-    try:
-        return tle_epoch_unix_s(first, second)
-    except ValueError as error:
-        raise HarnessError(f"{path}: line {line}: {error}") from None
+        raise HarnessError(f"{path}: {found[number].where}: {error}") from None

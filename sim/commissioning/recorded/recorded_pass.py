@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from fsw.input.regular_file import read_regular
+from fsw.input.text_file import read_text
 from sim.commissioning.recorded.columns import TIME, Places, places
 from sim.errors import HarnessError
 
@@ -56,11 +56,9 @@ def read_pass(path: Path) -> RecordedPass:
         HarnessError: it cannot be read, a column is missing, a field is no number, time goes back.
     """
     try:
-        text = read_regular(path, MOST_BYTES).decode("utf-8-sig")
+        text = read_text(path, MOST_BYTES)
     except OSError as error:
         raise HarnessError(f"{path}: cannot be read ({error.strerror or error})") from None
-    except UnicodeDecodeError:
-        raise HarnessError(f"{path}: not a text file in UTF-8") from None
     try:
         head, *rows = csv.reader(text.splitlines())
         where = places([name.strip() for name in head])

@@ -15,8 +15,8 @@ import tomli_w
 from pydantic import TypeAdapter, ValidationError
 from typing_extensions import TypedDict
 
-from fsw.input.regular_file import read_regular
 from fsw.input.schema import Nested
+from fsw.input.text_file import read_text
 from fsw.input.toml_text import MOST_BYTES, BoundsError
 from sim.design.tuning.applicable import coils_of
 from sim.design.tuning.free_gains import flat
@@ -127,14 +127,14 @@ def read_gains(path: Path) -> KeptGains | None:
     if not path.exists():
         return None
     try:
-        values = tomllib.loads(read_regular(path, MOST_BYTES).decode("utf-8"))
+        values = tomllib.loads(read_text(path, MOST_BYTES))
         rules, rows = values.pop("found"), TypeAdapter(Rows).validate_python(values)
         return KeptGains(
             int(rules["body"]), int(rules["flights"]), float(rules["orbits"]), int(rules["seed"]), rows
         )
     except OSError as error:
         raise HarnessError(f"{path}: gains cannot be read: {error.strerror or error}") from None
-    except (BoundsError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (BoundsError, tomllib.TOMLDecodeError) as error:
         raise HarnessError(f"{path}: gains cannot be read: {error}") from None
     except KeyError as error:
         raise HarnessError(f"{path}: no gains of torquer design --laws: {error} is missing") from None

@@ -15,7 +15,7 @@ MU_M3PS2 = 3.986004418e14
 EARTH_RADIUS_M = 6378.137e3
 DAY_S = 86400
 MOST_AXIS_PART = 0.05
-"""By so much the semi-major axis may leave that of the mean motion: around a decay SGP4 does without an error."""
+"""By so much the semi-major axis may leave that of the mean motion, as it does after a decay."""
 UNIX_EPOCH_JD = 2440587.5
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from fsw.input.regular_file import read_regular
+from fsw.input.text_file import read_text
 from sim.errors import HarnessError
 
 Array = NDArray[np.float64]
@@ -151,12 +151,9 @@ def read_lines(path: Path) -> list[tuple[int, str]]:
         HarnessError: it cannot be read as text.
     """
     try:
-        text = read_regular(path, MOST_BYTES).decode("utf-8-sig")
+        text = read_text(path, MOST_BYTES)
     except OSError as error:
         raise HarnessError(f"{path}: cannot be read ({error.strerror})") from None
-    except UnicodeDecodeError as error:
-        line = error.object[: error.start].count(b"\n") + 1
-        raise HarnessError(f"{path}, line {line}: not UTF-8 text") from None
     return list(enumerate(text.splitlines(), start=1))
 
 

@@ -10,6 +10,10 @@ from torquer.cli.satellite_options import asked, satellite, tle_lines
 
 NOTHING = dict.fromkeys(("altitude_km", "inclination_deg", "mass_kg", "size_m", "inertia_kgm2", "levels_am2"))
 TLE = load("microsat").orbit.tle
+OTHER = (
+    "1 42680U 16049E   17100.50000000  .00000218  00000-0  80444-4 0  9999",
+    "2 42680  98.3668 218.4259 0018140 186.3838 173.7123 14.41455213 48482",
+)
 
 
 def answered(monkeypatch, *answers, tle=None, **given):
@@ -59,9 +63,10 @@ def test_a_tle_has_two_lines_or_three(tmp_path):
     file.write_text("ITAMSAT\n" + "\n".join(TLE) + "\n")
     assert tle_lines(file) == TLE
     for text, sentence in (
-        (TLE[0], "1 lines, and a TLE has two"),
+        (TLE[0], "after line 1 its second element line is missing"),
         ("\n".join(TLE).replace("15086", "15087"), "checksum"),
-        ("ä\nb", "cannot be read"),
+        ("ä\nb", "there is no two-line element set in it"),
+        ("\n".join((*TLE, *OTHER)), "sets of 2 satellites"),
     ):
         file.write_text(text)
         with pytest.raises(HarnessError, match=sentence):
