@@ -7,14 +7,16 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
+from fsw.input.schema import Nested, TableError
 from fsw.input.toml_text import parse_toml
 from fsw.table.ordinary import TORQUE_NM, ordinary_dipole_am2, relative_volume
 from sim.console import answer, say, warn
 from sim.errors import HarnessError
+from sim.new_scenario.figure_doubts import figure_doubts, in_options
 from sim.new_scenario.satellite import NewSatellite, gains_for
 from sim.record.destination import check_file
 from sim.scenario.names import ALLOWED, is_name
-from sim.scenario.schema import scenario_of, shipped_names
+from sim.scenario.schema import Scenario, scenario_of, shipped_names
 from sim.sizing.command import points
 from sim.sizing.doubts import doubts
 from sim.sizing.expectation import expect
@@ -44,13 +46,13 @@ def new(satellite: NewSatellite, out: Path | None) -> int:
     file = out or Path(f"{satellite.name}.toml")
     check_new(satellite.name, file)
     text = scenario_text(satellite, file.name)
-    scenario = scenario_of(parse_toml(text), str(file))
+    scenario = scenario_made(text)
     try:
         with file.open("x", encoding="utf-8") as target:
             target.write(text)
     except OSError as error:
         raise HarnessError(f"{file}: cannot be written ({error.strerror})") from None
-    for doubt in doubts(scenario):
+    for doubt in (*figure_doubts(satellite, scenario), *doubts(scenario)):
         warn(doubt)
     expectation = expect(scenario)
     pointing_deg = expectation.pointing_deg if points(expectation) else None
@@ -89,9 +91,21 @@ def scenario_text(satellite: NewSatellite, file: str) -> str:
     text = _rendered(satellite, file)
     if satellite.levels_am2 is not None:
         return text
-    scenario = scenario_of(parse_toml(text), file)
+    scenario = scenario_made(text)
     levels = levels_against(scenario, expect(scenario))
     return _rendered(replace(satellite, levels_am2=levels), file)
+
+
+def scenario_made(text: str, settings: Nested | None = None) -> Scenario:
+    """The scenario of a text that was made of options, before it is in a file.
+
+    Raises:
+        TableError: in terms of the options.
+    """
+    try:
+        return scenario_of(parse_toml(text), "the satellite", settings)
+    except TableError as error:
+        raise TableError(in_options(str(error))) from None
 
 
 @cache

@@ -62,7 +62,12 @@ class PlateSection(Section):
 
 
 class ScenarioBody(BodyTable):
-    """Inertia, momentum of a wheel, and the surface."""
+    """Inertia, momentum of a wheel, and the surface.
+
+    ``inertia_kgm2`` holds the principal moments, or the rows of the tensor J about the mass centre, with
+    J_xx = integral of (y^2 + z^2) dm and J_xy = - integral of x y dm. Where a program gives products with the
+    other sign, change it: ``torquer size`` shows by how much the principal axes are turned.
+    """
 
     plates: Annotated[tuple[PlateSection, ...], Strict(False)] = ()
 

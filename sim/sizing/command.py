@@ -1,5 +1,6 @@
 """``torquer size``: coil levels, and what pointing to expect, of a scenario's satellite."""
 
+from itertools import permutations
 from math import pi
 
 import numpy as np
@@ -77,6 +78,13 @@ def as_text(scenario: Scenario, expectation: Expectation, levels: Levels) -> str
         _pointing(expectation),
         f"  levels     {_levels(levels)} A m^2 would do",
     ]
+    turned_deg = principal_turn_deg(body.inertia_kgm2)
+    if turned_deg > 0.0:
+        lines.insert(
+            1,
+            f"  principal  axes turned by {turned_deg:.1f} deg from the body axes, with products of inertia "
+            "as J_xy = - integral of x y dm",
+        )
     if expectation.load > MOST_LOAD * ROUNDED:
         lines.append(f"  note: over {MOST_LOAD:.0%} of the coils' time: they hardly turn and damp as well")
     if points(expectation) and expectation.floor_deg > SURE_DEG:
@@ -84,6 +92,21 @@ def as_text(scenario: Scenario, expectation: Expectation, levels: Levels) -> str
     if _spread(body.inertia_kgm2) > MOST_SPREAD:
         lines.append("  note: about its lightest axis such a body turns freely: judge it by axis 1 alone")
     return "\n".join(lines)
+
+
+def principal_turn_deg(inertia_kgm2: object) -> float:
+    """The angle by which the principal axes are turned from the body axes; 0 where these are principal."""
+    inertia = np.asarray(inertia_kgm2, dtype=np.float64)
+    if not np.any(inertia - np.diag(np.diag(inertia))):
+        return 0.0
+    _, axes = np.linalg.eigh(inertia)
+    traces = []
+    for order in permutations(range(3)):
+        named = axes[:, list(order)]
+        along = np.abs(np.diag(named))
+        mirrored = np.linalg.det(named * np.where(np.diag(named) < 0.0, -1.0, 1.0)) < 0.0
+        traces.append(float(along.sum() - 2.0 * along.min() * mirrored))
+    return float(np.degrees(np.arccos(min(1.0, 0.5 * (max(traces) - 1.0)))))
 
 
 def _pointing(expectation: Expectation) -> str:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
-from math import hypot
+from math import hypot, pi
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from sim.scenario.schema import Scenario, flight_table
 from sim.scenario.telecommands import unsent_telecommands
 from sim.sizing.expectation import expect, field_across
 from sim.sizing.ignored_keys import ignored_keys
-from sim.sizing.levels import TOO_WEAK, levels_against
+from sim.sizing.levels import TOO_WEAK, levels_against, levels_for
 from sim.sizing.torques import surface_torque
 from sim.sizing.unbegun_faults import unbegun_faults
 
@@ -31,6 +31,7 @@ OLD_TLE_DAYS = 366.0
 """A TLE is good for days; what is a year from its epoch is another year's."""
 WILD_STEP, FAINT_STEP = 30.0, 1e-3
 """Change of rate by a pulse of the strongest level, in orbital rates: 0.1 to 0.5 in a sound design."""
+STRONGEST_AM2 = 1000.0
 FASTEST_DEGPS = 30.0
 LEAST_INCLINATION_DEG = 10.0
 NOISE_NT, NOISE_DEG = (1.0, 5000.0), (1e-3, 10.0)
@@ -77,9 +78,10 @@ def _orbit(scenario: Scenario) -> Iterator[str]:
     given = scenario.orbit.tle is not None or "inclination_deg" in scenario.orbit.model_fields_set
     left_out = "" if given else "; where the key is left out it is 0"
     if min(inclination_deg, 180.0 - inclination_deg) < LEAST_INCLINATION_DEG:
+        radians_asked = "; is it in deg, not in rad?" if 0.0 < inclination_deg <= pi else ""
         yield (
             f"orbit.inclination_deg = {inclination_deg:g}: over the equator the field hardly turns, and "
-            f"coils cannot turn the satellite about it{left_out}"
+            f"coils cannot turn the satellite about it{left_out}{radians_asked}"
         )
 
 
@@ -100,6 +102,15 @@ def _step(scenario: Scenario) -> Iterator[str]:
         yield (
             f"{change}: body.inertia_kgm2 is too large for {key}; is it in kg m^2, not in g m^2 (1000 times "
             "as much) or kg mm^2 (10^6 times)?"
+        )
+
+
+def _coils(scenario: Scenario) -> Iterator[str]:
+    strongest = levels_for(body_of(scenario), scenario.coils.pulse_s)[2]
+    if scenario.coils.driver == "pulsed" and strongest > STRONGEST_AM2:
+        yield (
+            f"body.inertia_kgm2 asks for coils of {strongest:.0f} A m^2, and those of satellites have up to "
+            f"{STRONGEST_AM2:g}: is it in kg m^2?"
         )
 
 
@@ -273,6 +284,7 @@ _JUDGES: tuple[Callable[[Scenario], Iterator[str]], ...] = (
     _epoch,
     _orbit,
     _step,
+    _coils,
     _start,
     _ticks,
     _currents,

@@ -1,7 +1,8 @@
 """Keys of a scenario that say something of a part that the satellite does not have."""
 
+from fsw.table.sections import CIRCULAR_KEYS
 from sim.scenario.schema import Scenario
-from sim.scenario.sections import ScenarioCoils, SunSensorSection
+from sim.scenario.sections import ScenarioCoils, ScenarioOrbit, SunSensorSection
 
 
 def ignored_keys(scenario: Scenario) -> list[str]:
@@ -18,4 +19,9 @@ def ignored_keys(scenario: Scenario) -> list[str]:
             f"coils.on_fraction = {coils.on_fraction:g} is of no effect, the driver is pulsed: "
             'coils.driver = "continuous" drives for a part of each tick'
         )
+    orbit, circle = scenario.orbit, ScenarioOrbit.model_fields
+    beside = [key for key in CIRCULAR_KEYS if getattr(orbit, key) != circle[key].default]
+    if orbit.tle is not None and beside:
+        keys = ", ".join(f"orbit.{key}" for key in beside)
+        told.append(f"{keys}: of no effect, the elements of orbit.tle are flown; leave out one or the other")
     return told

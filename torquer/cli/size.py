@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from sim.errors import HarnessError
-from torquer.cli.options import JSON, SETTINGS, examples, load_scenario, scenario_argument, sentences, warn_of
+from torquer.cli.options import JSON, SETTINGS, examples, load_scenario, scenario_argument, sentences
 from torquer.cli.satellite_options import satellite, satellite_options
 
 EXAMPLES = examples(
@@ -33,17 +33,20 @@ def size(
     Exit code 1: the coils cannot balance the disturbance. Equations and how well they agree with flights are
     in docs/sizing.md.
     """
-    from fsw.input.toml_text import parse_toml
-    from sim.new_scenario.command import scenario_text
-    from sim.scenario.schema import parse_settings, scenario_of
+    from sim.console import warn
+    from sim.new_scenario.command import scenario_made, scenario_text
+    from sim.new_scenario.figure_doubts import figure_doubts, in_options
+    from sim.scenario.schema import parse_settings
     from sim.sizing.command import size as command
+    from sim.sizing.doubts import doubts
 
     given = [name for name, value in {"tle": tle, **figures}.items() if value is not None]
     if scenario is not None and given:
         raise HarnessError(f"SCENARIO and --{given[0].replace('_', '-')} exclude each other")
     if scenario is not None:
         return command(load_scenario(scenario, settings))
-    text = scenario_text(satellite("satellite", tle, figures), "satellite.toml")
-    given_here = scenario_of(parse_toml(text), "the satellite", parse_settings(settings))
-    warn_of(given_here)
+    new_satellite = satellite("satellite", tle, figures)
+    given_here = scenario_made(scenario_text(new_satellite, "satellite.toml"), parse_settings(settings))
+    for doubt in (*figure_doubts(new_satellite, given_here), *doubts(given_here)):
+        warn(in_options(doubt))
     return command(given_here)

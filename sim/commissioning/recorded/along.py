@@ -21,6 +21,8 @@ NT_PER_T = 1e9
 FASTEST_HZ = 100
 MOST_TICKS, BESIDE_TICK = 10, 0.01
 """How much finer than the samples ticks may be, and how far beside a tick the usual sample may be, ticks."""
+YEAR_DAYS = 366.0
+GPS_EPOCH_UNIX_S, J2000_UNIX_S = 315_964_800.0, 946_728_000.0
 OLD_DAYS = 7.0
 """Elements further away put the satellite tens of kilometres off: 10 nT and more each."""
 NEARLY_ALL, MOST_TICKS_APART = 0.9, 600
@@ -72,7 +74,9 @@ def placed(recorded: RecordedPass, tle: Path) -> Along:
     Raises:
         HarnessError: as ``nearest_elements`` and ``along``.
     """
-    around = along(recorded, nearest_elements(tle, recorded.middle_unix_s))
+    elements = nearest_elements(tle, recorded.middle_unix_s)
+    _check_clock(recorded, elements)
+    around = along(recorded, elements)
     age_days = around.elements.age_days(recorded.middle_unix_s)
     if abs(age_days) > OLD_DAYS:
         warn(f"{tle}: the nearest element set is {abs(age_days):.0f} days away: its field may be off")
@@ -83,6 +87,27 @@ def placed(recorded: RecordedPass, tle: Path) -> Along:
             "looks like a slower one"
         )
     return around
+
+
+def _check_clock(recorded: RecordedPass, elements: ElementSet) -> None:
+    """Check that the times are not those of another clock, by which the elements would be of the same year.
+
+    Raises:
+        HarnessError: they are.
+    """
+    middle_s = recorded.middle_unix_s
+    if abs(elements.age_days(middle_s)) <= YEAR_DAYS:
+        return
+    for clock, unix_s in (
+        ("milliseconds", 1e-3 * middle_s),
+        ("GPS seconds, since 1980", middle_s + GPS_EPOCH_UNIX_S),
+        ("seconds since 2000", middle_s + J2000_UNIX_S),
+    ):
+        if abs(elements.age_days(unix_s)) <= YEAR_DAYS:
+            raise HarnessError(
+                f"{recorded.name}: column 'utc_unix_s' is about {middle_s:.15g}, and the elements are of "
+                f"Unix time {elements.epoch_unix_s} s: is it in {clock}?"
+            )
 
 
 def along(recorded: RecordedPass, elements: ElementSet) -> Along:

@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 
 MOST_BYTES = 100_000_000
 LEAST_ROWS = 3
+LATEST_UNIX_S = 1e11
+"""Three thousand years after 1970; in milliseconds, 1973."""
 LONGEST_S = 30 * 86400.0
 """Of a pass: its element set holds no longer."""
 
@@ -103,6 +105,8 @@ def _checked(path: Path, lines: list[int], numbers: Array, where: Places) -> Rec
             unknown = isnan(before) or isnan(after)
             said = "an empty field" if unknown else f"{after:.15g} after {before:.15g}"
             raise HarnessError(f"{path}: line {line}, column {TIME!r}: {said}; times must not go back")
+    if times[-1] - times[0] > LONGEST_S and times[0] > LATEST_UNIX_S:
+        raise HarnessError(f"{path}: column {TIME!r} begins with {times[0]:.15g}: is it in milliseconds?")
     if times[-1] - times[0] > LONGEST_S:
         raise HarnessError(
             f"{path}: the rows span {(times[-1] - times[0]) / 86400.0:.0f} days, at most "

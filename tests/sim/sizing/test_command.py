@@ -5,7 +5,9 @@ import pytest
 from sim.console import Console, speaking
 from sim.errors import HarnessError
 from sim.scenario.schema import load, parse_settings
-from sim.sizing.command import size
+from sim.sizing.command import as_text, principal_turn_deg, size
+from sim.sizing.expectation import expect
+from sim.sizing.levels import levels_against
 
 KEYS = {
     "scenario": str,
@@ -59,3 +61,24 @@ def test_what_is_doubtful_is_said(settings, code, words, capsys):
 def test_a_continuous_driver_is_refused():
     with pytest.raises(HarnessError, match="size needs pulsed coils"):
         sized("microsat", "coils.driver=continuous", "coils.max_dipole_am2=0.5")
+
+
+@pytest.mark.parametrize(
+    ("inertia", "turn_deg"),
+    [
+        ([[1.02, 0.1, 0.0], [0.1, 1.85, 0.0], [0.0, 0.0, 1.95]], 6.77),
+        ([[1.02, -0.1, 0.0], [-0.1, 1.85, 0.0], [0.0, 0.0, 1.95]], 6.77),
+        ([[1.95, 0.0, 0.0], [0.0, 1.02, 0.1], [0.0, 0.1, 1.85]], 6.77),
+        ([[1.5, 0.0, 0.0], [0.0, 1.02, 0.0], [0.0, 0.0, 1.85]], 0.0),
+    ],
+)
+def test_the_turn_of_the_principal_axes(inertia, turn_deg):
+    assert principal_turn_deg(inertia) == pytest.approx(turn_deg, abs=0.01)
+
+
+def test_products_of_inertia_are_said_with_their_sign():
+    inertia = [[1.02, 0.1, 0.0], [0.1, 1.85, 0.0], [0.0, 0.0, 1.95]]
+    scenario = load("microsat", {"body": {"inertia_kgm2": inertia}})
+    expectation = expect(scenario)
+    text = as_text(scenario, expectation, levels_against(scenario, expectation))
+    assert "axes turned by 6.8 deg from the body axes, with products of inertia as J_xy = - integral" in text

@@ -30,6 +30,11 @@ def test_no_scenario_that_ships_is_doubted(scenario):
             ["balancing the disturbance of 1e-07 N m takes 4", "A m^2 would do"],
         ),
         ("orbit.inclination_deg=0", ["orbit.inclination_deg = 0", "over the equator"]),
+        ("orbit.inclination_deg=1.7", ["orbit.inclination_deg = 1.7", "is it in deg, not in rad?"]),
+        (
+            "body.inertia_kgm2=[6700,33000,33500] coils.levels_am2=[3,12,48] coils.dipole_per_ampere_am2=50",
+            ["body.inertia_kgm2 asks for coils of", "A m^2", "is it in kg m^2?"],
+        ),
         ("coils.backoff_s=100.5", ["coils.backoff_s = 100.5", "ticks of 1 s", "longer"]),
         ("coils.pulse_s=2.5", ["coils.pulse_s = 2.5", "ticks of 1 s", "shorter"]),
         (

@@ -6,6 +6,7 @@ from sim.scenario.schema import load, shipped
 from sim.sizing.doubts import doubts
 from sim.sizing.ignored_keys import ignored_keys
 
+TLE = load("microsat").orbit.tle
 CONTINUOUS = {"driver": "continuous", "max_dipole_am2": 1.0, "on_fraction": 0.5}
 
 
@@ -26,6 +27,11 @@ def test_shipped_scenarios_have_none():
         ("microsat", {"coils": {"on_fraction": 0.5}}, "coils.on_fraction = 0.5 is of no effect"),
         ("microsat", {"coils": {"on_fraction": 0.8}}, ""),
         ("microsat", {"coils": CONTINUOUS}, ""),
+        (
+            "microsat",
+            {"orbit": {"tle": TLE, "inclination_deg": 50.0, "raan_deg": 0.0}},
+            "orbit.inclination_deg: of no effect, the elements of orbit.tle are flown",
+        ),
     ],
 )
 def test_a_key_that_is_ignored_is_told_unless_it_is_the_default(scenario, values, told):

@@ -131,3 +131,23 @@ def test_elements_that_are_far_away_are_warned_of(tmp_path, capsys, days, said):
     warned = capsys.readouterr().err
     assert said in warned
     assert bool(said) == bool(warned)
+
+
+@pytest.mark.parametrize(
+    ("clock", "said"),
+    [
+        (lambda unix_s: 1e3 * unix_s, "milliseconds"),
+        (lambda unix_s: unix_s - 315_964_782.0, "GPS seconds, since 1980"),
+        (lambda unix_s: unix_s - 946_728_000.0, "seconds since 2000"),
+    ],
+)
+def test_times_of_another_clock_are_named(tmp_path, clock, said):
+    head, *rows = made_up(10).text.splitlines()
+    place = head.split(",").index("utc_unix_s")
+    fields = [row.split(",") for row in rows]
+    for row in fields:
+        row[place] = f"{clock(float(row[place])):.3f}"
+    path = tmp_path / "clock.csv"
+    path.write_text("\n".join([head, *map(",".join, fields)]) + "\n")
+    with pytest.raises(HarnessError, match=f"is it in {said}"):
+        placed(read_pass(path), TLE)

@@ -77,7 +77,7 @@ def test_bad_rows_are_named(tmp_path, rows, said):
     ("content", "said"),
     [
         (b"", "it is empty"),
-        (b"\xff\xfe\x00", "not a text file in UTF-8"),
+        (b"\xff\xfe\x00", "it begins with the mark of UTF-16-LE, and is cut"),
         (b"utc_unix_s,mag_x_nt\n1,2\n", "there is no column 'mag_y_nt'"),
         (b'utc_unix_s,"mag\n', "there is no column"),
     ],

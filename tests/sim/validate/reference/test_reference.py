@@ -274,7 +274,7 @@ class TestMalformed:
 
     def test_bytes_that_are_no_text(self, folder):
         (folder.path / "floquet.csv").write_bytes(b"# fine\n\xff\xfe\n")
-        with pytest.raises(HarnessError, match=r"floquet.csv, line 2: not UTF-8"):
+        with pytest.raises(HarnessError, match=r"floquet.csv: cannot be read \(line 2 is not UTF-8"):
             check(folder, "floquet.csv")
 
     @pytest.mark.parametrize(
