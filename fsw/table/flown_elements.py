@@ -8,13 +8,34 @@ from sgp4.api import SGP4_ERRORS
 
 from fsw.core.algebra.vector import norm
 from fsw.core.orbit.earth import RADIUS_M
-from fsw.core.orbit.propagation import ElementOrbit, TleOrbit, axis_holds, axis_km, mean_axis_km
+from fsw.core.orbit.propagation import (
+    ElementOrbit,
+    TleOrbit,
+    axis_holds,
+    axis_km,
+    mean_axis_km,
+    sgp4_orbit,
+)
 from fsw.core.orbit.tle import DAY_S, UNIX_EPOCH_JD
 
 LEAST_ALTITUDE_KM = 150.0
 """Above the equatorial radius; below it air ends an orbit within hours."""
 MOMENTS, PLACES = 16, 32
 """Parts of a flight, and places along one revolution from each, at which an orbit is judged."""
+
+
+def check_tle(tle: tuple[str, str] | None, begin_unix_s: float, end_unix_s: float) -> None:
+    """Check the two lines of a table, if it has any, as ``check_flown`` does.
+
+    Raises:
+        ValueError: as there; the message names the key.
+    """
+    if tle is None:
+        return
+    try:
+        check_flown(sgp4_orbit(*tle), begin_unix_s, end_unix_s)
+    except ValueError as error:
+        raise ValueError(f"orbit.tle: {error}") from None
 
 
 def check_flown(orbit: TleOrbit | ElementOrbit, begin_unix_s: float, end_unix_s: float) -> None:

@@ -20,7 +20,6 @@ from fsw.core.algebra.vector import unit
 from fsw.core.laws.entry import LawEntry, Need, is_met
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.igrf_coefficients import EPOCHS_UNIX_S
-from fsw.core.orbit.propagation import sgp4_orbit
 from fsw.core.orbit.tle import tle_epoch_unix_s
 from fsw.input.own_code import short_name
 from fsw.input.schema import (
@@ -32,7 +31,7 @@ from fsw.input.schema import (
 )
 from fsw.table.calibration import CalibrationTable
 from fsw.table.cells import CellTable
-from fsw.table.flown_elements import check_flown
+from fsw.table.flown_elements import check_tle
 from fsw.table.ordinary import ordinary_dipole_am2, ordinary_torque_nm
 from fsw.table.own_law import named
 from fsw.table.sections import (
@@ -107,11 +106,7 @@ class FlightTable(Section):
                 "IGRF-14 holds from 2015 to 2030, and another field.model, as the time on the bus, from 1970 "
                 "to 2106"
             )
-        if self.orbit.tle is not None:
-            try:
-                check_flown(sgp4_orbit(*self.orbit.tle), self.epoch_unix_s, self.epoch_unix_s)
-            except ValueError as error:
-                raise ValueError(f"orbit.tle: {error}") from None
+        check_tle(self.orbit.tle, self.epoch_unix_s, self.epoch_unix_s)
         return self
 
     @model_validator(mode="after")

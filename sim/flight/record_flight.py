@@ -4,8 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from fsw.bus.interface import Bus
-from fsw.core.orbit.propagation import sgp4_orbit
-from fsw.table.flown_elements import check_flown
+from fsw.table.flown_elements import check_tle
 from fsw.wire.frame import Frame
 from sim.errors import HarnessError
 from sim.faults.section import make_plant
@@ -49,13 +48,11 @@ def check_elements(scenario: Scenario, ticks: int) -> None:
     Raises:
         HarnessError: when and why they are not.
     """
-    tle, begin_s = scenario.orbit.tle, scenario.epoch_unix_s
-    if tle is None:
-        return
+    begin_s = scenario.epoch_unix_s
     try:
-        check_flown(sgp4_orbit(*tle), begin_s, begin_s + ticks / scenario.time.tick_hz)
+        check_tle(scenario.orbit.tle, begin_s, begin_s + ticks / scenario.time.tick_hz)
     except ValueError as error:
-        raise HarnessError(f"scenario {scenario.name}: orbit.tle: {error}") from None
+        raise HarnessError(f"scenario {scenario.name}: {error}") from None
 
 
 def check_can_fly(scenario: Scenario, seed: int) -> None:

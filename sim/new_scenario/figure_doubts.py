@@ -11,7 +11,7 @@ from sim.sizing.levels import TOO_WEAK
 DENSEST_KGPM3, LIGHTEST_KGPM3 = 22_600.0, 1.2
 """Of osmium, and of air at sea level."""
 OF_BOUND = 5.0
-"""A bound of the torque, as in ``fsw/table/ordinary.py``, is five times what changes along the orbit: drag."""
+"""A bound of the torque, as in ``fsw/table/ordinary.py``, is five times what changes along an orbit."""
 OPTIONS = {
     "orbit.altitude_km": "--altitude-km",
     "orbit.inclination_deg": "--inclination-deg",
@@ -57,6 +57,6 @@ def _drag(satellite: NewSatellite, scenario: Scenario) -> list[str]:
         return []
     return [
         f"drag is left out, and at {scenario.orbit.perigee_km:.0f} km it rules: about {drag_nm:.1g} N m on "
-        f"such a body, {drag_nm / given_nm:.0%} of what its coils can give; body.plates and "
-        "[disturbance.drag] put it in"
+        f"such a body, {drag_nm / given_nm:.0%} of what its coils can give; a scenario with "
+        "body.plates and [disturbance.drag] has it"
     ]

@@ -28,6 +28,7 @@ from fsw.input.schema import (
 )
 from fsw.input.toml_text import MOST_LEVELS, BoundsError, parse_toml
 from fsw.table import table as onboard
+from fsw.table.flown_elements import check_tle
 from fsw.table.own_law import named
 from fsw.table.sections import CIRCULAR_KEYS, ControlTable, TimeTable
 from fsw.table.table import FlightTable
@@ -111,6 +112,7 @@ class Scenario(Section):
 
     @model_validator(mode="after")
     def _parts_fit(self) -> Self:
+        check_tle(self.orbit.tle, self.epoch_unix_s, self.epoch_unix_s)
         for name in ("drag", "solar_pressure"):
             if getattr(self.disturbance, name) is not None and not self.body.plates:
                 raise ValueError(f"disturbance.{name} needs body.plates, the flat parts of the surface")

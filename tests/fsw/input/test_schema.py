@@ -173,9 +173,7 @@ class TestReadToml:
         file.write_text("[s]\nx = 1 # one\n", encoding="utf-8")
         assert read_toml(file) == {"s": {"x": 1}}
 
-    @pytest.mark.parametrize(
-        "content", [b"x = = 1\n", b"x = 1\nx = 2\n", b"\xff\xfe", b"[s\n", b"\x00\x01\x02"]
-    )
+    @pytest.mark.parametrize("content", [b"x = = 1\n", b"x = 1\nx = 2\n", b"[s\n", "a\u00a0= 1".encode()])
     def test_what_is_not_toml_is_told_with_its_name(self, tmp_path, content):
         file = tmp_path / "a.toml"
         file.write_bytes(content)

@@ -120,3 +120,23 @@ def test_a_file(tmp_path):
     (tmp_path / "a.toml").write_text("#" * (MOST_BYTES + 1))
     with pytest.raises(OSError, match="larger than 1 MB"):
         load_toml(tmp_path / "a.toml")
+
+
+@pytest.mark.parametrize("codec", ["utf-8-sig", "utf-16"])
+def test_a_file_as_editors_save_it(tmp_path, codec):
+    (tmp_path / "a.toml").write_bytes('a = "Grüße"\r\n'.encode(codec))
+    assert load_toml(tmp_path / "a.toml") == {"a": "Grüße"}
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x = 1\na\u00a0= 1", "at line 2, column 2): U+00A0, no-break space, stands there"),
+        ("a = \u22121", "U+2212, minus sign, stands there"),
+        ("a = \u201cb\u201d", "U+201C, left double quotation mark, stands there"),
+    ],
+)
+def test_a_character_that_looks_like_another_is_named(text, said):
+    with pytest.raises(tomllib.TOMLDecodeError) as caught:
+        parse_toml(text)
+    assert said in str(caught.value)

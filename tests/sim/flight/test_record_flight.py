@@ -21,6 +21,10 @@ from sim.record.truth import TruthReader
 from sim.scenario.schema import load, orbit_period_s, parse_settings
 
 TICKS = 5
+DECAYING = (
+    "1 45110U 20007A   23232.80903846  .00110000  00000-0  32750-2 0    04",
+    "2 45110  69.9913 111.5649 0009740 159.9373 200.0626 15.34502222    06",
+)
 BOOT = FswBoot(0, 1, 2).encode()
 
 
@@ -34,6 +38,14 @@ class TestLength:
 
     def test_is_at_least_one_tick(self):
         assert ticks_of(load("microsat"), 1e-9) == 1
+
+    def test_ends_before_the_elements_have_decayed(self):
+        scenario = load("microsat", {"orbit": {"tle": DECAYING}, "time": {"epoch_utc": "2023-08-21"}})
+        assert ticks_of(scenario, 100.0) > 0
+        with pytest.raises(
+            HarnessError, match=r"scenario microsat: orbit\.tle: the elements are at .* km on 2024"
+        ):
+            ticks_of(scenario, 3000.0)
 
     @pytest.mark.parametrize("orbits", [1e5, inf, nan])
     def test_has_a_limit(self, orbits):
@@ -71,11 +83,15 @@ DECAYED_ABOARD = {
 }
 
 
-def test_what_the_flight_software_cannot_fly_is_refused_before_the_run_begins():
-    """Elements that have decayed aboard alone: the plant could fly it."""
-    scenario = load("microsat", DECAYED_ABOARD)
-    with pytest.raises(TableError, match="decayed"):
-        check_can_fly(scenario, 1)
+def test_elements_that_have_decayed_aboard_alone_are_refused():
+    """The plant could fly it."""
+    with pytest.raises(TableError, match=r"\[flight\]: orbit\.tle: the elements are at 379665 km on 2015"):
+        load("microsat", DECAYED_ABOARD)
+
+
+def test_what_flies_is_not_refused_before_the_run_begins():
+    scenario = load("microsat")
+    check_can_fly(scenario, 1)
     check_plant(scenario, 1)
 
 

@@ -44,7 +44,7 @@ def test_moments_that_are_given_have_no_density():
 def test_drag_that_rules_and_is_left_out_is_said(altitude_km):
     (doubt,) = told(altitude_km=altitude_km)
     assert doubt.startswith(f"drag is left out, and at {altitude_km:.0f} km it rules: about ")
-    assert doubt.endswith("body.plates and [disturbance.drag] put it in")
+    assert doubt.endswith("a scenario with body.plates and [disturbance.drag] has it")
 
 
 def test_a_sentence_names_options_where_there_is_no_file():
