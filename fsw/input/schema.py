@@ -91,6 +91,11 @@ def _fault(model: type[Any], detail: Nested) -> str:
     if detail["type"] == "union_tag_not_found":
         name = detail["ctx"]["discriminator"].strip("'")
         return f"{path}.{name} is missing"
+    if detail["type"] == "union_tag_invalid":
+        name, tag = detail["ctx"]["discriminator"].strip("'"), detail["ctx"]["tag"]
+        kinds = detail["ctx"]["expected_tags"].replace("'", "").split(", ")
+        near = did_you_mean(tag, kinds)
+        return f"{path}.{name} = {_shortened(tag)} is not allowed: allowed is one of {', '.join(kinds)}{near}"
     message = str(detail["msg"]).removeprefix("Value error, ")
     if detail["type"] in ("value_error", "json_invalid"):
         return f"{path}: {message}" if path else message
@@ -144,6 +149,7 @@ def _shortened(value: object) -> str:
 
 _KINDS = {
     "model_type": "a section of keys",
+    "model_attributes_type": "a section of keys",
     "dict_type": "a section of keys",
     "tuple_type": "a list",
     "string_type": "a text",

@@ -192,7 +192,7 @@ class TestNumbers:
         ({"at_s": -1.0}, "at_s = -1.0 is not allowed"),
         ({"spin_radps": 0.125}, "spin_radps = 0.125 is not allowed"),
         ({"spin": 0.1}, "spin is not a known key"),
-        ({"message": "TC_SPAM"}, "'TC_MODE', 'TC_CLEAR'"),
+        ({"message": "TC_SPAM"}, "TC_MODE, TC_CLEAR"),
         ({"message": "TC_LAW", "law": "none"}, "law = 'none' is not allowed"),
         ({"message": "TC_MODE", "mode": "safe"}, "mode = 'safe' is not allowed"),
         ({"message": "TC_GAIN", "gain": "k_w", "value": 1.23456789012}, "value: 1.23456789012 does not fit"),
@@ -340,3 +340,18 @@ def test_commands_by_hand_replay_too_wherever_they_meet_the_tick(tmp_path):
 def test_the_law_of_ones_own_is_sent_by_the_last_number():
     (message,) = SendLaw(message="TC_LAW", at_s=0.0, law="own").messages()
     assert message == TcLaw(OWN_NUMBER)
+
+
+@pytest.mark.parametrize(
+    ("telecommand", "said"),
+    [
+        (
+            {"at_s": 3.0, "message": "TC_SPINN"},
+            r"telecommand\.0\.message = 'TC_SPINN' is not allowed: allowed is one of TC_MODE, .*TC_SPIN\b",
+        ),
+        (3, r"telecommand\.0 = 3 is not allowed: allowed is a section of keys"),
+    ],
+)
+def test_what_is_no_telecommand_is_said_in_the_words_of_the_file(telecommand, said):
+    with pytest.raises(TableError, match=said):
+        load("microsat", {"telecommand": [telecommand]})
