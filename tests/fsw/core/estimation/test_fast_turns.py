@@ -200,3 +200,24 @@ class TestOfAFastTurnWhoseRateIsKnown:
         _, after = self.seen(0.024, config)
         assert after.turning is Turning.FAST
         assert not self.begun_anew(after, config)
+
+
+class TestAStartInATumble:
+    """The filter begins at rest: how far it may turn between two samples, and what is claimed beyond."""
+
+    def test_is_valid_and_true_where_it_turns_by_eight_degrees_a_tick(self, make_world):
+        world = make_world(initial={"rate_degps": (5.0, -4.0, 4.0)})
+        world.fly_until_valid()
+        for _ in range(60):
+            truth = world.plant.truth()
+            world.step()
+            attitude = world.state.attitude
+            assert attitude.valid
+            off_rad = angle_rad(attitude.q_body_from_orbit, truth.q_body_from_orbit)
+            assert off_rad < 2.0 * attitude.sigma3_attitude_rad
+
+    def test_is_never_called_valid_where_it_turns_by_eighteen(self, make_world):
+        world = make_world(initial={"rate_degps": (10.0, -12.0, 9.0)})
+        for _ in range(400):
+            world.step()
+            assert not world.state.attitude.valid
