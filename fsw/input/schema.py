@@ -101,6 +101,8 @@ def _fault(model: type[Any], detail: Nested) -> str:
         return f"{path}: {message}" if path else message
     allowed = _allowed_range(model, detail["loc"]) or _KINDS.get(detail["type"], "")
     hint = f"allowed is {allowed}" if allowed else f"{message[0].lower()}{message[1:]}"
+    if detail["type"] == "less_than_equal":
+        hint += _unit_asked(str(detail["loc"][-1]), detail["input"], detail["ctx"]["le"])
     if detail["type"] == "literal_error":
         hint += _near_value(model, detail["loc"], detail["input"])
     return f"{path} = {_shortened(detail['input'])} is not allowed: {hint}"
@@ -142,11 +144,20 @@ def _near_value(model: type[Any], location: tuple[int | str, ...], given: object
     return "" if field is None else did_you_mean(str(given), words_of(field.annotation))
 
 
+def _unit_asked(key: str, given: float, most: float) -> str:
+    """The question after the unit of a number that is far too large and whose thousandth would be allowed."""
+    unit = key.rpartition("_")[2]
+    is_smaller = unit in _THOUSANDFOLD and 10.0 * most <= given <= 1000.0 * most
+    return f"; is it in {unit}?" if is_smaller else ""
+
+
 def _shortened(value: object) -> str:
     text = repr(value)
     return text if len(text) <= LONGEST_VALUE else f"{text[:LONGEST_VALUE]}..."
 
 
+_THOUSANDFOLD = ("km", "m", "s", "kg")
+"""Units that are taken for their thousandth: m, mm, ms, g."""
 _KINDS = {
     "model_type": "a section of keys",
     "model_attributes_type": "a section of keys",

@@ -188,3 +188,22 @@ class TestReadToml:
     def test_a_folder(self, tmp_path):
         with pytest.raises(TableError, match="cannot be read"):
             read_toml(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("values", "asked"),
+    [
+        ({"range_km": 550_000.0}, "; is it in km?"),
+        ({"range_km": 1e9}, ""),
+        ({"range_km": 40_001.0}, ""),
+        ({"other": 550_000.0}, ""),
+    ],
+)
+def test_a_number_that_may_be_in_a_smaller_unit_is_asked_for_it(values, asked):
+    class Orbit(Section):
+        range_km: float = Field(default=1.0, le=40_000.0)
+        other: float = Field(default=1.0, le=40_000.0)
+
+    with pytest.raises(TableError) as caught:
+        validated(Orbit, values, "x")
+    assert str(caught.value).endswith(f"allowed is a number at most 40000{asked}")
