@@ -7,6 +7,7 @@ number of digits. What no scenario, table or script needs is refused before anyt
 import re
 import tomllib
 import unicodedata
+from collections.abc import Sequence
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,8 @@ MOST_LEVELS = 32
 """Of nested tables and lists."""
 LEAST, MOST = 1e-18, 1e15
 """Bounds of the magnitude of every number but 0, in the units of the file."""
+ROUNDING = 1e-15
+"""An element below ``LEAST``, and this much smaller than the largest of its list, is what rounding has left of 0."""
 
 # Each piece takes something, and a text without an end all to the end of its line or of the document. So that
 # is read once, whatever is in it, and what stands in a text or a comment is no key.
@@ -59,8 +62,18 @@ def parse_toml(text: str) -> dict[str, Any]:
         raise tomllib.TOMLDecodeError(f"{error}{_odd_letter(text, str(error))}") from None
     except ValueError:  # of int(), which counts digits
         raise BoundsError(f"an integer is {_BEYOND}") from None
-    _check(values, "", 0)
-    return values
+    return bounded(values)
+
+
+def bounded(values: dict[str, Any]) -> dict[str, Any]:
+    """The values, in which what rounding has left of a zero in a vector or a matrix is zero.
+
+    The same bounds hold for what is read from a file and what a program gives.
+
+    Raises:
+        BoundsError: as for ``parse_toml``.
+    """
+    return {key: _bounded(value, key, 1, 0.0) for key, value in values.items()}
 
 
 def _odd_letter(text: str, message: str) -> str:
@@ -95,15 +108,28 @@ _TOO_DEEP = f"it is nested deeper than {MOST_LEVELS} levels"
 _BEYOND = f"not allowed: a number is 0, or from {LEAST:g} to {MOST:g} in magnitude"
 
 
-def _check(value: object, key: str, level: int) -> None:
-    """Depth and numbers of a value; infinity and NaN are left to the schema."""
+def _bounded(value: Any, key: str, level: int, largest: float) -> Any:  # noqa: ANN401  (any value of TOML)
+    """A value within the bounds; infinity and NaN are left to the schema.
+
+    ``largest``: the greatest magnitude in the list, or the list of lists, that the value is in.
+    """
     if level > MOST_LEVELS:
         raise BoundsError(_TOO_DEEP)
     if isinstance(value, dict):
-        for name, below in value.items():
-            _check(below, f"{key}.{name}" if key else name, level + 1)
-    elif isinstance(value, list):
-        for number, below in enumerate(value):
-            _check(below, f"{key}.{number}", level + 1)
-    elif isinstance(value, int | float) and (0 < abs(value) < LEAST or MOST < abs(value) < inf):
+        return {name: _bounded(below, f"{key}.{name}", level + 1, 0.0) for name, below in value.items()}
+    if isinstance(value, list | tuple):
+        largest = largest or _largest(value)
+        return [_bounded(below, f"{key}.{place}", level + 1, largest) for place, below in enumerate(value)]
+    if not isinstance(value, int | float):
+        return value
+    if 0 < abs(value) < LEAST and abs(value) <= ROUNDING * largest:
+        return 0.0
+    if 0 < abs(value) < LEAST or MOST < abs(value) < inf:
         raise BoundsError(f"{key} is {_BEYOND}")
+    return value
+
+
+def _largest(values: Sequence[Any]) -> float:
+    """The largest magnitude of the numbers in a list, or in a list of lists."""
+    rows = [one if isinstance(one, list | tuple) else (one,) for one in values]
+    return max((abs(one) for row in rows for one in row if isinstance(one, int | float)), default=0.0)

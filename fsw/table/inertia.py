@@ -5,6 +5,8 @@ from math import isfinite
 from fsw.core.algebra.vector import Mat3, cross, dot, scale, transpose
 
 ROUNDING = 1e-9
+SYMMETRY = 1e-14
+"""Most difference of two products of inertia that rounding makes, over the trace."""
 
 
 def three_numbers(value: object) -> bool:
@@ -12,6 +14,16 @@ def three_numbers(value: object) -> bool:
     if not isinstance(value, list | tuple) or len(value) != 3:
         return False
     return all(isinstance(x, int | float) and not isinstance(x, bool) and isfinite(x) for x in value)
+
+
+def without_rounding(inertia_kgm2: Mat3) -> Mat3:
+    """The tensor, made exactly symmetric where it is so up to rounding, as R J R^T in floating point is."""
+    (a, d, e), (g, b, f), (h, i, c) = inertia_kgm2
+    small = SYMMETRY * (abs(a) + abs(b) + abs(c))
+    if max(abs(d - g), abs(e - h), abs(f - i)) > small:
+        return inertia_kgm2
+    d, e, f = 0.5 * (d + g), 0.5 * (e + h), 0.5 * (f + i)
+    return ((a, d, e), (d, b, f), (e, f, c))
 
 
 def check_inertia(inertia_kgm2: Mat3) -> None:

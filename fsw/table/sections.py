@@ -14,7 +14,7 @@ from fsw.core.orbit.tle import plain_line
 from fsw.input.near import did_you_mean
 from fsw.input.own_code import short_name
 from fsw.input.schema import NotNegative, Positive, Section, Square, StepNt, StepOfOne, Triple
-from fsw.table.inertia import check_inertia, three_numbers
+from fsw.table.inertia import check_inertia, three_numbers, without_rounding
 
 CIRCULAR_KEYS = ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")
 """Keys of a circular orbit; the other kind has ``tle``."""
@@ -94,6 +94,11 @@ class BodyTable(Section):
         if not (three_numbers(rows) or (len(rows) == 3 and all(three_numbers(row) for row in rows))):
             raise ValueError("must be three principal moments or 3 x 3 numbers")
         return value
+
+    @field_validator("inertia_kgm2")
+    @classmethod
+    def _is_symmetric_up_to_rounding(cls, value: Vec3 | Mat3) -> Vec3 | Mat3:
+        return without_rounding(value) if isinstance(value[0], tuple) else value
 
     @model_validator(mode="after")
     def _is_an_inertia(self) -> Self:

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-import tomli_w
 
 from fsw.compiled import standing
 from fsw.core.estimation.kalman import Algebra, available
@@ -25,6 +24,7 @@ from sim.record.pace import Pace
 from sim.record.run_record import SCHEMA_VERSION, RunRecord, read_record
 from sim.scenario.law_named import with_law_withheld
 from sim.scenario.schema import Scenario, flight_table, load
+from sim.scenario.written import scenario_toml
 
 RUN, SCENARIO, BUS_LOG, TRUTH, SUMMARY, REPORT = (
     "run.json",
@@ -85,16 +85,16 @@ def begin(
         The directory.
 
     Raises:
+        TableError: its scenario could not be read again; nothing was created.
         HarnessError: the directory holds a run already, or cannot be written.
     """
+    text = scenario_toml(scenario, f"scenario {scenario.name}")
     path = out or new_folder(scenario)
     check_folder(path)
-    if any((path / name).exists() for name in FILES):
+    if any(os.path.lexists(path / name) for name in FILES):
         raise HarnessError(f"{path} already holds a run: choose another --out")
-    values = scenario.model_dump(mode="json", exclude_none=True)
     try:
-        text = tomli_w.dumps(values)
-        (path / SCENARIO).write_text(text, encoding="utf-8")
+        replace_file(path / SCENARIO, text.encode())
         write_json(
             path / RUN,
             {

@@ -14,6 +14,7 @@ from sim.drawing.page_parts import Table
 from sim.record.run_record import RunRecord
 from sim.report.summary_text import last_orbit
 from sim.scenario.schema import Scenario, orbit_period_s
+from sim.scenario.written import values_of
 
 Json = dict[str, Any]
 Pairs = list[tuple[str, str]]
@@ -127,7 +128,7 @@ def scenario_in_words(scenario: Scenario) -> tuple[Pairs, Pairs]:
 
 def scenario_toml(scenario: Scenario) -> str:
     """The scenario in full."""
-    return tomli_w.dumps(scenario.model_dump(mode="json", exclude_none=True))
+    return tomli_w.dumps(values_of(scenario))
 
 
 def violations(audit: AuditReport) -> Table:

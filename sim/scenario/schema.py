@@ -26,7 +26,7 @@ from fsw.input.schema import (
     read_toml,
     validated,
 )
-from fsw.input.toml_text import MOST_LEVELS, BoundsError, parse_toml
+from fsw.input.toml_text import MOST_LEVELS, BoundsError, bounded, parse_toml
 from fsw.table import table as onboard
 from fsw.table.flown_elements import check_tle
 from fsw.table.own_law import named
@@ -175,7 +175,11 @@ def scenario_of(values: Nested, source: str, overrides: Nested | None = None) ->
     Raises:
         TableError: naming ``source``, and a key that is unknown, missing, of the wrong type or out of range.
     """
-    scenario = validated(Scenario, onboard.lay_over(values, overrides or {}), source)
+    try:
+        resolved = bounded(onboard.lay_over(values, overrides or {}))
+    except BoundsError as error:
+        raise TableError(f"{source}: {error}") from None
+    scenario = validated(Scenario, resolved, source)
     flight_table(scenario, source)
     return scenario
 

@@ -8,6 +8,7 @@ from fsw.input.schema import Model, TableError, merge, validated
 from fsw.table.own_law import named
 from sim.scenario.schema import Scenario, load, scenario_of
 from sim.scenario.settings import nested, plain
+from sim.scenario.written import values_of
 
 ScenarioLike = str | PathLike[str] | Scenario
 """The name of a shipped scenario, the path of a file, or a scenario."""
@@ -28,7 +29,7 @@ def chosen_scenario(
     if isinstance(scenario, Scenario) and not over:
         return scenario
     if isinstance(scenario, Scenario):
-        return scenario_of(scenario.model_dump(mode="json", exclude_none=True), scenario.name, over)
+        return scenario_of(values_of(scenario), scenario.name, over)
     return load(path_text(scenario, "scenario"), over)
 
 

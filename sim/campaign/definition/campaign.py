@@ -10,7 +10,6 @@ from typing import Any
 from zlib import crc32
 
 import numpy as np
-import tomli_w
 from pydantic import Field
 
 from fsw.input.schema import Nested, Section
@@ -20,6 +19,7 @@ from sim.campaign.definition.keys import value_at, with_value
 from sim.campaign.definition.requirements import FigureRequirement
 from sim.record.run_dir import replace_file
 from sim.scenario.schema import Scenario, scenario_of
+from sim.scenario.written import checked_toml
 
 FILE, SCENARIO = "campaign.toml", "scenario.toml"
 
@@ -107,8 +107,17 @@ class Campaign:
 
     def write(self, folder: Path) -> None:
         """Write campaign.toml and scenario.toml, which are read as the same campaign."""
-        replace_file(folder / SCENARIO, tomli_w.dumps(self.base).encode())
-        replace_file(folder / FILE, tomli_w.dumps(self.as_values()).encode())
+        for name, text in self.texts().items():
+            replace_file(folder / name, text.encode())
+
+    def texts(self) -> dict[str, str]:
+        """The two files by name.
+
+        Raises:
+            TableError: one could not be read again.
+        """
+        of_campaign = checked_toml(self.as_values(), f"campaign {self.name}")
+        return {SCENARIO: checked_toml(self.base, f"scenario {self.base['name']}"), FILE: of_campaign}
 
     def draw(self, run: int) -> DrawnRun:
         """The values of a run.

@@ -1,12 +1,14 @@
 """Campaign files: the schema of their TOML, and the campaign that one describes."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import Field, Strict
 
 from fsw.input.schema import Nested, Section, TableError, merge, read_toml, validated
-from sim.campaign.definition.campaign import FILE, Campaign, IndexLimits, StatisticsSection, laid_over
+from fsw.input.toml_text import parse_toml
+from sim.campaign.definition.campaign import FILE, SCENARIO, Campaign, IndexLimits, StatisticsSection, laid_over
 from sim.campaign.definition.dispersion import Shape
 from sim.campaign.definition.distributions import AnyDispersion
 from sim.campaign.definition.keys import nominal_values, value_at
@@ -14,6 +16,7 @@ from sim.campaign.definition.requirements import requirements_in
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.scenario.names import Name
 from sim.scenario.schema import load, scenario_of
+from sim.scenario.written import values_of
 
 MOST_RUNS = 10**7
 MOST_SEED = 10**15
@@ -73,7 +76,7 @@ def _campaign(content: CampaignTable, scenario_name: str, source: str, settings:
     _check_keys(content, source)
     campaign = Campaign(
         name=content.name or scenario.name,
-        base=scenario.model_dump(mode="json", exclude_none=True),
+        base=values_of(scenario),
         nominal=nominal,
         runs=content.runs,
         seed=content.seed,
@@ -88,7 +91,25 @@ def _campaign(content: CampaignTable, scenario_name: str, source: str, settings:
     )
     for place in range(len(campaign.disperse)):
         _probe(campaign, place, f"{source}: disperse.{place}")
+    _check_written(campaign)
     return campaign
+
+
+def _check_written(campaign: Campaign) -> None:
+    """Check, before anything is flown, that the folder's files would be read as this campaign."""
+    texts = campaign.texts()
+    scenario = scenario_of(parse_toml(texts[SCENARIO]), f"scenario {campaign.base['name']}")
+    content = validated(CampaignTable, parse_toml(texts[FILE]), f"campaign {campaign.name}")
+    again = replace(
+        campaign,
+        base=values_of(scenario),
+        disperse=content.disperse,
+        requirements=requirements_in(content.requirement, FILE),
+        statistics=content.statistics,
+        index=content.index,
+    )
+    if again.texts() != texts:
+        raise TableError(f"campaign {campaign.name}: its files would not be read as the same campaign")
 
 
 def _check_keys(content: CampaignTable, source: str) -> None:

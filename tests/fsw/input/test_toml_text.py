@@ -140,3 +140,20 @@ def test_a_character_that_looks_like_another_is_named(text, said):
     with pytest.raises(tomllib.TOMLDecodeError) as caught:
         parse_toml(text)
     assert said in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("[1.0, 2.2e-19, 0.0]", [1.0, 0.0, 0.0]),
+        ("[[1.0, 2.2e-19], [-2.2e-19, 1]]", [[1.0, 0.0], [0.0, 1]]),
+        ("[1e-3, 1e-18]", [1e-3, 1e-18]),
+    ],
+)
+def test_what_rounding_has_left_of_zero_beside_larger_numbers_is_zero(text, value):
+    assert parse_toml(f"a = {text}") == {"a": value}
+
+
+@pytest.mark.parametrize("text", ["2.2e-19", "[2.2e-19, 1e-6]", "[[1.0], [{b = 2.2e-19}]]", "[1.0, 1e16]"])
+def test_a_number_of_its_own_is_no_residue(text):
+    assert "is not allowed: a number is 0, or from" in fault(f"a = {text}")

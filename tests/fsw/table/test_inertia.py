@@ -6,7 +6,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from fsw.table.inertia import check_inertia, three_numbers
+from fsw.table.inertia import check_inertia, three_numbers, without_rounding
 
 component = st.floats(-1.0, 1.0, allow_subnormal=False)
 turns = st.tuples(component, component, component).map(lambda v: 3.0 * np.array(v))
@@ -65,6 +65,20 @@ def test_a_tensor_is_symmetric(row, column):
     j[row, column] += 1e-12
     with pytest.raises(ValueError, match="symmetric"):
         check_inertia(tuple(map(tuple, j.tolist())))
+
+
+@given(turn=turns, size=st.floats(1e-6, 1e6))
+def test_a_tensor_that_was_turned_in_floating_point_is_symmetric_up_to_rounding(turn, size):
+    c = Rotation.from_rotvec(turn).as_matrix()
+    given = tuple(map(tuple, (size * c @ np.diag((1.02, 1.85, 1.95)) @ c.T).tolist()))
+    made = without_rounding(given)
+    check_inertia(made)
+    assert np.allclose(made, given, rtol=0.0, atol=1e-14 * size)
+
+
+def test_an_asymmetry_that_rounding_does_not_make_stays():
+    given = ((1.02, 1e-12, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95))
+    assert without_rounding(given) == given
 
 
 @pytest.mark.parametrize(

@@ -53,6 +53,19 @@ def test_settings_have_dots_or_sections_and_values_of_numpy(tmp_path):
     assert (flown.time.tick_hz, flown.coils.backoff, flown.initial.axis) == (2, "per_coil", (0.0, 1.0, 0.0))
 
 
+def test_what_flies_can_be_read_again_and_what_cannot_is_refused_before_anything_is_there(tmp_path):
+    residue = {"body.inertia_kgm2": [[1.02, 2.2e-19, 0], [2.2e-19, 1.85, 0], [0, 0, 1.95]]}
+    run = torquer.fly("microsat", orbits=SHORT, set=residue, out=tmp_path / "run")
+    assert torquer.load(tmp_path / "run").scenario == run.scenario
+    beyond = {"disturbance.torque_nm": [1e-19, 0.0, 0.0]}
+    with pytest.raises(torquer.InputError, match=r"disturbance.torque_nm.0 is not allowed: a number is 0, or"):
+        torquer.fly("microsat", orbits=SHORT, set=beyond, out=tmp_path / "beyond")
+    unreadable = run.scenario.model_copy(update={"summary": "\udcff"})
+    with pytest.raises(torquer.InputError, match="cannot be written"):
+        torquer.fly(unreadable, orbits=SHORT, out=tmp_path / "unreadable")
+    assert [path.name for path in tmp_path.iterdir()] == ["run"]
+
+
 def test_what_is_expected_is_judged_and_a_failure_of_the_run(tmp_path):
     run = torquer.fly("microsat", orbits=SHORT, expect=["ape<2", "ape<90"], out=tmp_path / "run")
     assert [one["verdict"] for one in run.summary["requirements"][-2:]] == ["failed", "met"]
