@@ -11,7 +11,9 @@ import shlex
 import subprocess
 import sys
 import sysconfig
+from collections.abc import Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 try:
@@ -38,7 +40,6 @@ def build_kernel(root: Path) -> Path:
     """
     import numpy as np  # noqa: PLC0415  (of the environment that builds)
 
-    part = root / f"{TARGET}.part"  # a build that is killed leaves the binary as it was
     digest = hashlib.sha256((root / SOURCE).read_bytes()).hexdigest()
     folders = {sysconfig.get_path("include"), sysconfig.get_path("platinclude"), np.get_include()}
     words = [
@@ -48,16 +49,23 @@ def build_kernel(root: Path) -> Path:
         f'-DSOURCE_SHA256="{digest}"',
         *(f"-I{folder}" for folder in sorted(folders)),
         str(root / SOURCE),
-        "-o",
-        str(part),
     ]
+    target = root / TARGET
+    with TemporaryDirectory(
+        dir=target.parent
+    ) as folder:  # a build that is killed leaves the binary as it was
+        part = Path(folder, target.name)
+        _compile([*words, "-o", str(part)])
+        return part.replace(target)
+
+
+def _compile(words: Sequence[str]) -> None:
     try:
         done = subprocess.run(words, capture_output=True, text=True, check=False)
     except OSError as error:
         raise KernelError(f"{words[0]}: {error.strerror}") from None
     if done.returncode:
         raise KernelError(done.stderr.strip() or f"{words[0]} ended with exit code {done.returncode}")
-    return part.replace(root / TARGET)
 
 
 class CustomBuildHook(BuildHookInterface):  # type: ignore[misc]  # hatchling is not there where tools run

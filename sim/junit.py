@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 from sim.errors import HarnessError
 from sim.record.destination import check_file
-from sim.record.run_dir import replace_file
+from sim.record.whole_file import replace_file
 
 _HEAD_BYTES = 4096
 """Of a JUnit file, in which its first element begins."""

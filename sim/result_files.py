@@ -6,7 +6,7 @@ from pathlib import Path
 
 from sim.errors import HarnessError
 from sim.record.destination import check_file
-from sim.record.run_dir import replace_file
+from sim.record.whole_file import replace_file
 
 Files = Mapping[str, Path | None]
 """By what they are, as the user is told; None: there is none."""
@@ -36,13 +36,13 @@ def check_results(wanted: Files, read: Files) -> None:
 
 
 def write_result(path: Path, text: str) -> None:
-    """Write a file at once, so that it is never there in part; of a symbolic link, the file it leads to.
+    """Write a file at once, so that it is never there in part; it takes the place of a symbolic link.
 
     Raises:
         HarnessError: it cannot be written.
     """
     try:  # the name of a recorded file, which stands in the text, need not be valid UTF-8
-        replace_file(Path(os.path.realpath(path)), text.encode("utf-8", errors="backslashreplace"))
+        replace_file(path, text.encode("utf-8", errors="backslashreplace"))
     except OSError as error:
         raise HarnessError(f"{path}: cannot be written ({error.strerror})") from None
 

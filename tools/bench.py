@@ -23,6 +23,8 @@ from typing import Any, NamedTuple
 
 from argument_types import count, positive
 
+from sim.record.whole_file import replace_text
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "performance.md"
 BENCHMARKS = ROOT / "benchmarks"
@@ -293,7 +295,7 @@ def main() -> None:
     plans = {scenario: plans_of(scenario, options.orbits) for scenario in scenarios}
     parts = {scenario: parts_of(scenario) for scenario in scenarios}
     rows, overheads = measure(options.rounds, options.orbits)
-    options.out.write_text(page(rows, overheads, parts, plans, peer_version), encoding="utf-8")
+    replace_text(options.out, page(rows, overheads, parts, plans, peer_version))
     print(options.out)
 
 

@@ -32,7 +32,7 @@ from sim.design.tuning.kept import FOLDER as GAINS
 from sim.drawing.page_parts import Table
 from sim.errors import HarnessError
 from sim.record.destination import check_file
-from sim.record.run_dir import replace_file
+from sim.record.whole_file import replace_file, replace_text
 from sim.report.figures.controlled import Controlled
 from sim.scenario.schema import load
 
@@ -168,7 +168,7 @@ def write(records: dict[str, Record], out: Path) -> None:
     satellites = [compared(name, records[name]) for name in SATELLITES if name in records]
     for satellite in satellites:
         draw(satellite.scores, satellite.by, out.with_name(satellite.picture))
-    out.write_text(page(satellites), encoding="utf-8")
+    replace_text(out, page(satellites))
 
 
 def record_path(out: Path) -> Path:

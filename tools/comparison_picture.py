@@ -9,6 +9,7 @@ from matplotlib.lines import Line2D
 from sim.compare.case import Driver
 from sim.compare.score import Score
 from sim.drawing.canvas import AXES_COLOURS, MUTED, style
+from sim.record.whole_file import replacing
 from sim.report.figures.controlled import Controlled
 
 MARKS = {Driver.PULSED: ("o", AXES_COLOURS[0], 0.16), Driver.CONTINUOUS: ("D", AXES_COLOURS[1], -0.16)}
@@ -45,7 +46,8 @@ def draw(scores: Sequence[Score], by: Controlled, path: Path) -> None:
         panels[0].set_ylim(len(laws) - 0.4, -0.6)
         panels[1].set_xlim(left=0.0)
         figure.legend(handles=list(_legend()), loc="outside upper left", ncols=3)
-        figure.savefig(path, format="svg", metadata={"Date": None})
+        with replacing(path) as file:
+            figure.savefig(file, format="svg", metadata={"Date": None})
 
 
 def picked(scores: Sequence[Score], pick: Callable[[Score], float | None]) -> Iterator[tuple[Score, float]]:

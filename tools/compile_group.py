@@ -42,6 +42,7 @@ from fsw.compiled import (
     source_digest,
     standing,
 )
+from sim.record.whole_file import replace_file, replace_text, replacing
 
 GROUP = (
     "fsw/core/**/*.py",
@@ -250,9 +251,8 @@ def compile_all(
     once = _read_headers_once(words, scratch) if missing else []
 
     def compile_one(file: Path) -> None:
-        part = objects[file].with_suffix(".part")
-        _run([*words, *once, "-c", str(file), "-o", str(part)])
-        part.replace(objects[file])
+        with replacing(objects[file]) as part:
+            _run([*words, *once, "-c", str(file), "-o", str(part)])
 
     with ThreadPoolExecutor(_processors()) as pool:
         try:
@@ -297,12 +297,8 @@ def _put(root: Path, library: Path, manifest: dict[str, Any]) -> None:
     (folder / MANIFEST).unlink(missing_ok=True)
     for path in folder.iterdir():
         path.unlink()
-    part = folder / f"{library.name}.part"
-    part.write_bytes(library.read_bytes())
-    part.replace(folder / library.name)
-    text = folder / f"{MANIFEST}.part"
-    text.write_text(json.dumps(manifest, indent=1) + "\n")
-    text.replace(folder / MANIFEST)
+    replace_file(folder / library.name, library.read_bytes())
+    replace_text(folder / MANIFEST, json.dumps(manifest, indent=1) + "\n")
 
 
 class Progress:

@@ -20,6 +20,7 @@ import grimp
 
 from fsw.core.modes import TABLE
 from fsw.wire.messages import Mode
+from sim.record.whole_file import replace_text
 
 ROOT = Path(__file__).resolve().parents[1]
 CONTRACTS = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
@@ -59,7 +60,7 @@ def main(arguments: list[str]) -> int:
         if not path.is_file() or path.read_text(encoding="utf-8") != picture:
             stale.append(path.relative_to(ROOT))
             if "--check" not in arguments:
-                path.write_text(picture, encoding="utf-8")
+                replace_text(path, picture)
     if "--check" in arguments and stale:
         names = ", ".join(map(str, stale))
         print(f"stale: {names}: run python tools/draw_design.py", file=sys.stderr)

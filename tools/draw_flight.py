@@ -13,6 +13,7 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 
 import torquer
+from sim.record.whole_file import replacing
 
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "flight.svg"
 EVERY = 30
@@ -43,7 +44,8 @@ def draw(run: torquer.Run, target: Path) -> None:
     for axes in (angle, coils):
         axes.grid(alpha=0.25)
         axes.spines[["top", "right"]].set_visible(False)
-    figure.savefig(target, metadata={"Date": None})
+    with replacing(target) as file:
+        figure.savefig(file, format="svg", metadata={"Date": None})
 
 
 def main(arguments: list[str]) -> None:

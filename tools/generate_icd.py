@@ -28,6 +28,7 @@ from hil_stub import bench, node
 from hil_stub.coils import coil_driver, events, interlock, read_back
 from hil_stub.wheel import wheel_driver, wheel_guard
 from sim.conformance.check_runner import CHECKS
+from sim.record.whole_file import replace_text
 
 DBC = ROOT / "fsw" / "wire" / "torquer.dbc"
 PAGES = ("icd.md", "telemetry.md")
@@ -295,7 +296,7 @@ def main() -> int:
     for name in PAGES:
         target, text = ROOT / "docs" / name, page(name)
         if "--check" not in sys.argv:
-            target.write_text(text, encoding="utf-8")
+            replace_text(target, text)
             continue
         stale = not target.exists() or target.read_text(encoding="utf-8") != text
         print(f"{name} is {'stale: run tools/generate_icd.py' if stale else 'as its sources say'}")

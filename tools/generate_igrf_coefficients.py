@@ -3,6 +3,8 @@
 import sys
 from pathlib import Path
 
+from sim.record.whole_file import replace_text
+
 ROOT = Path(__file__).resolve().parent.parent
 TABLE = ROOT / "sim" / "plant" / "environment" / "igrf14.shc"
 MODULE = ROOT / "fsw" / "core" / "orbit" / "igrf_coefficients.py"
@@ -57,7 +59,7 @@ def main() -> int:
     text = module_text(TABLE.read_text(encoding="utf-8"))
     if "--check" in sys.argv[1:]:
         return 0 if MODULE.read_text(encoding="utf-8") == text else 1
-    MODULE.write_text(text, encoding="utf-8")
+    replace_text(MODULE, text)
     return 0
 
 

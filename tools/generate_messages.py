@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))  # the tree in which this stands, not the one that is installed
 
 from fsw.wire.frame import id_register
+from sim.record.whole_file import replace_text
 
 WIRE = ROOT / "fsw" / "wire"
 TARGET = WIRE / "messages.py"
@@ -301,7 +302,7 @@ def main() -> int:
         stale = not TARGET.exists() or TARGET.read_text() != text
         print(f"{TARGET.name} is {'stale: run tools/generate_messages.py' if stale else 'as the DBC says'}")
         return int(stale)
-    TARGET.write_text(text)
+    replace_text(TARGET, text)
     return 0
 
 

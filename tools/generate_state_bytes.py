@@ -22,6 +22,7 @@ import numpy as np
 
 from fsw.core.packing import field_names
 from fsw.core.state import FlightState
+from sim.record.whole_file import replace_text
 
 TARGET = ROOT / "fsw" / "core" / "state_bytes.py"
 
@@ -177,7 +178,7 @@ def main() -> int:
         verdict = "stale: run tools/generate_state_bytes.py" if stale else "as the state is"
         print(f"{TARGET.name} is {verdict}")
         return int(stale)
-    TARGET.write_text(text)
+    replace_text(TARGET, text)
     return 0
 
 

@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 
 from mutants import Mutant, mutants
 
+from sim.record.whole_file import replace_text
+
 ROOT = Path(__file__).resolve().parents[1]
 HERE = ROOT / "tests" / "mutation"
 PAGE = ROOT / "docs" / "mutation.md"
@@ -102,9 +104,7 @@ def stored(path: Path) -> dict[str, Any]:
 
 def store(path: Path, results: dict[str, Any]) -> None:
     """Replace the file at once, so that a kill leaves what was measured before."""
-    written = path.with_name(f".{path.name}")
-    written.write_text(json.dumps(results, indent=2, sort_keys=True) + "\n", encoding="utf-8")
-    written.replace(path)
+    replace_text(path, json.dumps(results, indent=2, sort_keys=True) + "\n")
 
 
 def digest(module: str, target: Target) -> str:
@@ -149,7 +149,7 @@ def write_page() -> None:
     text = TEXT.format(
         rows="\n".join(rows), survivors="\n".join(reasons) or "None.", coverage="\n".join(coverage)
     )
-    PAGE.write_text(text, encoding="utf-8")
+    replace_text(PAGE, text)
 
 
 def note_coverage(measured: dict[str, Any]) -> None:

@@ -24,6 +24,7 @@ from sim.campaign.study import FlightStudy, part_of
 from sim.errors import HarnessError
 from sim.progress import Watch, progress
 from sim.record.destination import check_file
+from sim.record.whole_file import replace_text
 from sim.validate.flight_rows import FlightRows, order_hash
 from sim.validate.population import claims as population
 from sim.validate.population.page import page
@@ -80,7 +81,7 @@ def write(
     draw_sweep(sweep, pictures[1])
     orders = [order for study in studies for order in study.orders] + sweep_orders(sizes, seeds)
     names = [picture.name for picture in pictures]
-    out.write_text(page(outcomes, populations, sweep, names, counts(orders, rows)), encoding="utf-8")
+    replace_text(out, page(outcomes, populations, sweep, names, counts(orders, rows)))
     return outcomes
 
 

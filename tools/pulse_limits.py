@@ -31,8 +31,8 @@ from sim.design.limits.sweep import (
 from sim.errors import HarnessError
 from sim.record.destination import check_file
 from sim.record.estimates import Estimates
-from sim.record.run_dir import replace_file
 from sim.record.truth import Histories
+from sim.record.whole_file import replace_file, replace_text
 from sim.scenario.schema import Scenario, load
 from sim.validate.microsat import pointing_deg
 from sim.validate.page import platform_line
@@ -135,7 +135,7 @@ def main(words: Sequence[str] | None = None) -> int:
         return 2
     flown = {name: values[0] for name, values in rows.items()}
     draw(flown, arguments.out.with_suffix(".svg"))
-    arguments.out.write_text(page(flown, agreements(rows), platform_line()), encoding="utf-8")
+    replace_text(arguments.out, page(flown, agreements(rows), platform_line()))
     found = list(faults(rows))
     print("\n".join([*found, str(arguments.out)]))
     return int(bool(found))

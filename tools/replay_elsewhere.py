@@ -20,6 +20,7 @@ from argument_types import count, positive
 
 from sim.errors import HarnessError
 from sim.record.destination import check_file
+from sim.record.whole_file import replace_text
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "replay.md"
@@ -73,7 +74,7 @@ def main() -> int:
         order = [(name, variant) for name in runs for variant in variants]
         rows = list(pool.map(lambda one: _replay(one[0], runs[one[0]], one[1]), order))
     page = _page(rows, arguments.orbits, time.monotonic() - began)
-    arguments.out.write_text(page, encoding="utf-8")
+    replace_text(arguments.out, page)
     print(page)
     return int(any(verdict not in ("bit-exact", "command-exact") for _, _, verdict, _ in rows))
 

@@ -30,7 +30,7 @@ from argument_types import count, positive
 from fsw.wire.messages import TickDone
 from sim.console import counted
 from sim.errors import HarnessError
-from sim.record.run_dir import replace_file
+from sim.record.whole_file import replace_file
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENARIOS = "sim/scenario/shipped"

@@ -36,6 +36,7 @@ from sim.campaign.report.page import write_page
 from sim.campaign.results.row import RunRow
 from sim.campaign.results.store import RESULTS, open_results
 from sim.errors import HarnessError
+from sim.record.whole_file import replace_text
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "scaling.md"
@@ -219,7 +220,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=PAGE)
     options = parser.parse_args()
     figures = measure(options.flights, options.rows, options.rounds)
-    options.out.write_text(page(figures), encoding="utf-8")
+    replace_text(options.out, page(figures))
     print(options.out)
 
 

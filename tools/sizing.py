@@ -23,6 +23,7 @@ from sim.campaign.runner import run
 from sim.errors import HarnessError
 from sim.progress import progress
 from sim.record.destination import check_file
+from sim.record.whole_file import replace_text
 from sim.scenario.schema import load
 from sim.sizing.command import SURE_DEG
 from sim.sizing.expectation import Expectation, expect
@@ -152,7 +153,7 @@ def main(words: Sequence[str] | None = None) -> int:
     except (HarnessError, TableError) as error:
         print(f"sizing: {error}", file=sys.stderr)
         return 2
-    arguments.out.write_text(page(rows), encoding="utf-8")
+    replace_text(arguments.out, page(rows))
     print("\n".join([*faults(rows), str(arguments.out)]))
     return int(bool(faults(rows)))
 

@@ -36,6 +36,7 @@ from sim.progress import progress
 from sim.record import run_dir
 from sim.record.destination import check_file
 from sim.record.pace import Pace
+from sim.record.whole_file import replace_text, replacing
 from sim.replay.log_replay import replay
 from sim.scenario.schema import flight_table, load
 
@@ -248,7 +249,8 @@ def draw(parts: Sequence[RunResult], path: Path) -> None:
                     panel.plot(hours, [100.0 * (now / kib[warm] - 1.0) for now in kib[warm:]], label=name)
             panel.set(title=part.title, xlabel="time [h]", ylabel="memory, growth [%]", ylim=(-2.5, 2.5))
             panel.legend(ncols=3)
-        figure.savefig(path, facecolor="white", metadata={"Date": None})
+        with replacing(path) as file:
+            figure.savefig(file, format="svg", facecolor="white", metadata={"Date": None})
 
 
 def _json(path: Path) -> Json:
@@ -304,7 +306,7 @@ def main(words: Sequence[str] | None = None) -> int:
     picture = arguments.out.with_suffix(".svg")
     draw(parts, picture)
     text = page(parts, picture.name)
-    arguments.out.write_text(text, encoding="utf-8")
+    replace_text(arguments.out, text)
     print(text)
     return int(not all(line.kept for part in parts for line in part.lines))
 

@@ -13,6 +13,7 @@ from argument_types import count
 from sim.design.feedback.neural import MOST_AM2, PD_GAINS, cost, orbit_rms_deg, train, trials
 from sim.design.theory.bodies import BODIES
 from sim.progress import progress
+from sim.record.whole_file import replace_text
 
 KEPT = Path(__file__).resolve().parent.parent / "sim" / "design" / "feedback" / "neural_found.json"
 FLIGHTS, GENERATIONS, FLIGHTS_SEED, SEARCH_SEED = 60, 140, 1, 3
@@ -47,7 +48,7 @@ def main() -> None:
         "search_seed": SEARCH_SEED,
         "lowest_by_generation": lowest,
     }
-    given.out.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+    replace_text(given.out, json.dumps(kept, indent=1) + "\n")
     print(f"{given.out}: weights {weights.tolist()}, cost {trained:.4f}, of constant gains {without:.4f}")
 
 

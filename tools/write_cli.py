@@ -5,6 +5,7 @@ from pathlib import Path
 
 import click
 
+from sim.record.whole_file import replace_text
 from torquer.cli.main import GROUPS, main
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -57,7 +58,7 @@ def run() -> int:
         if stale:
             print(f"{PAGE} is stale: run tools/write_cli.py")
         return int(stale)
-    PAGE.write_text(page(), encoding="utf-8")
+    replace_text(PAGE, page())
     return 0
 
 

@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 from sim.fault_table.requirements import document
+from sim.record.whole_file import replace_text
 
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "requirements.md"
 
@@ -14,7 +15,7 @@ def main() -> int:
         if stale:
             print(f"{TARGET} is stale: run tools/write_requirements.py")
         return int(stale)
-    TARGET.write_text(document(), encoding="utf-8")
+    replace_text(TARGET, document())
     return 0
 
 

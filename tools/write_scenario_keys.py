@@ -6,6 +6,7 @@ With --check, exit 1 when one is stale.
 import sys
 from pathlib import Path
 
+from sim.record.whole_file import replace_text
 from sim.scenario.keys.editor_schema import as_text
 from sim.scenario.keys.page import page
 
@@ -23,7 +24,7 @@ def main() -> int:
     stale = 0
     for path, text in documents().items():
         if "--check" not in sys.argv[1:]:
-            path.write_text(text, encoding="utf-8")
+            replace_text(path, text)
         elif not path.is_file() or path.read_text(encoding="utf-8") != text:
             print(f"{path} is stale: run tools/write_scenario_keys.py")
             stale = 1

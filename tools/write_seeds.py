@@ -5,6 +5,7 @@ from pathlib import Path
 
 from sim.methods.page import page
 from sim.methods.table import METHODS
+from sim.record.whole_file import replace_text
 from sim.validate.outcomes import as_figures, read_record
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
@@ -18,7 +19,7 @@ def main() -> int:
         if stale:
             print(f"{TARGET} is stale: run tools/write_seeds.py")
         return int(stale)
-    TARGET.write_text(text, encoding="utf-8")
+    replace_text(TARGET, text)
     return 0
 
 

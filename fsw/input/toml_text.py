@@ -20,7 +20,7 @@ MOST_LEVELS = 32
 LEAST, MOST = 1e-18, 1e15
 """Bounds of the magnitude of every number but 0, in the units of the file."""
 ROUNDING = 1e-15
-"""An element below ``LEAST``, and this much smaller than the largest of its list, is what rounding has left of 0."""
+"""An element of a list below ``LEAST`` and below this part of the largest is what rounding has left of 0."""
 
 # Each piece takes something, and a text without an end all to the end of its line or of the document. So that
 # is read once, whatever is in it, and what stands in a text or a comment is no key.

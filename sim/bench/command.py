@@ -28,6 +28,7 @@ from sim.record.binding import bind
 from sim.record.bus_log import BusLog
 from sim.record.destination import check_folder
 from sim.record.pace import Pace
+from sim.record.whole_file import replace_text
 from sim.scenario.assemble import effects_of, plant_config
 from sim.scenario.schema import Scenario
 from sim.scenario.telecommands import uplink
@@ -151,7 +152,7 @@ def hil(settings: HilSettings) -> int:
 def _write_page(path: Path, numbers: Json, start_unix_s: float) -> None:
     from sim.bench.page import hil_page  # noqa: PLC0415  matplotlib loads when something is drawn
 
-    path.write_text(hil_page(numbers, start_unix_s), encoding="utf-8")
+    replace_text(path, hil_page(numbers, start_unix_s))
 
 
 def _begin(settings: HilSettings, folder: Path, spec: str) -> None:

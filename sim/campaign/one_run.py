@@ -112,6 +112,9 @@ def keep_run(path: Path, campaign: Campaign, drawn: DrawnRun) -> None:
         HarnessError: as for the flight in memory, or the directory cannot be written.
     """
     scenario = campaign.scenario(drawn)
+    for folder in (path.parent, path):
+        if folder.is_symlink():
+            raise HarnessError(f"{folder} is a symbolic link, through which nothing is written")
     check_folder(path)
     for name in run_dir.FILES:
         (path / name).unlink(missing_ok=True)

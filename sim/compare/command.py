@@ -23,6 +23,7 @@ from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.progress import note, progress
 from sim.record.destination import check_folder
 from sim.record.run_dir import RUN, write_json
+from sim.record.whole_file import replace_text
 from sim.report.figures.controlled import Controlled
 from sim.report.summary_text import last_orbit
 from sim.scenario.schema import Scenario, load, orbit_period_s, parse_settings
@@ -165,11 +166,11 @@ def _write(
         facts.append("given up before all had flown")
     try:
         write_json(folder / JSON, plain(as_json(scores, description)))
-        (folder / CSV).write_text(as_csv(scores), encoding="utf-8")
+        replace_text(folder / CSV, as_csv(scores))
         picture(folder / PICTURE, f"{scenario.name}, {seed}", results, by)
         window = _window(scenario, description["ticks"])
         page = compare_page(scenario, facts, scores, results, window, by, kept)
-        (folder / PAGE).write_text(page, encoding="utf-8")
+        replace_text(folder / PAGE, page)
     except OSError as error:
         raise HarnessError(f"{folder}: cannot be written ({error.strerror or error})") from None
 

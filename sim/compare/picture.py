@@ -12,6 +12,7 @@ from fsw.core.laws.table import LAWS
 from sim.compare.case import Driver
 from sim.compare.score import WINDOW_ORBITS, Result
 from sim.drawing.canvas import AXES_COLOURS, INK, MORE_COLOURS, MUTED, log_y, stacked, style, trace
+from sim.record.whole_file import replacing
 from sim.report.figures.controlled import Controlled
 
 Array = NDArray[np.float64]
@@ -68,9 +69,10 @@ def picture(path: Path, title: str, results: Sequence[Result], by: Controlled) -
         panels[0].text(
             1.035, 1.03, "at the end", transform=panels[0].transAxes, color=MUTED, fontsize=7.0, va="bottom"
         )
-        figure.savefig(
-            path, format="png", dpi=DOTS_PER_INCH, facecolor="white", metadata={"Software": "torquer"}
-        )
+        with replacing(path) as file:
+            figure.savefig(
+                file, format="png", dpi=DOTS_PER_INCH, facecolor="white", metadata={"Software": "torquer"}
+            )
 
 
 def laws_of(flights: Sequence[Result]) -> list[str]:

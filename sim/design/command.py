@@ -16,6 +16,7 @@ from sim.errors import HarnessError
 from sim.progress import progress
 from sim.record.destination import check_folder
 from sim.record.run_dir import write_json
+from sim.record.whole_file import replace_text
 from sim.scenario.schema import Scenario
 
 GAIN_PICTURE, ROBUSTNESS_PICTURE = "gains.png", "robustness.png"
@@ -97,7 +98,7 @@ def _draw(folder: Path, analysis: Analysis, scenario: Scenario) -> tuple[Path, .
         maps = picture_maps(analysis)
         gain_picture(folder / GAIN_PICTURE, analysis, maps, of_scenario)
         robustness_picture(folder / ROBUSTNESS_PICTURE, analysis, maps.inertia)
-        (folder / PAGE).write_text(design_page(analysis, scenario, maps), encoding="utf-8")
+        replace_text(folder / PAGE, design_page(analysis, scenario, maps))
         write_json(folder / RESULT, as_json(analysis))
     except OSError as error:
         raise HarnessError(f"{folder}: cannot be written ({error.strerror or error})") from None

@@ -14,6 +14,7 @@ from sim.design.theory.linear import Array, Gains
 from sim.design.theory.robustness import PAIRS, InertiaMaps
 from sim.design.theory.search import GainMap
 from sim.drawing.canvas import AXES_COLOURS, LIMIT, style
+from sim.record.whole_file import replacing
 
 AXIS_NAMES = ("1, radius", "2, along-track", "3, normal")
 COLOURS = "RdBu_r"
@@ -145,4 +146,7 @@ def _title(body: Body, what: str) -> str:
 
 
 def _save(path: Path, figure: Figure) -> None:
-    figure.savefig(path, format="png", dpi=DOTS_PER_INCH, facecolor="white", metadata={"Software": "torquer"})
+    with replacing(path) as file:
+        figure.savefig(
+            file, format="png", dpi=DOTS_PER_INCH, facecolor="white", metadata={"Software": "torquer"}
+        )

@@ -1,6 +1,5 @@
 """Write gains into a scenario file: two values of ``[control]`` change, every other byte stays."""
 
-import os
 import re
 import shutil
 import tomllib
@@ -11,6 +10,7 @@ from fsw.input.toml_text import MOST_BYTES, BoundsError, parse_toml
 from sim.design.theory.linear import Gains, Number
 from sim.errors import HarnessError
 from sim.record.destination import check_file
+from sim.record.whole_file import replacing
 
 DIGITS = 9
 """Significant digits of a gain: beside a kink the sixth still shows in the degree of stability."""
@@ -89,10 +89,6 @@ def _gain_text(gain: Number) -> str:
 
 
 def _replace(path: Path, text: str) -> None:
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
+    with replacing(path) as temporary:
         temporary.write_bytes(text.encode("utf-8"))
         shutil.copymode(path, temporary)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)

@@ -1,23 +1,18 @@
 """The file that an export writes: whole, or not there."""
 
 import os
-import re
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
-from platform import node
 
 from sim.errors import HarnessError
 from sim.record.destination import check_file
-
-_MACHINE = re.sub(r"\W+", "_", node())
+from sim.record.whole_file import replacing
 
 
 @contextmanager
 def whole_file(out: Path, force: bool) -> Iterator[Path]:
     """Yield the path of a temporary file beside ``out``, which takes its name if the block succeeds.
-
-    What exports that were killed have left in the folder is removed.
 
     Args:
         out: where the file is wanted.
@@ -29,34 +24,8 @@ def whole_file(out: Path, force: bool) -> Iterator[Path]:
     check_file(out)
     if os.path.lexists(out) and not force:
         raise HarnessError(f"{out} already exists: name another file by --out, or replace it by --force")
-    _remove_left_over(out.parent)
-    temporary = out.with_name(f".torquer-{_MACHINE}-{os.getpid()}.part")
-    try:
+    with replacing(out) as temporary:
         yield temporary
-        temporary.replace(out)
-    finally:
-        temporary.unlink(missing_ok=True)
-
-
-def _remove_left_over(folder: Path) -> None:
-    """Remove temporary files of processes of this machine that have ended; what cannot be removed stays."""
-    if os.name != "posix":  # elsewhere asking for a process by a signal would end it
-        return
-    for path in folder.glob(f".torquer-{_MACHINE}-*.part"):
-        number = path.stem.rpartition("-")[2]
-        if number.isdecimal() and not _is_running(int(number)):
-            with suppress(OSError):
-                path.unlink()
-
-
-def _is_running(process: int) -> bool:
-    try:
-        os.kill(process, 0)
-    except (ProcessLookupError, OverflowError):
-        return False
-    except PermissionError:  # of another user
-        pass
-    return True
 
 
 def write_text(out: Path, text: str, force: bool) -> None:

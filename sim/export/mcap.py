@@ -48,7 +48,7 @@ def write_mcap(source: Source, path: Path, watch: Watch) -> list[str]:
     log, context = LogPass(source.log), Context()
     signals, scene, truth = _SignalTopics(context), Scene(context), _truth_channel(context)
     began_ns: int | None = None
-    with open_mcap(path, context=context) as writer:
+    with open_mcap(path, allow_overwrite=True, context=context) as writer:
         writer.write_metadata("torquer", {key: str(value) for key, value in source.identity.items()})
         for time_ns, item in heapq.merge(_log_items(log), _truth_items(source), key=lambda one: one.time_ns):
             if isinstance(item, LogEntry):

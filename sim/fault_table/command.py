@@ -13,7 +13,7 @@ from sim.fault_table.row import CheckVerdict, RowResult
 from sim.fault_table.rows.table import ROWS, choose_rows
 from sim.junit import prepare_junit, write_junit
 from sim.progress import progress
-from sim.record.run_dir import replace_file
+from sim.record.whole_file import replace_file
 from sim.result_files import check_results
 from sim.validate.registry import find_repository
 

@@ -57,12 +57,15 @@ def allocate(path: Path, size: int) -> None:
 
 
 def _check_target(path: Path) -> None:
-    """Check that no folder, device or write-protected file has this path."""
+    """Check that a file of this path can be replaced: none that is a folder, a device or write-protected."""
     try:
+        if os.path.islink(path) and os.readlink(path).startswith("/proc/"):
+            raise ValueError("a stream of this process, and no file")
         if os.path.lexists(path):
             check_regular(path)
-            with path.open("ab"):
-                pass
+            if not os.path.islink(path):
+                with path.open("ab"):
+                    pass
         else:
             path.stat()
     except FileNotFoundError:

@@ -22,6 +22,7 @@ from sim.record.destination import check_folder
 from sim.record.log_index import SUFFIX
 from sim.record.pace import Pace
 from sim.record.run_record import SCHEMA_VERSION, RunRecord, read_record
+from sim.record.whole_file import replace_file
 from sim.scenario.law_named import with_law_withheld
 from sim.scenario.schema import Scenario, flight_table, load
 from sim.scenario.written import scenario_toml
@@ -174,13 +175,6 @@ def scenario_of_log(log: Path, folder: Path, named: str | None, settings: Nested
 def write_json(path: Path, content: Json) -> None:
     """Replace a JSON file atomically."""
     replace_file(path, (json.dumps(content, indent=2) + "\n").encode())
-
-
-def replace_file(path: Path, content: bytes) -> None:
-    """Replace a file atomically."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    temporary.write_bytes(content)
-    temporary.replace(path)
 
 
 def identity(scenario: Scenario, seed: int) -> dict[str, int | str]:

@@ -8,7 +8,7 @@ from typing import Protocol
 
 from fsw.input.regular_file import read_regular
 from sim.errors import HarnessError, needing
-from sim.record.run_dir import replace_file
+from sim.record.whole_file import replace_file
 
 SUFFIX = ".sig"
 LONGEST_KEY = 10_000

@@ -7,6 +7,7 @@ from sim.audit.auditor import AuditReport
 from sim.drawing.pages import page
 from sim.record import run_dir
 from sim.record.run_record import RunRecord
+from sim.record.whole_file import replace_text
 from sim.report import headline, tables
 from sim.report.charts.lines import Lines
 from sim.report.event_words import event_table
@@ -62,7 +63,7 @@ def write_report(
         scenario_toml=tables.scenario_toml(scenario),
         versions=tables.versions(run),
     )
-    path.write_text(html, encoding="utf-8")
+    replace_text(path, html)
 
 
 def _facts(summary: dict[str, Any], run: RunRecord | None) -> list[str]:

@@ -54,7 +54,7 @@ def checked_toml(values: Nested, source: str) -> str:
     except (TypeError, BoundsError, tomllib.TOMLDecodeError) as error:
         raise TableError(f"{source}: could not be read again: {error}") from None
     if size > MOST_BYTES:
-        raise TableError(f"{source}: could not be read again: {size} bytes, and at most {MOST_BYTES} are read")
+        raise TableError(f"{source}: could not be read again: {size} bytes, at most {MOST_BYTES} are read")
     return text
 
 

@@ -51,11 +51,13 @@ def test_a_result_is_whole_and_alone_in_its_folder(telemetry, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["c.toml", "p.csv"]
 
 
-def test_a_symbolic_link_leads_to_the_result(telemetry, tmp_path):
+def test_a_result_takes_the_place_of_a_symbolic_link_and_what_it_leads_to_stays(telemetry, tmp_path):
     (tmp_path / "link").symlink_to(telemetry)
+    check_results({"--out": tmp_path / "link"}, {})
     write_result(tmp_path / "link", "new")
-    assert telemetry.read_text() == "new"
-    assert (tmp_path / "link").is_symlink()
+    assert telemetry.read_text() == "kept"
+    assert not (tmp_path / "link").is_symlink()
+    assert (tmp_path / "link").read_text() == "new"
 
 
 def test_a_result_that_cannot_be_written_is_one_sentence(tmp_path):

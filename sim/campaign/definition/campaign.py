@@ -17,7 +17,7 @@ from sim.campaign.definition.dispersion import Shape
 from sim.campaign.definition.distributions import AnyDispersion, Direction
 from sim.campaign.definition.keys import value_at, with_value
 from sim.campaign.definition.requirements import FigureRequirement
-from sim.record.run_dir import replace_file
+from sim.record.whole_file import replace_file
 from sim.scenario.schema import Scenario, scenario_of
 from sim.scenario.written import checked_toml
 

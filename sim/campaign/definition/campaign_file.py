@@ -8,7 +8,14 @@ from pydantic import Field, Strict
 
 from fsw.input.schema import Nested, Section, TableError, merge, read_toml, validated
 from fsw.input.toml_text import parse_toml
-from sim.campaign.definition.campaign import FILE, SCENARIO, Campaign, IndexLimits, StatisticsSection, laid_over
+from sim.campaign.definition.campaign import (
+    FILE,
+    SCENARIO,
+    Campaign,
+    IndexLimits,
+    StatisticsSection,
+    laid_over,
+)
 from sim.campaign.definition.dispersion import Shape
 from sim.campaign.definition.distributions import AnyDispersion
 from sim.campaign.definition.keys import nominal_values, value_at

@@ -11,6 +11,7 @@ from sim.console import counted
 from sim.drawing.canvas import style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import PageHeader, PageSection, Tile, sections_page
+from sim.record.whole_file import replace_text
 
 MOST_TILES = 4
 
@@ -34,7 +35,7 @@ def write_page(path: Path, campaign: Campaign, analysis: CampaignAnalysis, versi
         tiles=_tiles(campaign, analysis),
     )
     html = sections_page(header, sections)
-    path.write_text(html, encoding="utf-8")
+    replace_text(path, html)
 
 
 def _badges(campaign: Campaign, analysis: CampaignAnalysis) -> list[tuple[str, str]]:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from sim.campaign.results.store import Results
 from sim.errors import needing
+from sim.record.whole_file import replacing
 
 ROWS_A_GROUP = 10_000
 
@@ -32,11 +33,9 @@ def export(results: Results, path: Path) -> None:
     kinds = {"INTEGER": pa.int64(), "TEXT": pa.string(), "REAL": pa.float64(), "NUMERIC": pa.float64()}
     schema = pa.schema([(name, kinds[kind]) for name, kind in results.kinds().items()])
     schema = schema.with_metadata(results.all_meta())
-    temporary = path.with_name(f".{path.name}")
     rows = results.each(schema.names)
-    with pq.ParquetWriter(temporary, schema) as writer:
+    with replacing(path) as temporary, pq.ParquetWriter(temporary, schema) as writer:
         while block := list(islice(rows, ROWS_A_GROUP)):
             columns = zip(*block, strict=True)
             arrays = [pa.array(column, kind) for column, kind in zip(columns, schema.types, strict=True)]
             writer.write_table(pa.Table.from_arrays(arrays, schema=schema))
-    temporary.replace(path)

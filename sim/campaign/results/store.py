@@ -38,6 +38,8 @@ CREATE TABLE profiles (run INTEGER NOT NULL, name TEXT NOT NULL, f4 BLOB NOT NUL
 CREATE TABLE attempts (run INTEGER NOT NULL, at_utc TEXT NOT NULL, worker TEXT NOT NULL,
     wall_s REAL NOT NULL, failure TEXT NOT NULL);
 """
+_BESIDE = ("-wal", "-shm", "-journal")
+"""Ends of the names of files that SQLite keeps beside a database."""
 Array = NDArray[np.float64]
 
 
@@ -153,8 +155,20 @@ def read_results(folder: Path) -> Iterator[Results]:
         yield results
 
 
+def _check_no_link(path: Path) -> None:
+    """Check that a database and what SQLite writes beside it lie in this folder.
+
+    Raises:
+        HarnessError: one of its files is a symbolic link.
+    """
+    for name in (path.name + suffix for suffix in ("", *_BESIDE)):
+        if path.with_name(name).is_symlink():
+            raise HarnessError(f"{path.with_name(name)} is a symbolic link, through which nothing is written")
+
+
 @contextmanager
 def _database(path: Path) -> Iterator[Results]:
+    _check_no_link(path)
     try:
         with closing(sqlite3.connect(path, timeout=60.0)) as connection:
             connection.execute("PRAGMA journal_mode = WAL")
@@ -169,6 +183,7 @@ def _database(path: Path) -> Iterator[Results]:
 @contextmanager
 def _lock(path: Path) -> Iterator[None]:
     """Hold a lock that ends with this process, however it ends."""
+    _check_no_link(path)
     with closing(sqlite3.connect(path, timeout=0.0, isolation_level=None)) as connection:
         try:
             connection.execute("BEGIN EXCLUSIVE")

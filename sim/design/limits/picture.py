@@ -10,6 +10,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from sim.design.limits.sweep import BOUND, QUANTITIES, Line, Setting, Sweep, error_deg
 from sim.drawing.canvas import AXES_COLOURS, INK, style
+from sim.record.whole_file import replacing
 
 MARGINS = {
     "left": 0.08,
@@ -50,7 +51,8 @@ def draw(flown: Mapping[str, float], path: Path) -> None:
             loc="upper center",
             ncols=3,
         )
-        figure.savefig(path, facecolor="white", metadata={"Date": None})
+        with replacing(path) as file:
+            figure.savefig(file, format="svg", facecolor="white", metadata={"Date": None})
 
 
 def _line(panel: Axes, quantity: Sweep, line: Line, flown: Mapping[str, float]) -> None:

@@ -22,7 +22,7 @@ from sim.design.tuning.applicable import coils_of
 from sim.design.tuning.free_gains import flat
 from sim.design.tuning.search import SEED, TunedGains
 from sim.errors import HarnessError
-from sim.record.run_dir import replace_file
+from sim.record.whole_file import replace_file
 from sim.scenario.schema import Scenario, flight_table
 
 

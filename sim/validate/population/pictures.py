@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from sim.campaign.flight import FlightResult
 from sim.drawing.canvas import AXES_COLOURS, LIMIT, MUTED, log_y, style
+from sim.record.whole_file import replacing
 from sim.validate.population.claims import inside
 from sim.validate.population.sweep import Quantity
 
@@ -127,4 +128,5 @@ def _dots(panel: Axes, x: Sequence[float], y: Sequence[float], name: str, colour
 
 
 def _save(figure: Figure, path: Path) -> None:
-    figure.savefig(path, facecolor="white", metadata={"Date": None})
+    with replacing(path) as file:
+        figure.savefig(file, format="svg", facecolor="white", metadata={"Date": None})

@@ -8,7 +8,7 @@ from sim.campaign.claim import Claim
 from sim.campaign.runner import StudyResult
 from sim.console import say
 from sim.errors import HarnessError
-from sim.record.run_dir import replace_file
+from sim.record.whole_file import replace_file
 from sim.validate.outcomes import Judges, Record, as_text, outdated, with_record
 from sim.validate.page import render
 

@@ -26,7 +26,9 @@ def test_a_folder_that_cannot_be(folder):
         check_folder(Path(folder))
 
 
-@pytest.mark.parametrize("page", ["/proc/x", "/proc/version", "/dev/full", "/dev/null/x", "x" * 300, "a\0b"])
+@pytest.mark.parametrize(
+    "page", ["/proc/x", "/proc/version", "/dev/full", "/dev/stdout", "/dev/null/x", "x" * 300, "a\0b"]
+)
 def test_a_file_that_cannot_be(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(HarnessError, match="cannot be written"):
@@ -43,3 +45,12 @@ def test_what_is_in_the_way_of_a_file(kind, tmp_path):
         (tmp_path / "x.json").symlink_to(tmp_path / "file" / "below")
     with pytest.raises(HarnessError, match=r"x\.json: cannot be written"):
         check_folder(tmp_path, ("x.json",))
+
+
+def test_a_link_is_to_be_replaced_and_what_it_leads_to_may_be_write_protected(tmp_path):
+    (tmp_path / "there").touch()
+    (tmp_path / "there").chmod(0o400)
+    (tmp_path / "x.json").symlink_to(tmp_path / "there")
+    (tmp_path / "y.json").symlink_to(tmp_path / "nowhere")
+    check_folder(tmp_path, ("x.json", "y.json"))
+    assert not (tmp_path / "nowhere").exists()

@@ -57,7 +57,7 @@ def test_a_program_has_the_bounds_of_a_file(over, key):
     ("summary", "why"),
     [
         ("\udcff", r"cannot be written: '\\udcff' is no character of a text"),
-        ("x" * MOST_BYTES, f"could not be read again: .* bytes, and at most {MOST_BYTES} are read"),
+        ("x" * MOST_BYTES, f"could not be read again: .* bytes, at most {MOST_BYTES} are read"),
     ],
 )
 def test_what_could_not_be_read_is_refused(summary, why):

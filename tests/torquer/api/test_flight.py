@@ -58,7 +58,9 @@ def test_what_flies_can_be_read_again_and_what_cannot_is_refused_before_anything
     run = torquer.fly("microsat", orbits=SHORT, set=residue, out=tmp_path / "run")
     assert torquer.load(tmp_path / "run").scenario == run.scenario
     beyond = {"disturbance.torque_nm": [1e-19, 0.0, 0.0]}
-    with pytest.raises(torquer.InputError, match=r"disturbance.torque_nm.0 is not allowed: a number is 0, or"):
+    with pytest.raises(
+        torquer.InputError, match=r"disturbance.torque_nm.0 is not allowed: a number is 0, or"
+    ):
         torquer.fly("microsat", orbits=SHORT, set=beyond, out=tmp_path / "beyond")
     unreadable = run.scenario.model_copy(update={"summary": "\udcff"})
     with pytest.raises(torquer.InputError, match="cannot be written"):
