@@ -45,7 +45,7 @@ def fly(
     except (TableError, BusError) as error:
         return _failed(error, 2)
     if parent is None and not quiet:
-        click.echo(f"fsw on {resolve(spec)}", err=True)
+        click.echo(f"fsw on {error_text(resolve(spec))}", err=True)
     try:
         _discard_backlog(link)
         run(node, link, parent, bench)

@@ -18,7 +18,7 @@ from typing import Any
 
 import click
 
-from fsw.input.error_text import error_text
+from fsw.input.error_text import error_text, lines_text
 
 SCHEMA_VERSION = 1
 """Of the documents of ``--json``: a key that changes its meaning, or is removed, changes it."""
@@ -68,7 +68,7 @@ def say(text: str, failed: bool = False) -> None:
     """A part of the result, on stdout; one that tells of a failure is said by a quiet command too."""
     console = current()
     if not console.as_json and (failed or not console.quiet):
-        click.echo(text)
+        click.echo(lines_text(text))
 
 
 def detail(text: str) -> None:

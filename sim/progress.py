@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 
+from fsw.input.error_text import line_text, lines_text
 from sim.console import current
 
 Watch = Callable[[int], None]
@@ -30,7 +31,7 @@ def shown(whether: bool) -> Iterator[None]:
 def note(text: str) -> None:
     """A line on stderr, of what is no part of the result."""
     if _is_shown():
-        print(text, file=sys.stderr, flush=True)
+        print(lines_text(text), file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -39,6 +40,7 @@ def progress(what: str, total: int, in_log: bool = True) -> Iterator[Watch]:
 
     Without ``in_log`` a log is left to the caller, who has more to say there.
     """
+    what = line_text(what)
     if not _is_shown():
         yield lambda done: None
     elif sys.stderr.isatty():
@@ -72,7 +74,7 @@ def _bar(what: str, total: int) -> Iterator[Watch]:
     )
 
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         TextColumn("{task.percentage:3.0f}%"),
         TimeRemainingColumn(),

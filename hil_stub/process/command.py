@@ -10,6 +10,7 @@ import click
 
 from fsw.bus.interface import BusError
 from fsw.bus.open_bus import KINDS, open_bus, resolve
+from fsw.input.error_text import error_text
 from fsw.input.near import did_you_mean
 from fsw.wire.coil_current import MOST_MA
 from fsw.wire.messages import MagField, SunCells, SunVector
@@ -235,7 +236,7 @@ def _serve(
         raise click.UsageError(str(error)) from error
     group = _group()
     if not group["quiet"]:
-        click.echo(f"on {resolve(spec)}", err=True)
+        click.echo(f"on {error_text(resolve(spec))}", err=True)
     try:
         parent: int | None = group["parent"]
         run(bench, bus, PinLog(pins) if pins is not None else None, parent)

@@ -13,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from fsw.core.algebra.vector import norm
+from fsw.input.error_text import line_text
 from fsw.wire.messages import NAMES
 from sim.watch.dots import picture, sparkline
 from sim.watch.happening import Occurrence, Weight
@@ -47,7 +48,7 @@ def show(seen: FlightView, batches: Iterator[None], source: str) -> None:
         batches: advances to the next frames.
         source: name of bus or log.
     """
-    console = Console()
+    console, source = Console(), line_text(source)
     if not console.is_terminal:
         _print_happenings(seen, batches)
         return
@@ -65,7 +66,7 @@ def _print_happenings(seen: FlightView, batches: Iterator[None]) -> None:
     for _ in batches:
         for happening in seen.happenings:
             if happening.number > told:
-                print(line(happening), flush=True)
+                print(line_text(line(happening)), flush=True)
                 told = happening.number
 
 
