@@ -1,4 +1,4 @@
-"""On a terminal nothing of a foreign file moves the cursor or colours what is there, and our own bars work."""
+"""On a terminal nothing of a foreign file moves the cursor or colours anything, and our own bars work."""
 
 import json
 import os
@@ -48,7 +48,6 @@ def test_a_foreign_run_json_is_shown_escaped(run):
     content["platform"]["algebra"] = HOSTILE
     content["torquer_version"] = HOSTILE
     path.write_text(json.dumps(content))
-    (run / "bus.log").write_text((run / "bus.log").read_text().replace("#", "#", 1))
     code, sent = on_terminal("replay", run)
     assert code == 0
     assert not [raw for raw in RAW if raw in sent]
