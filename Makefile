@@ -26,6 +26,7 @@
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 # make test-chromium   the pages in a headless browser, Debian's chromium
 # make fuzz       a million random frames, a thousand mutations of each kind of input file: half an hour
+# make scenarios  300 random legal scenarios of up to two orbits, read and judged again: a quarter of an hour
 # make attack     a million requests and forged frames to a coil board, ten minutes on the real process: half an hour
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
 # make verdicts   all flights that miss a requirement for a known reason: is it told, and no wrong one: a minute
@@ -45,7 +46,7 @@ compiled := .venv/.compiled
 pip := TORQUER_INTERPRETED=1 $(bin)/pip install --quiet --disable-pip-version-check
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv environment compiled sil test test-interpreted test-long test-unpaced test-paced lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate validate-recorded same-flights fuzz attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv environment compiled sil test test-interpreted test-long test-unpaced test-paced lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate validate-recorded same-flights fuzz scenarios attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -156,6 +157,9 @@ validate-recorded: venv
 
 fuzz: venv
 	TORQUER_FUZZ_FRAMES=1000000 TORQUER_FUZZ_MUTATIONS=1000 $(bin)/pytest -q --timeout 7200 tests/fuzz
+
+scenarios: venv
+	TORQUER_SCENARIOS=0:300 $(bin)/pytest -q tests/fuzz/test_legal_scenarios.py
 
 attack: venv
 	TORQUER_ATTACK_REQUESTS=1000000 TORQUER_ATTACK_SECONDS=600 $(bin)/pytest -q -s tests/attack

@@ -20,6 +20,8 @@ from sim.scenario.schema import Scenario, load, orbit_period_s, scenario_of, shi
 from sim.scenario.telecommands import Telecommand
 from sim.scenario.written import values_of
 
+Scalar = Callable[[Random, Any, Any], Any]
+"""Draws a value: from a stream, within limits, near the value that is there."""
 NOT_DRAWN = (
     "name", "summary", "effect", "control.law_sha256", "control.law_withheld", "control.gains", "orbit.tle",
     "telecommand", "fault", "requirement", "flight", "time.orbits",
@@ -160,7 +162,8 @@ def _value(rng: Random, kind: Any, limits: Any, present: Any) -> Any:  # noqa: A
         return _list(rng, inner, limits, present)
     if isinstance(kind, type) and issubclass(kind, BaseModel):
         return _section(rng, kind, present)
-    return _SCALARS.get(kind, _text)(rng, limits, present)
+    scalar: Scalar = _SCALARS.get(kind, _text)
+    return scalar(rng, limits, present)
 
 
 def _list(rng: Random, inner: Any, limits: Any, present: Any) -> list[Any]:  # noqa: ANN401  (any type of a schema)
@@ -202,7 +205,7 @@ def _text(rng: Random, limits: Any, present: Any) -> str:  # noqa: ANN401  (as _
     return rng.choice([*LAWS])
 
 
-_SCALARS: dict[Any, Callable[[Random, Any, Any], Any]] = {float: _float, int: _int, bool: _bool}
+_SCALARS: dict[Any, Scalar] = {float: _float, int: _int, bool: _bool}
 
 
 def _bounds(limits: Any) -> tuple[float | None, float | None]:  # noqa: ANN401  (any limits of pydantic)
