@@ -58,6 +58,8 @@ def calibrate_recorded(
 
 def _say(found: RecordedCalibration, parameters: int) -> None:
     fit, drift = found.magnetometer, found.drift
+    if left_out := found.around.recorded.said_left_out():
+        say(left_out)
     say(f"{len(fit.residual_nt)} samples; |B| after the fit {fit.rms_nt:.0f} nT RMS")
     for name, value, sigma, told in zip(NAMES, fit.values, fit.sigma, fit.told, strict=True):
         digits, unit = (0, " nT") if name.startswith("b_") else (4, "")
@@ -103,6 +105,7 @@ def _as_json(found: RecordedCalibration, parameters: int) -> dict[str, object]:
         numbers |= {name: {"value": 0.0, "sigma": None, "told": False} for name in TURN_NAMES}
     return {
         "samples": len(fit.residual_nt),
+        "rows_left_out": [one._asdict() for one in found.around.recorded.left_out],
         "field_norm_nt_rms": fit.rms_nt,
         "magnetometer": numbers,
         "bias_moves_nt": found.drift.largest_nt,

@@ -45,6 +45,8 @@ class RecordedCalibration:
 def calibrate_pass(around: Along, ratios: Array, noise: Noise) -> RecordedCalibration:
     """Calibrate by a pass; ``ratios``: declared moments of inertia, of which a sphere's mean that none are.
 
+    Rows that the filter leaves out are left out of the whole, which begins anew without them.
+
     Raises:
         HarnessError: a gap between samples is too long.
     """
@@ -59,6 +61,8 @@ def calibrate_pass(around: Along, ratios: Array, noise: Noise) -> RecordedCalibr
         axes = declared_axes(ratios, axis)
         first = first._replace(inertia=axes @ np.diag(ratios / ratios.max()) @ axes.T)
     judged = judge(around, first, noise)
+    if judged.around is not around:
+        return calibrate_pass(judged.around, ratios, noise)
     if not judged.verdict.converged:
         return RecordedCalibration(around, magnetometer, drift, judged, None, ())
     followed = judged.best.followed

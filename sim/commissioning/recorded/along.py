@@ -11,11 +11,13 @@ from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, ephemer
 from fsw.table.flown_elements import check_flown
 from sim.commissioning.recorded.element_sets import ElementSet, nearest_elements
 from sim.commissioning.recorded.recorded_pass import RecordedPass
+from sim.commissioning.recorded.strays import stray_currents, stray_strengths, stray_values
 from sim.console import warn
 from sim.errors import HarnessError
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 
 NT_PER_T = 1e9
 FASTEST_HZ = 100
@@ -25,6 +27,12 @@ YEAR_DAYS = 366.0
 GPS_EPOCH_UNIX_S, J2000_UNIX_S = 315_964_800.0, 946_728_000.0
 OLD_DAYS = 7.0
 """Elements further away put the satellite tens of kilometres off: 10 nT and more each."""
+STRAY_CELL, STRAY_GYRO, STRAY_TEMPERATURE, STRAY_FIELD = (
+    "with a Sun cell far beyond its brightest",
+    "with a gyro far from its others",
+    "with a temperature far from the others",
+    "whose field has not the strength of the orbit's",
+)
 NEARLY_ALL, MOST_TICKS_APART = 0.9, 600
 """Part of the samples that lie a number of ticks apart, or multiples of it, and the largest such number."""
 
@@ -67,7 +75,7 @@ class Along:
 
 
 def placed(recorded: RecordedPass, tle: Path) -> Along:
-    """The pass along the nearest elements of a file.
+    """The pass along the nearest elements of a file, without the rows that the others do not bear out.
 
     The user is warned of elements that are far away, and of samples that are further apart than a second.
 
@@ -76,7 +84,7 @@ def placed(recorded: RecordedPass, tle: Path) -> Along:
     """
     elements = nearest_elements(tle, recorded.middle_unix_s)
     _check_clock(recorded, elements)
-    around = along(recorded, elements)
+    around = screened(along(recorded, elements))
     age_days = around.elements.age_days(recorded.middle_unix_s)
     if abs(age_days) > OLD_DAYS:
         warn(f"{tle}: the nearest element set is {abs(age_days):.0f} days away: its field may be off")
@@ -138,6 +146,51 @@ def along(recorded: RecordedPass, elements: ElementSet) -> Along:
         sun_eci=np.array([row.sun_eci for row in rows]),
         lit=np.array([row.lit for row in rows]),
     )
+
+
+def without(around: Along, rows: Mask, why: str) -> Along:
+    """The pass without these rows, (n), as if they had never been there."""
+    if not rows.any():
+        return around
+    return along(around.recorded.without(rows, why), around.elements)
+
+
+def screened(around: Along) -> Along:
+    """The pass without rows of which a value cannot be, or whose field is not that of the others."""
+    for why, find in (
+        (STRAY_CELL, _stray_cells),
+        (STRAY_GYRO, _stray_gyro),
+        (STRAY_TEMPERATURE, _stray_temperature),
+        (STRAY_FIELD, _stray_field),
+    ):
+        strays = find(around)
+        if around.recorded.may_lack(int(strays.sum()), why):
+            around = without(around, strays, why)
+    return around
+
+
+def _stray_cells(around: Along) -> Mask:
+    strays = np.zeros(len(around.lit), dtype=np.bool_)
+    for currents in around.recorded.cells.values():
+        strays |= stray_currents(currents, around.lit)
+    return strays
+
+
+def _stray_gyro(around: Along) -> Mask:
+    gyro_degps = around.recorded.gyro_degps
+    strays = np.zeros(len(around.lit), dtype=np.bool_)
+    for rates in () if gyro_degps is None else gyro_degps.T:
+        strays |= stray_values(rates)
+    return strays
+
+
+def _stray_temperature(around: Along) -> Mask:
+    degc = around.recorded.temperature_degc
+    return np.zeros(len(around.lit), dtype=np.bool_) if degc is None else stray_values(degc)
+
+
+def _stray_field(around: Along) -> Mask:
+    return stray_strengths(around.recorded.mag_nt, around.strength_nt)
 
 
 def _tick_hz(since_s: Array) -> int:

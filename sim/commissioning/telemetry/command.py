@@ -65,6 +65,8 @@ def in_words(judged: Judged, found: dict[str, Any]) -> Sequence[str]:
         "without samples: " + _coasts(found["coast_deg_rms"]),
         "Sun by cells held back: " + _azimuth(found["sun_azimuth_deg"]),
     ]
+    if around.recorded.left_out:
+        lines.append(around.recorded.said_left_out())
     if found["rows_of_unknown_moment"] or found["rejected"]:
         lines.append(
             f"not used: {found['rows_of_unknown_moment']} rows of one moment with others, "

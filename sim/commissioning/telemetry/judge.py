@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.commissioning.recorded.along import Along, sample_hz, sampled
+from sim.commissioning.recorded.along import Along, sample_hz, sampled, without
 from sim.commissioning.recorded.calibration import PassCalibration
 from sim.commissioning.telemetry.follow import Followed, Noise, filter_config, follow
 from sim.commissioning.telemetry.held_back import Azimuths, coasts_deg, sun_azimuths
-from sim.commissioning.telemetry.spin import spin_axis, spins
+from sim.commissioning.telemetry.spin import spin_axis, spins, stray_directions
 
 Array = NDArray[np.float64]
 
@@ -32,6 +32,8 @@ MOST_AZIMUTH_DEG, MOST_SCATTER_DEG = 20.0, 20.0
 """Of the Sun by the cells: beyond these a motion is wrong although no other contends."""
 MOST_COAST_DEG, MOST_DIRECTION_DEG = 10.0, 10.0
 """Of the field after coasting, and of the next sample: as above."""
+REFUSED, NOT_TURNING = "that the filter refused", "whose field does not turn with the others"
+MOTION = (REFUSED, NOT_TURNING)
 LEAST_COAST_S = 60
 """So long a prediction without samples bears a motion out where the cells do not."""
 
@@ -113,15 +115,44 @@ def spin_place(axis: Array) -> int:
 def judge(around: Along, known: PassCalibration, noise: Noise, start_s: float = START_S) -> Judged:
     """Follow the pass from every start that its field allows, and tell them apart by what was not used.
 
+    A sample that points far from the spin that starts the filter, or that the filter refuses, is left out of
+    the pass, which is judged again without it, as long as these are no more than a tenth of its rows:
+    beyond that it is the filter that is wrong, and what it refuses counts as its error.
+
     Raises:
         HarnessError: a gap between samples is too long.
     """
+    while True:
+        judged = _judged(around, known, noise, start_s)
+        fewer = _without_refused(judged)
+        if fewer is judged.around:
+            return judged
+        around = fewer
+
+
+def _without_refused(judged: Judged) -> Along:
+    """The pass without the samples that the filter refused; as it is where those are none, or too many."""
+    around, refused = judged.around, np.zeros(len(judged.around.lit), dtype=np.bool_)
+    refused[[one.row for one in judged.best.followed.ticks if not one.taken]] = True
+    return (
+        without(around, refused, REFUSED) if around.recorded.may_lack(int(refused.sum()), *MOTION) else around
+    )
+
+
+def _judged(around: Along, known: PassCalibration, noise: Noise, start_s: float) -> Judged:
+    """The pass, judged with all its rows but those that no spin explains."""
     rows = sampled(around)
     t_s = around.t_s[rows]
     first = t_s <= t_s[0] + start_s
     field_nt = known.field_nt(around.recorded.mag_nt)[rows]
     axis = turning_axis(known, field_nt)
     starts = spins(t_s[first], field_nt[first], around.b_eci_nt[rows][first], axis, sample_hz(around))
+    strays = np.zeros(len(around.lit), dtype=np.bool_)
+    strays[rows[first]] = stray_directions(
+        t_s[first], field_nt[first], around.b_eci_nt[rows][first], axis, starts[0]
+    )
+    if strays.any() and around.recorded.may_lack(int(strays.sum()), *MOTION):
+        return _judged(without(around, strays, NOT_TURNING), known, noise, start_s)
     config = filter_config(known.inertia, around.tick_s, noise)
     settling_s = SETTLING_S["long" if t_s[-1] - t_s[0] > LONG_S else "short"]
     settled = int(np.searchsorted(t_s, t_s[0] + min(settling_s, 0.5 * (t_s[-1] - t_s[0]))))
@@ -254,6 +285,7 @@ def figures(judged: Judged) -> dict[str, Any]:
         "told_by": judged.verdict.by or None,
         "reason": judged.verdict.reason or None,
         "rows": len(around.recorded.utc_unix_s),
+        "rows_left_out": [one._asdict() for one in around.recorded.left_out],
         "rows_of_unknown_moment": int((~around.first_of_tick).sum()),
         "rejected": sum(not one.taken for one in motion.followed.ticks),
         "field_norm_nt_rms": motion.strength_nt_rms,

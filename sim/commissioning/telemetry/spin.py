@@ -11,6 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from sim.commissioning.recorded.strays import MOST_ROUNDS, stray_sizes, stray_values
 
 Array = NDArray[np.float64]
 
@@ -131,11 +134,27 @@ def in_words(found: Sequence[Spin]) -> str:
 def spin_axis(field_nt: Array) -> Array:
     """The axis across which samples in a row differ: that of a steady spin, body axes, its largest part > 0.
 
-    Differences of a turning vector lie across the rate; the least of their squares is along it.
+    Differences of a turning vector lie across the rate; the least of their squares is along it. Differences
+    that are far out of that plane, as beside a sample that is wrong, are left out.
     """
     steps = np.diff(field_nt, axis=0)
     axis: Array = np.linalg.eigh(steps.T @ steps)[1][:, 0]
+    strays = stray_values(steps @ axis)
+    for _ in range(MOST_ROUNDS):
+        axis = np.linalg.eigh(steps[~strays].T @ steps[~strays])[1][:, 0]
+        before, strays = strays, stray_values(steps @ axis)
+        if np.array_equal(before, strays):
+            break
     return axis * float(np.copysign(1.0, axis[np.argmax(np.abs(axis))]))
+
+
+def stray_directions(
+    t_s: Array, field_nt: Array, b_eci_nt: Array, axis: Array, spin: Spin
+) -> NDArray[np.bool_]:
+    """Which samples of a stretch, (n), point far from where a spin about an axis has the field."""
+    turned_back = Rotation.from_rotvec(np.outer(np.radians(spin.rate_degps) * (t_s - t_s[0]), axis))
+    body = turned_back.apply(field_nt - spin.bias_nt)
+    return stray_sizes(misfit_deg(body, b_eci_nt @ spin.dcm_body_from_eci.T))
 
 
 def misfit_deg(body: Array, predicted: Array) -> Array:

@@ -44,7 +44,6 @@ OLD = "elements two weeks old: |B| is off by 2 uT, which the bias along the axis
 UNKNOWN = "cause unknown"
 CAUSES: Mapping[str, Mapping[str, str]] = MappingProxyType(
     {
-        "direction-short": {"s3_20240427T161142Z": MOMENTS},
         "coast-60": {
             "s3_20240314T153551Z": WEAK,
             "s3_20240316T151710Z": WEAK,
@@ -55,7 +54,7 @@ CAUSES: Mapping[str, Mapping[str, str]] = MappingProxyType(
             "s3_20240421T034947Z": WEAK,
             "s3_20240427T161142Z": MOMENTS,
         },
-        "azimuth-scatter": {"s3_20240427T161142Z": MOMENTS, "s3_20240501T155556Z": OLD},
+        "azimuth-scatter": {"s3_20240501T155556Z": OLD},
         "azimuth": {"s3_20240501T155556Z": OLD},
     }
 )

@@ -10,7 +10,7 @@ import numpy as np
 
 from sim.commissioning.calibrate.magnetometer import fit_magnetometer
 from sim.commissioning.calibrate.recorded import calibrate_pass
-from sim.commissioning.recorded.along import Along, along
+from sim.commissioning.recorded.along import Along, along, screened
 from sim.commissioning.recorded.calibration import PassCalibration
 from sim.commissioning.recorded.element_sets import nearest_elements
 from sim.commissioning.recorded.recorded_pass import read_pass
@@ -66,7 +66,7 @@ def files(folder: Path) -> list[Path]:
 def placed(path: Path) -> Along:
     """A pass on its orbit."""
     recorded = read_pass(path)
-    return along(recorded, nearest_elements(path.parent / ELEMENTS, recorded.middle_unix_s))
+    return screened(along(recorded, nearest_elements(path.parent / ELEMENTS, recorded.middle_unix_s)))
 
 
 def carried(folder: Path) -> PassCalibration:

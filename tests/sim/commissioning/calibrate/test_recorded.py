@@ -18,6 +18,13 @@ from sim.commissioning.telemetry.follow import Noise
 from sim.commissioning.telemetry.spin import Spin
 from torquer.cli.main import main
 
+
+def zero_field(row):
+    """The row with a field of zero, as a sensor sends that has lost its supply."""
+    index, time, *values = row.split(",")
+    return ",".join([index, time, "0", "0", "0", *values[3:]])
+
+
 NOISE = Noise(field_nt=200.0)
 DECLARED = np.array([0.93, 1.0, 0.31])
 
@@ -146,6 +153,27 @@ class TestOfTheCommand:
         assert said in result.stderr
         assert len(result.stderr.splitlines()) == 1
         assert not out.exists()
+
+    def test_one_row_of_zeros_changes_nothing_and_is_told(self, tmp_path):
+        lines = (DATA / "s3_20240426T041442Z.csv").read_text().splitlines()
+        spoiled, without = tmp_path / "spoiled.csv", tmp_path / "without.csv"
+        spoiled.write_text("\n".join([*lines[:100], zero_field(lines[100]), *lines[101:]]) + "\n")
+        without.write_text("\n".join([*lines[:100], *lines[101:]]) + "\n")
+        out = tmp_path / "c.toml"
+        said = self.run(spoiled, "--tle", TLE, "--out", out)
+        assert said.exit_code == 0
+        assert (
+            "1 of 200 rows left out: 1 whose field has not the strength of the orbit's (line 101)"
+        ) in said.stdout
+        found, right = (
+            json.loads(self.run(path, "--tle", TLE, "--out", out, "--json").stdout)
+            for path in (spoiled, without)
+        )
+        assert found["magnetometer"]["b_x"]["value"] == pytest.approx(103036.0, abs=10.0)
+        assert found["magnetometer"]["b_x"]["sigma"] == pytest.approx(950.0, abs=10.0)
+        assert found.pop("rows_left_out")[0]["lines"] == [101]
+        assert right.pop("rows_left_out") == []
+        assert found == right
 
     def test_too_few_rows_are_refused(self, tmp_path):
         path = tmp_path / "few.csv"

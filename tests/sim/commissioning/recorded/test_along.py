@@ -103,7 +103,9 @@ def test_how_far_samples_are_apart(tmp_path, capsys, seconds, apart):
         recorded,
         utc_unix_s=recorded.utc_unix_s[0] + np.array(seconds, float),
         mag_nt=recorded.mag_nt[chosen],
+        gyro_degps=None,
         cells={},
+        lines=recorded.lines[chosen],
     )
     around = placed(thinned, TLE)
     assert sample_hz(around) == pytest.approx(1.0 / apart)

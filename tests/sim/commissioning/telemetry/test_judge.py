@@ -47,6 +47,51 @@ def eclipsed():
     return judged("20240426T041442Z")
 
 
+def spoiled_pass(folder, name, spoilt):
+    """Judged, and judged without them, with these rows, by their numbers, in place of those of a pass."""
+    head, *rows = (DATA / f"s3_{name}.csv").read_text().splitlines()
+    found = []
+    for kept in (
+        [spoilt.get(place, row) for place, row in enumerate(rows)],
+        [row for place, row in enumerate(rows) if place not in spoilt],
+    ):
+        path = folder / f"{len(found)}.csv"
+        path.write_text("\n".join([head, *kept]) + "\n")
+        recorded = read_pass(path)
+        found.append(judge(along(recorded, nearest_elements(TLE, recorded.middle_unix_s)), KNOWN, Noise()))
+    return found
+
+
+def turned(row):
+    """The row with a field that has the right strength and a wrong direction, about y and x exchanged."""
+    index, time, x, y, z, *rest = row.split(",")
+    offset = KNOWN.offset_nt
+    body = KNOWN.matrix @ (np.array([float(x), float(y), float(z)]) - offset)
+    wrong = np.linalg.solve(KNOWN.matrix, -body) + offset
+    return ",".join([index, time, *map(str, wrong), *rest])
+
+
+@pytest.mark.parametrize("places", [(0,), (1,), (100,), (199,), (60, 61, 62, 63), (5, 50, 120, 180, 198)])
+def test_samples_that_the_filter_rightly_refuses_count_for_nothing(tmp_path, places):
+    name = "20240426T041442Z"
+    rows = (DATA / f"s3_{name}.csv").read_text().splitlines()[1:]
+    spoiled, without = spoiled_pass(tmp_path, name, {place: turned(rows[place]) for place in places})
+    found, right = figures(spoiled), figures(without)
+    lines = sorted(line for one in found.pop("rows_left_out") for line in one["lines"])
+    assert lines == [place + 2 for place in places]
+    assert right.pop("rows_left_out") == []
+    assert found == right
+
+
+def test_where_the_filter_refuses_more_than_a_tenth_all_of_it_is_its_error(tmp_path):
+    name = "20240426T041442Z"
+    rows = (DATA / f"s3_{name}.csv").read_text().splitlines()[1:]
+    spoiled, _ = spoiled_pass(tmp_path, name, {n: turned(rows[n]) for n in range(100, 200, 3)})
+    assert figures(spoiled)["rows_left_out"] == []
+    assert spoiled.best.direction_deg_rms > 10.0
+    assert not spoiled.verdict.converged
+
+
 class TestOfAPassInTheSun:
     def test_the_field_allows_two_motions_and_the_cells_tell_one(self, sunlit):
         best, other = sunlit.motions
