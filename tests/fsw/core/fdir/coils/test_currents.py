@@ -112,7 +112,8 @@ class TestAContinuousDriverThatIsOnWhenTheCurrentIsRead:
     def world(self, make_world, request):
         on_fraction, tick_hz = request.param
         coils = {"driver": "continuous", "max_dipole_am2": 12.0, "on_fraction": on_fraction}
-        world = make_world(knowledge="perfect", coils=coils, time={"tick_hz": tick_hz})
+        tumble = {"rate_degps": [1.5, -1.0, 1.2]}
+        world = make_world(knowledge="perfect", coils=coils, time={"tick_hz": tick_hz}, initial=tumble)
         world.tick_hz = tick_hz
         return world
 
