@@ -7,9 +7,11 @@ length. The status of tick k reports the interval that ends at k, so a pulse beg
 status that shows it. A pulsed driver reports no driven COIL_DIPOLE_STATUS, and a continuous one, which has no
 limits on pulses, no level.
 
-There are two clocks: the ticks of SYNC, and the timestamps, where they are simulated time or where the
-log has no usable SYNC. Each limit must hold by both of them, and where both count they must agree.
-Comparisons are exact. Nothing here is shared with the onboard scheduler or the boards, on purpose.
+There are two clocks: the ticks of SYNC, and the timestamps. Each limit must hold by both of them. Timestamps
+that are simulated time must agree with the ticks exactly, and those of a recorder's own clock are judged with
+a tolerance (``sim.audit.recorder_judge``); other comparisons are exact.
+
+Nothing here is shared with the onboard scheduler or the boards, on purpose.
 """
 
 from collections.abc import Iterable, Iterator
@@ -19,6 +21,7 @@ from sim.audit.driver_judge import DriverJudge
 from sim.audit.findings import AuditLimits, AuditReport, DrivenPulse, Violation, ViolationKind, seconds_text
 from sim.audit.log_clock import MICRO, LogClock, clock_notes, read_clock
 from sim.audit.pulse_judge import PulseJudge
+from sim.audit.recorder_judge import RecorderJudge
 from sim.audit.status_ticks import BoardStatus, StatusTicks
 from sim.audit.unreported_time import UnreportedTime
 from sim.audit.whole_entries import WholeEntries
@@ -27,20 +30,23 @@ from sim.record.candump import LogEntry
 __all__ = ["AuditLimits", "AuditReport", "DrivenPulse", "Violation", "ViolationKind", "audit"]
 
 
-def audit(entries: Iterable[LogEntry], limits: AuditLimits, expect_end: bool = False) -> AuditReport:
+def audit(
+    entries: Iterable[LogEntry], limits: AuditLimits, expect_end: bool = False, ticks_alone: bool = False
+) -> AuditReport:
     """Judge a log in one pass, without holding it in memory.
 
     Args:
         entries: the log, as ``read_log`` yields it.
         limits: what to judge by.
         expect_end: Torquer recorded the log, so that it is complete only if PLANT_END is its last frame.
+        ticks_alone: ticks are not real time, and the timestamps of a recorder are not judged.
 
     Raises:
         LogError: the log has been altered; passed on from ``entries``.
     """
     log = WholeEntries(entries)
     clock, judged = read_clock(iter(log), limits.tick_hz)
-    auditor = _Auditor(clock, limits)
+    auditor = _Auditor(clock, limits, ticks_alone)
     for entry in judged:
         auditor.take(entry)
     return auditor.report(log, expect_end)
@@ -49,11 +55,15 @@ def audit(entries: Iterable[LogEntry], limits: AuditLimits, expect_end: bool = F
 class _Auditor:
     """Sorts the log into ticks and passes them to the judge of each clock."""
 
-    def __init__(self, clock: LogClock, limits: AuditLimits) -> None:
+    def __init__(self, clock: LogClock, limits: AuditLimits, ticks_alone: bool) -> None:
         self._clock = clock
         self._limits = limits
         self._by_ticks = PulseJudge(clock, limits) if clock.epoch_s is not None else None
         self._by_timestamps = PulseJudge(clock, limits) if clock.simulated or clock.epoch_s is None else None
+        recorded = clock.epoch_s is not None and not clock.simulated
+        judged = recorded and not ticks_alone and not limits.is_continuous
+        self._by_recorder = RecorderJudge(clock, limits) if judged else None
+        self._ticks_alone = recorded and ticks_alone
         self._violations: list[Violation] = []
         self._ticks = StatusTicks()
         self._unreported = UnreportedTime(clock, limits)
@@ -142,14 +152,18 @@ class _Auditor:
             self._unreported.begin(tick * MICRO)
             step = 1
         self._tick = tick
+        if self._by_recorder is not None:
+            self._by_recorder.sync(tick, timestamp_us)
         self._check_unix_time(line, tick, unix_time_s)
         self._check_timestamp("SYNC", line, timestamp_us, tick)
-        closed = self._ticks.close(tick, step)
+        closed = self._ticks.close(tick, step, timestamp_us)
         for of_tick, boards in closed:
             self._judge_tick(of_tick, boards)
         if self._booted:  # the board has said nothing since: its boot is of the tick whose SYNC follows
             self._booted = False
             self._boot(tick * MICRO)
+            if self._by_recorder is not None:
+                self._by_recorder.boot(tick)
         if not closed or closed[-1][0] != tick:
             self._unreported.sync()
         self._judge_driver(tick * MICRO, tick)
@@ -158,7 +172,11 @@ class _Auditor:
         instant = tick * MICRO
         if any(board.booted for board in boards):
             self._boot(instant)
+            if self._by_recorder is not None:
+                self._by_recorder.boot(tick)
         statuses = self._trusted(boards, instant, tick)
+        if self._by_recorder is not None:
+            self._by_recorder.observe(tick, boards)
         for board in boards:
             self._check_timestamp("COIL_STATUS", board.line, board.timestamp_us, tick)
         for judge in self._judges():
@@ -233,6 +251,8 @@ class _Auditor:
             self._unreported.finish(self._tick * MICRO)
         for judge in self._judges():
             judge.finish()
+        if self._by_recorder is not None:
+            self._by_recorder.interrupt()
 
     def _judges(self) -> list[PulseJudge]:
         return [judge for judge in (self._by_ticks, self._by_timestamps) if judge is not None]
@@ -263,8 +283,12 @@ class _Auditor:
             complete=log.ended or (log.truncated_at is None and not expect_end),
             dipoles=self._driver.count,
             unreported_s=seconds(self._unreported.total),
-            doubt="" if self._limits.is_continuous else self._unreported.doubt,
+            doubt="" if self._limits.is_continuous else self._unreported.doubt or self._recorder_doubt(),
+            not_real_time="" if self._by_recorder is None else self._by_recorder.unjudged(),
         )
+
+    def _recorder_doubt(self) -> str:
+        return "" if self._by_recorder is None else self._by_recorder.doubted()
 
     def _all_violations(self) -> tuple[Violation, ...]:
         """The violations of both judges; one that both report counts once."""
@@ -272,6 +296,8 @@ class _Auditor:
         for judge in self._judges():
             already = {(one.kind, one.tick, one.coil) for one in violations}
             violations += [one for one in judge.violations if (one.kind, one.tick, one.coil) not in already]
+        if self._by_recorder is not None:
+            violations += self._by_recorder.found()
         return tuple(sorted(violations, key=lambda one: (one.time_s, one.line)))
 
     def _notes(self, log: WholeEntries) -> Iterator[str]:
@@ -279,7 +305,7 @@ class _Auditor:
         yield from self._driver.notes(self._statuses)
         if self._statuses == 0:
             return
-        yield from clock_notes(self._clock, self._limits.tick_hz)
+        yield from clock_notes(self._clock, self._limits.tick_hz, self._ticks_alone)
         if self._ticks.silent:
             yield f"{_count(self._ticks.silent, 'tick')} without COIL_STATUS"
         yield from self._unreported.notes()

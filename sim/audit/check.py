@@ -25,7 +25,13 @@ _SHOWN = 50
 """Violations that are printed one by one; the log of a board out of control may hold thousands."""
 
 
-def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> AuditReport:
+def check(
+    path: Path,
+    backoff: str | None,
+    key: PublicKey | None = None,
+    ticks_alone: bool = False,
+    channel: str | None = None,
+) -> AuditReport:
     """Audit a log by the limits of the scenario beside it, and compare the files beside it with its run.json.
 
     A scenario that is not the run's does not define the limits: the default ones apply instead.
@@ -34,6 +40,8 @@ def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> Audi
         path: a run directory, or a log.
         backoff: ``"shared"`` or ``"per_coil"``, overrules the scenario; without either it is shared.
         key: the run must be signed by its private half.
+        ticks_alone: ticks are not real time, and the timestamps of a recorder are not judged.
+        channel: the one to read, of a log that has several.
 
     Raises:
         HarnessError: there is no such log, it is not a candump log or an altered one, or a file beside it
@@ -49,9 +57,9 @@ def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> Audi
     limits = stated or AuditLimits()
     if backoff is not None:
         limits = replace(limits, shared=is_shared(backoff, "--backoff"))
-    versions = _Versions(log)
+    versions = _Versions(log, channel)
     with binding.beside_errors():
-        report = audit(versions.entries(), limits, expect_end=stated is not None)
+        report = audit(versions.entries(), limits, stated is not None, ticks_alone)
         foreign = versions.check()
     voucher = check_against_index(log)
     usual = f"judged by the usual limits: {SCENARIO_NAME} is not the run's" if mismatched else ""
@@ -68,15 +76,16 @@ def check(path: Path, backoff: str | None, key: PublicKey | None = None) -> Audi
 class _Versions:
     """The versions of the bus contract that the boot messages of a log name, gathered while it is read."""
 
-    def __init__(self, log: Path) -> None:
+    def __init__(self, log: Path, channel: str | None) -> None:
         self._log = log
+        self._channel = channel
         self._known: set[int] = set()  # identifiers of boot messages of this version
         self._foreign: dict[int, tuple[int, int]] = {}  # first line and version of the others, by identifier
         self._count = 0
 
     def entries(self) -> Iterator[LogEntry]:
         """The entries of the log."""
-        for entry in read_log(self._log):
+        for entry in read_log(self._log, channel=self._channel):
             can_id = entry.frame.can_id
             if can_id in _BOOTS and intact(entry.frame):
                 version = _BOOTS[can_id].decode(entry.frame.data).version
@@ -184,4 +193,7 @@ def _verdict(report: AuditReport) -> str:
     for fault, applies in faults.items():
         if applies:
             return f"FAIL: limits kept {fault}"
+    if report.not_real_time:
+        why = report.not_real_time
+        return f"limits kept by ticks; real time not judged: {why} (--clock ticks: by ticks alone)"
     return "OK: continuous driver within full scale" if report.limits.is_continuous else "OK: limits kept"

@@ -54,6 +54,7 @@ def suites(report: AuditReport) -> dict[str, list[JunitCase]]:
         "reported throughout": report.doubt,
         "complete": "" if report.complete else "the log is incomplete",
         "as its index says": "" if report.genuine else "its index contradicts it",
+        "real time": report.not_real_time,
         "files of one run": "; ".join(report.mismatches),
     }
     return {

@@ -142,7 +142,8 @@ class AuditReport:
         mismatches: what run.json contradicts, if the log has one beside it, a sentence each.
         dipoles: what a continuous driver has driven; None of a pulsed one.
         unreported_s: all stretches without COIL_STATUS that are as long as the longest pulse and a tick.
-        doubt: why a pulse may have gone unreported, in one of them or not, a clause; empty: none has.
+        doubt: why a pulse may have gone unreported, or broken a limit by the recorder's clock, a clause.
+        not_real_time: why the recorder's timestamps do not show real time, a clause.
     """
 
     limits: AuditLimits
@@ -158,6 +159,7 @@ class AuditReport:
     dipoles: DipoleCount | None = None
     unreported_s: Fraction = Fraction(0)
     doubt: str = ""
+    not_real_time: str = ""
 
     @property
     def missing(self) -> str:
@@ -175,10 +177,10 @@ class AuditReport:
     def exit_code(self) -> int:
         """0 if the limits were kept over a complete, unaltered log that belongs to its run, otherwise 1.
 
-        1 too where a pulse may have gone unreported.
+        1 too where a pulse may have gone unreported; 3 where nothing is wrong but real time is not judged.
         """
         kept = self.ok and self.complete and self.genuine and not self.mismatches and not self.doubt
-        return 0 if kept else 1
+        return (3 if self.not_real_time else 0) if kept else 1
 
     @property
     def pulses_per_coil(self) -> list[int]:

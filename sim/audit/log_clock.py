@@ -50,14 +50,15 @@ class LogClock:
         return Fraction(instant, MICRO * self.units)
 
 
-def clock_notes(clock: LogClock, stated_hz: int | None) -> Iterator[str]:
+def clock_notes(clock: LogClock, stated_hz: int | None, ticks_alone: bool) -> Iterator[str]:
     """What a reader must know of a clock, a sentence each; ``stated_hz`` is the rate of a scenario."""
     if clock.epoch_s is None:
         period = seconds_text(clock.seconds(clock.period))
         yield f"no tick rate in the log: judged by timestamps, a COIL_STATUS every {period} s"
         return
     if not clock.simulated:
-        yield "timestamps are not simulated time: judged by ticks alone"
+        how = "judged by ticks alone" if ticks_alone else "judged by ticks, and by them within 50 ms"
+        yield f"timestamps are not simulated time: {how}"
     if stated_hz not in (None, clock.units):
         yield f"the log has {clock.units} ticks a second, its scenario says {stated_hz}"
 
@@ -80,14 +81,14 @@ def read_clock(entries: Iterator[LogEntry], tick_hz: int | None) -> tuple[LogClo
         tick_hz: the rate that a scenario beside the log states. SYNC overrules it.
     """
     peeked: list[LogEntry] = []
-    first: LogEntry | None = None
+    syncs: list[LogEntry] = []
     seconds: dict[int, tuple[int, int]] = {}
     rates: list[int] | None = None
     for entry in islice(entries, _PEEK):
         peeked.append(entry)
         if entry.frame.can_id != Sync.ID or len(entry.frame.data) != Sync.LENGTH:
             continue
-        first = first or entry
+        syncs.append(entry)
         sync = Sync.decode(entry.frame.data)
         tick, unix = sync.tick, sync.unix_time_s
         is_new = unix not in seconds
@@ -96,7 +97,7 @@ def read_clock(entries: Iterator[LogEntry], tick_hz: int | None) -> tuple[LogClo
             rates = _rates(seconds, rates, tick_hz)
             if rates is not None and len(rates) <= 1:
                 break
-    clock = None if first is None else _tick_clock(first, rates, tick_hz)
+    clock = _tick_clock(syncs, rates, tick_hz) if syncs else None
     if clock is None:
         clock = _timestamp_clock(peeked, tick_hz, contradictory=rates == [])
     return clock, chain(peeked, entries)
@@ -123,15 +124,17 @@ def _rates(
     return [hz for hz in likely if len({unix - tick // hz for tick, unix in ends}) == 1]
 
 
-def _tick_clock(first: LogEntry, rates: list[int] | None, tick_hz: int | None) -> LogClock | None:
+def _tick_clock(syncs: list[LogEntry], rates: list[int] | None, tick_hz: int | None) -> LogClock | None:
     hz = tick_hz if not rates or tick_hz in rates else min(rates)
     if hz is None:
         return None
-    sync = Sync.decode(first.frame.data)
-    tick, unix = sync.tick, sync.unix_time_s
-    epoch_s = unix - tick // hz
-    simulated = _instant(first.timestamp_us, hz) == (epoch_s * hz + tick) * MICRO
-    return LogClock(hz, MICRO, epoch_s, epoch_s * MICRO, simulated, contradictory=False)
+    first = Sync.decode(syncs[0].frame.data)
+    epoch_s = first.unix_time_s - first.tick // hz
+    agree = sum(
+        _instant(entry.timestamp_us, hz) == (epoch_s * hz + Sync.decode(entry.frame.data).tick) * MICRO
+        for entry in syncs
+    )
+    return LogClock(hz, MICRO, epoch_s, epoch_s * MICRO, 2 * agree >= len(syncs), contradictory=False)
 
 
 def _timestamp_clock(entries: list[LogEntry], tick_hz: int | None, contradictory: bool) -> LogClock:

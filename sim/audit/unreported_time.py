@@ -12,6 +12,9 @@ from fsw.wire.messages import CoilStatus
 from sim.audit.findings import AuditLimits, seconds_text
 from sim.audit.log_clock import LogClock
 
+_ROUNDED_MS = 20
+"""Of ``lockout_ms``, which is in steps of 10 ms."""
+
 
 class UnreportedTime:
     """Adds up stretches without a status that are as long as the longest pulse and a tick.
@@ -25,6 +28,9 @@ class UnreportedTime:
         self._least = limits.pulse_us * clock.units + clock.period
         self._last: int | None = None
         self._seq: int | None = None
+        self._backoff = limits.backoff_us * clock.units
+        self._lockouts: dict[int, int] = {}
+        self._accepts_from: int | None = None
         self._is_first = True
         self._under_way = False
         self._syncs = self._stretches = 0
@@ -37,6 +43,8 @@ class UnreportedTime:
     def begin(self, instant: int) -> None:
         """The first tick of a log, or of another run in it, ends at ``instant``."""
         self._last, self._seq = instant - self._clock.period, None
+        self._lockouts.clear()
+        self._accepts_from = None
         self._is_first, self._under_way = True, False
         self._syncs = 0
 
@@ -50,6 +58,8 @@ class UnreportedTime:
             self._close(instant - self._clock.period, None, "the board boots after it")
         self._last, self._seq, self._is_first, self._under_way = instant, 0, False, False
         self._syncs = 0
+        self._lockouts.clear()
+        self._accepts_from = instant + self._backoff
 
     def take(self, instant: int, statuses: list[CoilStatus]) -> None:
         """The statuses of the tick that ends at ``instant``."""
@@ -60,6 +70,9 @@ class UnreportedTime:
         for status in statuses:
             self._compare(until, status)
             self._seq = status.seq
+            self._lockouts[status.coil] = status.lockout_ms
+            if status.seq or status.level:
+                self._accepts_from = None
         self._last, self._is_first = instant, False
         self._under_way = any(status.level and status.remaining_ms for status in statuses)
         self._syncs = 0
@@ -85,13 +98,18 @@ class UnreportedTime:
         self.total += until - self._last
         if self._first is None:
             self._first = max(self._last, 0)
+        accepts_from = self._accepts_from
+        if not seq and accepts_from is not None and until > accepts_from:
+            seq, why = None, "the first request since the boot may have had the seq 0, which none has too"
         synced = self._clock.epoch_s is None or self._syncs * self._clock.period >= self._least
         if synced and not self.doubt and (seq is None or seq != self._seq or self._under_way):
             self.doubt = self._doubt(self._last, until, seq, why)
 
     def _compare(self, until: int, status: CoilStatus) -> None:
         """Whether a status is the first of a request, and shows none of its pulse."""
-        if self.doubt or self._last is None or self._seq in (None, status.seq) or status.level:
+        if self.doubt or self._last is None or self._seq is None or status.level:
+            return
+        if status.seq == self._seq and not self._first_is_lost(until, status):
             return
         if self._clock.epoch_s is None or self._syncs * self._clock.period >= until - self._last:
             at = seconds_text(self._clock.seconds(until + self._clock.period))
@@ -99,6 +117,13 @@ class UnreportedTime:
                 f"a pulse may have gone unreported before t={at} s: "
                 f"seq is {self._seq} before and {status.seq} then, with no coil on"
             )
+
+    def _first_is_lost(self, until: int, status: CoilStatus) -> bool:
+        """Whether the first request since a boot has the ``seq`` 0, as before it: its back-off shows it."""
+        if self._accepts_from is None or until < self._accepts_from:
+            return False
+        before = min(self._lockouts.values(), default=status.lockout_ms)
+        return status.lockout_ms > before + _ROUNDED_MS
 
     def _doubt(self, begun: int, until: int, seq: int | None, why: str) -> str:
         seconds = self._clock.seconds

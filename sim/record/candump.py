@@ -44,20 +44,23 @@ More = Callable[[], bool]
 """Called at the end of a log that is being written: waits, and says whether to look for more."""
 
 
-def read_log(path: Path, more: More | None = None) -> Iterator[LogEntry]:
+def read_log(path: Path, more: More | None = None, channel: str | None = None) -> Iterator[LogEntry]:
     """The frames of a candump log, one by one, in the order of the file.
+
+    Empty lines, and comments, which begin with ``#``, are passed over.
 
     Args:
         path: of the log.
         more: given where the log is still being written.
+        channel: the one to read; None: the log must have one alone.
 
     Raises:
         LogTruncatedError: at the end, if the last line is cut; every whole line has been yielded by then.
-        LogError: the file cannot be read, or one of its lines is not a candump line.
+        LogError: the file cannot be read, one of its lines is not a candump line, or it has other channels.
     """
     try:
         with open_text(path) as file:
-            yield from _entries(path, file.readline if more is None else _growing(file, more))
+            yield from _entries(path, file.readline if more is None else _growing(file, more), channel)
     except OSError as error:
         raise LogError(f"{path}: cannot be read: {error.strerror}") from None
 
@@ -89,17 +92,41 @@ def _growing(file: BinaryIO, more: More) -> Callable[[int], bytes]:
     return readline
 
 
-def _entries(path: Path, readline: Callable[[int], bytes]) -> Iterator[LogEntry]:
+def _entries(path: Path, readline: Callable[[int], bytes], asked: str | None) -> Iterator[LogEntry]:
     read = LineReader().read
     number = 0
+    channel: str | None = None  # the one that is read
+    other: str | None = None
     while text := readline(LONGEST):
         number += 1
         fields = read(text)
         if fields is None:
-            raise _refusal(path, number, text)
+            if not _is_comment(text):
+                raise _refusal(path, number, text)
+            while not text.endswith(b"\n") and text:
+                text = readline(LONGEST)
+            continue
+        if fields[1] != channel:
+            if asked is not None and fields[1] != asked:
+                other = fields[1]
+                continue
+            if channel is not None:
+                raise LogError(
+                    f"{path}: line {number} is of channel {fields[1]}, those before it are of {channel}: "
+                    "name one (--channel), or keep the lines of one"
+                )
+            channel = fields[1]
         yield LogEntry(number, *fields)
     if number == 0:
         raise LogError(f"{path}: not a candump log: the file is empty")
+    if channel is None:
+        what = "no line of a frame" if other is None else f"no frame of channel {asked}, only of {other}"
+        raise LogError(f"{path}: not a candump log: {what}" if other is None else f"{path}: {what}")
+
+
+def _is_comment(text: bytes) -> bool:
+    """Whether can-utils' player passes over a line, as it does over comments and empty ones."""
+    return text.startswith(b"#") or not text.strip()
 
 
 def _refusal(path: Path, number: int, text: bytes) -> LogError:

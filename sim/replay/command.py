@@ -48,6 +48,7 @@ class LoggedRun(NamedTuple):
     binding: Binding
     law: str | None = None
     effects: bool = False
+    channel: str | None = None
 
     @property
     def ticks(self) -> int:
@@ -90,6 +91,7 @@ def locate(
     key: PublicKey | None = None,
     law: str | None = None,
     effects: bool = False,
+    channel: str | None = None,
 ) -> tuple[Path, LoggedRun]:
     """The log and its run; with a key, the run must be signed by its private half.
 
@@ -100,10 +102,10 @@ def locate(
     log, folder = run_dir.locate(run_or_log)
     binding = compare(folder, log, key)
     with binding.beside_errors():
-        next(iter(read_log(log)))  # a file that is not a log is reported first
+        next(read_log(log, channel=channel))  # a file that is not a log is reported first
         record = run_dir.read_run(folder) if (folder / run_dir.RUN).is_file() else None
         judged_by = run_dir.scenario_of_log(log, folder, scenario, settings)
-        return log, LoggedRun(judged_by, record, binding, law, effects)
+        return log, LoggedRun(judged_by, record, binding, law, effects, channel)
 
 
 def through_flight_software(log: Path, run: LoggedRun) -> ReplayReport:
@@ -112,8 +114,14 @@ def through_flight_software(log: Path, run: LoggedRun) -> ReplayReport:
     config = flight_config(flight_table(scenario))
     with progress("replaying", run.ticks) as watch:
         result = replay(
-            log, config, lambda state: watch(state.tick), forged=forge_answers(run.scenario.fault)
+            log,
+            config,
+            lambda state: watch(state.tick),
+            forge_answers(run.scenario.fault),
+            channel=run.channel,
         )
+    if not result.frames:
+        raise HarnessError(f"{log}: no frame of the flight software in it: nothing to compare")
     same_platform = run.record is None or run.record["platform"] == run_dir.fingerprint()
     exact = result.bit_exact or (result.command_exact and not same_platform)
     holds, binding_lines = _binding(log, run)
@@ -163,7 +171,7 @@ def through_plant(log: Path, run: LoggedRun) -> ReplayReport:
     commands_of = uplink(run.scenario.telecommand, run.scenario.time.tick_hz)
     ticks = 0
     with progress("replaying", run.ticks) as watch:
-        for logged, is_last in _by_time(log):
+        for logged, is_last in _by_time(log, run.channel):
             if is_last and logged == [plant.end()]:
                 holds, lines = _binding(log, run)
                 miscounted = run.miscounted(ticks)
@@ -225,12 +233,14 @@ def play(log: Path, run: LoggedRun, spec: str) -> ReplayReport:
         HarnessError: the log pauses for longer than a day.
         BusError: the bus cannot be used.
     """
-    first_us, last_us = _playable(log)
+    first_us, last_us = _playable(log, run.channel)
     bus = open_bus(spec)
     try:
         with progress(f"playing onto {spec}", last_us - first_us) as watch:
             began = time.monotonic()
-            for stamp_us, group in groupby(read_log(log), key=lambda entry: entry.timestamp_us):
+            for stamp_us, group in groupby(
+                read_log(log, channel=run.channel), key=lambda entry: entry.timestamp_us
+            ):
                 watch(stamp_us - first_us)
                 time.sleep(max(0.0, began + (stamp_us - first_us) / 1e6 - time.monotonic()))
                 bus.send([entry.frame for entry in group])
@@ -239,9 +249,9 @@ def play(log: Path, run: LoggedRun, spec: str) -> ReplayReport:
     return ReplayReport(run.binding.holds, tuple(run.binding.lines))
 
 
-def _by_time(log: Path) -> Iterator[tuple[list[Frame], bool]]:
+def _by_time(log: Path, channel: str | None) -> Iterator[tuple[list[Frame], bool]]:
     """The frames after FSW_BOOT, grouped by time stamp, and whether they are the last of the log."""
-    groups = groupby(_after_boot(log), key=lambda entry: entry.timestamp_us)
+    groups = groupby(_after_boot(log, channel), key=lambda entry: entry.timestamp_us)
     frames = ([entry.frame for entry in group] for _, group in groups)
     before = next(frames, None)
     for after in frames:
@@ -252,11 +262,11 @@ def _by_time(log: Path) -> Iterator[tuple[list[Frame], bool]]:
         yield before, True
 
 
-def _playable(log: Path) -> tuple[int, int]:
+def _playable(log: Path, channel: str | None) -> tuple[int, int]:
     """First and last timestamp [us] of a log that can be played."""
-    first_us = last_us = next(iter(read_log(log))).timestamp_us
+    first_us = last_us = next(read_log(log, channel=channel)).timestamp_us
     with suppress(LogTruncatedError):
-        for entry in read_log(log):
+        for entry in read_log(log, channel=channel):
             pause_s = (entry.timestamp_us - last_us) / 1e6
             if pause_s > LONGEST_PAUSE_S:
                 raise HarnessError(
@@ -266,7 +276,7 @@ def _playable(log: Path) -> tuple[int, int]:
     return first_us, last_us
 
 
-def _after_boot(log: Path) -> Iterator[LogEntry]:
+def _after_boot(log: Path, channel: str | None) -> Iterator[LogEntry]:
     """The whole entries after FSW_BOOT, up to where the log is cut."""
     with suppress(LogTruncatedError):
-        yield from islice(read_log(log), 1, None)
+        yield from islice(read_log(log, channel=channel), 1, None)

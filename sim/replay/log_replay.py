@@ -88,6 +88,7 @@ def replay(
     on_tick: OnTick = lambda state: None,
     forged: bool = False,
     more: More | None = None,
+    channel: str | None = None,
 ) -> ReplayResult:
     """Replay a log.
 
@@ -101,6 +102,7 @@ def replay(
         forged: the scenario injects frames under identifiers of the flight software: such a frame between two
             answers is received, not compared.
         more: given where the log is still being written.
+        channel: the one to read, of a log that has several.
 
     Raises:
         LogError: the file is not a candump log, or is no longer one after an alteration.
@@ -111,7 +113,7 @@ def replay(
     end: int | None = None
     doubt: tuple[bool, Difference] | None = None  # a broken frame is noise if the whole answer follows
     cut = False
-    for entry in _whole_entries(log, more):
+    for entry in _whole_entries(log, more, channel):
         if entry is None:
             cut = True
             break
@@ -156,10 +158,10 @@ def replay(
     )
 
 
-def _whole_entries(log: Path, more: More | None) -> Iterator[LogEntry | None]:
+def _whole_entries(log: Path, more: More | None, channel: str | None) -> Iterator[LogEntry | None]:
     """The entries; a last None where the log is cut inside a line."""
     try:
-        yield from read_log(log, more)
+        yield from read_log(log, more, channel)
     except LogTruncatedError:
         yield None
 

@@ -42,6 +42,8 @@ def check(
     run_or_log: str | PathLike[str],
     *,
     backoff: str | None = None,
+    clock: str = "both",
+    channel: str | None = None,
     verify: str | PathLike[str] | None = None,
     progress: bool = False,
 ) -> Audit:
@@ -50,6 +52,8 @@ def check(
     Args:
         run_or_log: a run directory, or a log.
         backoff: ``"shared"`` or ``"per_coil"``: the limits of a bare log.
+        clock: ``"both"``, ticks and timestamps; ``"ticks"``: of a simulation whose ticks are not real time.
+        channel: the one to read, of a log that has several.
         verify: public Ed25519 key in PEM; the run must be signed by its private half.
         progress: show on stderr how much of a large file has been read.
 
@@ -60,9 +64,11 @@ def check(
         raise TableError(
             f"check: backoff = {backoff!r:.80} is not allowed: allowed is 'shared' or 'per_coil'"
         )
+    if clock not in ("both", "ticks"):
+        raise TableError(f"check: clock = {clock!r:.80} is not allowed: allowed is 'both' or 'ticks'")
     path = Path(path_text(run_or_log, "run_or_log"))
     with shown(progress):
-        return Audit(audit_check.check(path, backoff, optional_key(verify)))
+        return Audit(audit_check.check(path, backoff, optional_key(verify), clock == "ticks", channel))
 
 
 def optional_key(verify: str | PathLike[str] | None) -> PublicKey | None:

@@ -23,6 +23,7 @@ def replay(
     onto: str | None = None,
     law: str | PathLike[str] | None = None,
     effects: bool = False,
+    channel: str | None = None,
     verify: str | PathLike[str] | None = None,
     progress: bool = False,
 ) -> ReplayReport:
@@ -36,6 +37,7 @@ def replay(
         onto: play the log onto this bus instead, at its own pace.
         law: the law of its own that the run flew, named again; without it none is executed.
         effects: execute the effects of its own that the run names; ``plant`` needs them.
+        channel: the one to read, of a log that has several.
         verify: public Ed25519 key in PEM; the run must be signed by its private half.
         progress: show progress on stderr.
 
@@ -49,7 +51,7 @@ def replay(
     of_log = None if scenario is None else path_text(scenario, "scenario")
     named = None if law is None else path_text(law, "law")
     with shown(progress):
-        log, run = command.locate(path, of_log, nested(set), optional_key(verify), named, effects)
+        log, run = command.locate(path, of_log, nested(set), optional_key(verify), named, effects, channel)
         with run.binding.beside_errors():
             if onto is not None:
                 return command.play(log, run, onto)

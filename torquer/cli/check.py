@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import JSON, JUNIT, RUN_OR_LOG, VERIFY, examples, sentences
+from torquer.cli.options import CHANNEL, JSON, JUNIT, RUN_OR_LOG, VERIFY, examples, sentences
 
 EXAMPLES = examples(
     "torquer check runs/microsat-20250320T120000Z",
@@ -16,11 +16,26 @@ EXAMPLES = examples(
 @click.command(epilog=EXAMPLES)
 @RUN_OR_LOG
 @click.option("--backoff", type=click.Choice(["shared", "per_coil"]), help="Limits of a bare log.")
+@click.option(
+    "--clock",
+    type=click.Choice(["both", "ticks"]),
+    default="both",
+    show_default=True,
+    help="ticks: by ticks alone, of a simulation whose ticks are not real time.",
+)
+@CHANNEL
 @VERIFY
 @JUNIT
 @JSON
 @sentences
-def check(run_or_log: Path, backoff: str | None, verify: Path | None, junit: Path | None) -> int:
+def check(
+    run_or_log: Path,
+    backoff: str | None,
+    clock: str,
+    channel: str | None,
+    verify: Path | None,
+    junit: Path | None,
+) -> int:
     """Audit the actuator limits in a candump log, independently of the controller."""
     from sim.audit.documents import as_json, suites
     from sim.console import answer, say
@@ -28,8 +43,8 @@ def check(run_or_log: Path, backoff: str | None, verify: Path | None, junit: Pat
     from torquer.api.audit import check
 
     prepare_junit(junit)
-    audit = check(run_or_log, backoff=backoff, verify=verify, progress=True)
+    audit = check(run_or_log, backoff=backoff, clock=clock, channel=channel, verify=verify, progress=True)
     say(str(audit), failed=not audit.ok)
     answer(as_json(audit.report))
     write_junit(junit, "torquer check", suites(audit.report))
-    return int(not audit.ok)
+    return audit.report.exit_code

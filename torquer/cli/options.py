@@ -53,6 +53,7 @@ SIGN = click.option(
     type=click.Path(path_type=Path),
     help="Sign the run: a private Ed25519 key in PEM. Needs torquer[sign].",
 )
+CHANNEL = click.option("--channel", metavar="NAME", help="The channel to read, of a log that has several.")
 VERIFY = click.option(
     "--verify",
     metavar="PUBLIC_KEY",

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from torquer.cli.completions import of_buses, of_scenarios
-from torquer.cli.options import JSON, LAW_AGAIN, RUN_OR_LOG, SETTINGS, VERIFY, examples, sentences
+from torquer.cli.options import CHANNEL, JSON, LAW_AGAIN, RUN_OR_LOG, SETTINGS, VERIFY, examples, sentences
 
 EXAMPLES = examples(
     "torquer replay runs/microsat-20250320T120000Z           # the flight software again",
@@ -26,6 +26,7 @@ EXAMPLES = examples(
 @click.option(
     "--onto", metavar="BUS", shell_complete=of_buses, help="Play the log on a bus instead, at its own pace."
 )
+@CHANNEL
 @VERIFY
 @LAW_AGAIN
 @click.option("--effects", is_flag=True, help="With --plant: execute the effects of its own of the run.")
@@ -37,6 +38,7 @@ def replay(
     scenario: str | None,
     plant: bool,
     onto: str | None,
+    channel: str | None,
     verify: Path | None,
     law: str | None,
     effects: bool,
@@ -55,6 +57,7 @@ def replay(
         set=over,
         plant=plant,
         onto=onto,
+        channel=channel,
         law=law,
         effects=effects,
         verify=verify,

@@ -7,6 +7,7 @@ import pytest
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, CoilBoot, CoilStatus, Sync
 from sim.audit.auditor import AuditLimits, ViolationKind, audit
+from sim.audit.check import render
 from sim.record.candump import LogEntry
 
 EPOCH_US = 1_427_513_417_000_000
@@ -107,12 +108,80 @@ def test_a_microsecond_is_one_at_1_hz_too(judge, bus_log, shift_us, text):
 # --- other timestamps
 
 
-def test_wall_clock_timestamps_do_not_count_where_ticks_do(judge, bus_log, fired):
+def test_timestamps_of_another_pace_show_no_real_time(bus_log, fired):
     log = bus_log(1, 400, [fired(0, 100), fired(1, 203)])
     log.shifts_us = {tick: 86_400_000_000 - 999_000 * tick for tick in range(400)}
-    report = judge(log)
-    assert report.ok
-    assert "timestamps are not simulated time: judged by ticks alone" in report.notes
+    report = audit(log.entries(), AuditLimits())
+    assert (report.ok, report.exit_code) == (True, 3)
+    assert report.not_real_time == "its timestamps run at 1000 times the pace of its ticks"
+    assert "limits kept by ticks; real time not judged: its timestamps run" in render(report)
+    by_ticks = audit(log.entries(), AuditLimits(), ticks_alone=True)
+    assert by_ticks.exit_code == 0
+    assert "timestamps are not simulated time: judged by ticks alone" in by_ticks.notes
+
+
+def test_timestamps_that_are_all_equal_show_no_real_time(bus_log, fired):
+    entries = [entry._replace(timestamp_us=7) for entry in bus_log(1, 400, [fired(0, 100)]).entries()]
+    report = audit(entries, AuditLimits())
+    assert (report.exit_code, report.not_real_time) == (3, "its timestamps are all equal")
+
+
+def recorded(log, held):
+    """A recorder's own stamps, a day off, in which these ticks last so many us longer."""
+    late_us, log.shifts_us = 86_400_123_456, {}
+    for tick in range(log.ticks):
+        log.shifts_us[tick] = late_us
+        late_us += held.get(tick, 0)
+    return log.entries()
+
+
+def test_a_tick_held_in_a_pulse_is_a_violation_by_the_recorders_clock(bus_log, fired):
+    log = bus_log(10, 1500, [fired(1, 1234)])
+    report = audit(recorded(log, {1245: 10_000_000}), AuditLimits())
+    assert found(report) == [(ViolationKind.PULSE, Fraction("123.4"), 1234, 1)]
+    assert "by the recorder's clock the pulse of 12.800 s exceeds 3.000 s" in str(report.violations[0])
+
+
+def test_a_tick_held_at_the_end_of_a_pulse_is_a_doubt(bus_log, fired):
+    """The board has announced its end, and may have waited for SYNC."""
+    log = bus_log(10, 1500, [fired(1, 1234)])
+    report = audit(recorded(log, {1263: 10_000_000}), AuditLimits())
+    assert (report.violations, report.exit_code) == ((), 1)
+    assert report.doubt == "by the recorder's clock the pulse of coil 1 at tick 1234 may have lasted 13.000 s"
+
+
+def test_ticks_rushed_between_pulses_are_a_violation_by_the_recorders_clock(bus_log, fired):
+    log = bus_log(1, 600, [fired(0, 300), fired(1, 403)])
+    report = audit(recorded(log, dict.fromkeys(range(304, 394), -900_000)), AuditLimits())
+    assert found(report) == [(ViolationKind.GAP, 403, 403, 1)]
+    assert "by the recorder's clock the pulse starts 20.000 s after the end" in str(report.violations[0])
+
+
+@pytest.mark.parametrize(("held_us", "exit_code"), [(50_000, 0), (50_001, 1)])
+def test_the_tolerance_of_a_recorders_clock_is_fifty_milliseconds(bus_log, fired, held_us, exit_code):
+    log = bus_log(1, 400, [fired(0, 100), fired(1, 203)])
+    assert audit(recorded(log, {101: held_us}), AuditLimits()).exit_code == exit_code
+    log = bus_log(1, 400, [fired(0, 100), fired(1, 203)])
+    assert audit(recorded(log, {150: -held_us}), AuditLimits()).exit_code == exit_code
+
+
+def test_a_step_back_of_the_recorders_clock_is_one_finding(bus_log, fired):
+    log = bus_log(1, 400, [fired(0, 100), fired(1, 203), fired(2, 306)])
+    report = audit(recorded(log, {150: -3_600_000_000}), AuditLimits())
+    assert (report.violations, report.exit_code) == ((), 3)
+    assert report.not_real_time == "the recorder's clock goes back by 3599.000 s at tick 151"
+
+
+def test_a_boot_counts_by_the_recorders_clock(bus_log, fired):
+    log = bus_log(1, 400, [fired(0, 250)], boots=[150])
+    report = audit(recorded(log, dict.fromkeys(range(160, 200), -900_000)), AuditLimits())
+    assert found(report) == [(ViolationKind.BOOT, 250, 250, 0)]
+
+
+def test_whether_stamps_are_simulated_does_not_hang_on_the_first_sync(bus_log, fired):
+    log = bus_log(1, 400, [fired(0, 100)])
+    log.shifts_us = {0: 1}
+    assert {kind for kind, *_ in found(audit(log.entries(), AuditLimits()))} == {ViolationKind.TIMESTAMP}
 
 
 def test_ticks_are_judged_where_timestamps_are_not_simulated(judge, bus_log, fired):

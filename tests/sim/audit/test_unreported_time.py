@@ -220,3 +220,29 @@ class TestStretches:
         self.wait(time, 5)
         self.report(time, 9)
         assert "a coil was on when it began" in time.doubt
+
+
+def first_of_seq_zero(log, lost, lockout_ms):
+    """The first request since the boot has the seq 0, and the statuses of these ticks are lost."""
+    for tick in range(log.ticks):
+        log.change(tick, seq=0, lockout_ms=lockout_ms(tick))
+    return silent(log, lost)
+
+
+def test_a_first_request_of_seq_zero_in_a_short_silence_is_told_by_its_back_off(judge, bus_log, fired):
+    log = bus_log(1, 300, [fired(0, 150, 1000)], boots=[0])
+    report = judge(first_of_seq_zero(log, (151,), lambda tick: 100_000 * (tick > 150)))
+    assert "a pulse may have gone unreported before t=152.000 s" in report.doubt
+    assert report.exit_code == 1
+
+
+def test_a_first_request_of_seq_zero_in_a_long_silence_is_doubted(judge, bus_log, fired):
+    log = bus_log(1, 400, [fired(0, 150)], boots=[0])
+    report = judge(first_of_seq_zero(log, range(151, 270), lambda tick: 0))
+    assert "the first request since the boot may have had the seq 0" in report.doubt
+    assert report.exit_code == 1
+
+
+def test_in_the_back_off_of_a_boot_no_first_request_is_accepted(judge, bus_log):
+    log = bus_log(1, 400, boots=[0])
+    assert judge(first_of_seq_zero(log, range(10, 99), lambda tick: 0)).exit_code == 0

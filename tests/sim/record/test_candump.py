@@ -78,13 +78,37 @@ def test_entries_come_one_by_one(tmp_path):
 def test_a_log_in_which_every_line_has_words_of_its_own_takes_no_memory(tmp_path):
     lines = 3 * MOST_REMEMBERED
     with (tmp_path / "bus.log").open("w") as log:
-        log.writelines(f"(0000000000.000000) {n:064d} {n:08X}#\n" for n in range(lines))
+        log.writelines(f"(0000000000.000000) can0 {n:08X}#\n" for n in range(lines))
     tracemalloc.start()
-    read = [(entry.channel[-8:], entry.frame.can_id & 0xFFFFFF) for entry in read_log(tmp_path / "bus.log")]
+    read = [entry.frame.can_id & 0xFFFFFF for entry in read_log(tmp_path / "bus.log")]
     kept, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert read == [(f"{n:08d}", n) for n in range(lines)]
+    assert read == list(range(lines))
     assert peak - kept < 400 * MOST_REMEMBERED
+
+
+# --- comments and channels
+
+
+def test_comments_and_empty_lines_are_passed_over(read):
+    entries = read(f"# {'a comment ' * 60}\n" + LINE + "\n# another\n \n" + LINE)
+    assert [entry.line for entry in entries] == [2, 6]
+
+
+def test_of_two_channels_one_must_be_named(read, tmp_path):
+    text = LINE + LINE.replace("vcan0", "can1")
+    with pytest.raises(LogError, match="line 2 is of channel can1, those before it are of vcan0") as refusal:
+        read(text)
+    assert refusal.value.exit_code == 2
+    (entry,) = read_log(tmp_path / "bus.log", channel="can1")
+    assert (entry.line, entry.channel) == (2, "can1")
+    with pytest.raises(LogError, match="no frame of channel can2, only of can1"):
+        list(read_log(tmp_path / "bus.log", channel="can2"))
+
+
+def test_a_file_of_comments_alone_is_no_log(read):
+    with pytest.raises(LogError, match="no line of a frame"):
+        read("# nothing\n")
 
 
 # --- what is no log
@@ -94,7 +118,7 @@ def test_a_log_in_which_every_line_has_words_of_its_own_takes_no_memory(tmp_path
     ("content", "reason"),
     [
         (b"", "the file is empty"),
-        (b"\n", "not a candump log"),
+        (b"\n", "not a candump log: no line of a frame"),
         (b"time,id,data\n1,2,3\n", "not a candump log"),
         (b"\x89HDF\r\n\x1a\n" + bytes(2000), "not a candump log"),
         (bytes(100_000), "not a candump log"),
@@ -119,7 +143,6 @@ def test_a_file_that_cannot_be_read_is_refused(tmp_path, name):
 @pytest.mark.parametrize(
     "line",
     [
-        "\n",
         "hello\n",
         f"({STAMP}) vcan0 110#133\n",
         f"({STAMP}) vcan0 110#133E0014F79838B700\n",
@@ -152,7 +175,7 @@ KINDS = [
     LINE,
     f"({STAMP}) vcan0 123#R8_F T\n",
     f"({STAMP}) vcan0 1FFFFFFF#00 R\n",
-    "(1427513417.000000123)    can1 7FF#0011223344556677_C\r\n",
+    "(1427513417.000000123)    vcan0 7FF#0011223344556677_C\r\n",
     f"({STAMP}) vcan0 20000004#0000000000000000\n",
 ]
 

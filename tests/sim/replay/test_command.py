@@ -6,7 +6,8 @@ import shutil
 import pytest
 
 from fsw.wire.candump_line import format_line, format_time
-from fsw.wire.messages import PlantEnd
+from fsw.wire.messages import PlantEnd, Sync
+from sim.errors import HarnessError
 from sim.record import run_dir
 from sim.record.binding import Binding
 from sim.record.candump import read_log
@@ -68,3 +69,9 @@ def test_telecommands_of_the_scenario_go_up_and_not_to_the_boards(fly_run):
     logged = LoggedRun(run_dir.read_scenario(folder), record, Binding({}))
     report = through_plant(folder / run_dir.BUS_LOG, logged)
     assert report.ok, report.lines
+
+
+def test_a_log_without_a_frame_of_the_flight_software_is_not_replayed(run):
+    sync = format_line(format_time(0), "vcan0", Sync(0, 0).encode())
+    with pytest.raises(HarnessError, match="no frame of the flight software in it: nothing to compare"):
+        through_flight_software(*run(sync))
