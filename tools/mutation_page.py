@@ -6,11 +6,10 @@ import sys
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 from typing import Any, NamedTuple
 
 from mutants import Mutant, mutants
-
-from sim.record.whole_file import replace_text
 
 ROOT = Path(__file__).resolve().parents[1]
 HERE = ROOT / "tests" / "mutation"
@@ -104,7 +103,9 @@ def stored(path: Path) -> dict[str, Any]:
 
 def store(path: Path, results: dict[str, Any]) -> None:
     """Replace the file at once, so that a kill leaves what was measured before."""
-    replace_text(path, json.dumps(results, indent=2, sort_keys=True) + "\n")
+    with NamedTemporaryFile("w", dir=path.parent, delete=False, encoding="utf-8") as written:
+        written.write(json.dumps(results, indent=2, sort_keys=True) + "\n")
+    Path(written.name).replace(path)
 
 
 def digest(module: str, target: Target) -> str:
@@ -149,7 +150,7 @@ def write_page() -> None:
     text = TEXT.format(
         rows="\n".join(rows), survivors="\n".join(reasons) or "None.", coverage="\n".join(coverage)
     )
-    replace_text(PAGE, text)
+    PAGE.write_text(text, encoding="utf-8")
 
 
 def note_coverage(measured: dict[str, Any]) -> None:

@@ -16,10 +16,6 @@ CONTINUOUS = {"coils": {"driver": "continuous", "max_dipole_am2": 8.0, "on_fract
 ATTITUDE = Controlled("attitude", "whole attitude", "deg", 5.0)
 AXIS = Controlled("axis", "axis 1 from the vertical", "deg", 5.0)
 SPIN = Controlled("spin", "spin rate about axis 1", "deg/s", 0.1)
-DECAYED_TLE = [
-    "1 22826U 93061D   15086.11593543  .00000251  00000-0  99999+0 0  9992",
-    "2 22826  98.6946  36.4208 0008932 173.8349 186.2944 14.30166407121352",
-]
 ORBIT_S = orbit_period_s(load("microsat"))
 
 
@@ -130,10 +126,9 @@ def test_history_of_a_few_ticks(plant_record):
 
 
 def test_a_law_that_cannot_be_flown_is_a_line():
-    settings = {"time": {"epoch_utc": "2015-06-01T00:00:00Z"}, "orbit": {"tle": DECAYED_TLE}}
-    (case,) = cases("microsat", settings, ("lqr",), (Driver.PULSED,), 1, 0.01)
+    (case,) = cases("microsat", {}, ("lqr",), (Driver.PULSED,), 1, 1e6)
     score, drawn = fly_case(case, ATTITUDE)
     assert drawn is None
-    assert "decayed" in score.failure
+    assert "a run has at most" in score.failure
     filled = {"law", "aim", "driver", "failure", "tuned"}
     assert {key for key, value in asdict(score).items() if value is not None} == filled
