@@ -46,7 +46,7 @@ def test_it_flies_and_is_read_and_judged_the_same(number, tmp_path, monkeypatch)
     read = torquer.load(path)
     assert read.scenario == scenario
     assert read.summary["replay"]["bit_exact"]
-    assert read.check().ok == read.summary["limits_ok"]
+    assert read.check().report.ok == read.summary["limits_ok"]
     check_requirements(read)
     if number % 4 == 0:
         again, _ = flown(str(path / "scenario.toml"), orbits, number, tmp_path / "again")
