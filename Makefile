@@ -25,7 +25,7 @@
 # make notebooks   execute the notebooks of docs/notebooks, into build/notebooks: some minutes
 # make test-vcan   the tests on a CAN interface, in a user-mode Linux guest where this kernel has no vcan
 # make test-chromium   the pages in a headless browser, Debian's chromium
-# make fuzz       a million random frames, a thousand mutations of each kind of input file: half an hour
+# make fuzz       a million random frames, a thousand mutations of each kind of input file, 200 recorded passes with a spoilt row: half an hour
 # make scenarios  300 random legal scenarios of up to two orbits, read and judged again: a quarter of an hour
 # make attack     a million requests to a coil board, ten minutes on its process, a thousand logs: half an hour
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
@@ -156,7 +156,7 @@ validate-recorded: venv
 	$(bin)/torquer validate --recorded docs/validation.json --record
 
 fuzz: venv
-	TORQUER_FUZZ_FRAMES=1000000 TORQUER_FUZZ_MUTATIONS=1000 $(bin)/pytest -q --timeout 7200 tests/fuzz
+	TORQUER_FUZZ_FRAMES=1000000 TORQUER_FUZZ_MUTATIONS=1000 TORQUER_CORRUPT_PASSES=200 $(bin)/pytest -q --timeout 7200 tests/fuzz
 
 scenarios: venv
 	TORQUER_SCENARIOS=0:300 $(bin)/pytest -q tests/fuzz/test_legal_scenarios.py

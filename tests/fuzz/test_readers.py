@@ -4,14 +4,10 @@ Forty mutations of each kind of file, as a rule; ``make fuzz`` gives ten thousan
 ends with exit code 2, one whose verdict is that a log is cut or altered with 1; each in 5 s.
 """
 
-import contextlib
 import hashlib
-import io
 import json
 import os
 import shutil
-import time
-import warnings
 from pathlib import Path
 
 import h5py
@@ -19,6 +15,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from judged_commands import judged, torquer
 
 import fsw.__main__
 import hil_stub.__main__
@@ -34,37 +31,11 @@ from sim.report import conclude
 from sim.scenario.schema import load
 from sim.validate.reference.reference import CHECKS, ELEMENTS
 from sim.validate.reference.reference_table import DATA
-from torquer.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[2]
 MUTATIONS = int(os.environ.get("TORQUER_FUZZ_MUTATIONS", "40"))
-LONGEST_S = 5.0
-"""Of processor time: other work on the machine is not the command's."""
-
 fuzzed = settings(max_examples=MUTATIONS, deadline=None, suppress_health_check=list(HealthCheck))
 few = settings(fuzzed, max_examples=max(5, MUTATIONS // 10))
-
-
-def torquer(*words):
-    return judged(lambda: main.main([str(word) for word in words], prog_name="torquer"))
-
-
-def judged(command):
-    """(exit code, stdout, stderr) of a command, once it is sure how it ended."""
-    out, err, began = io.StringIO(), io.StringIO(), time.process_time()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        try:
-            code = command()
-        except SystemExit as ended:
-            code = ended.code
-    code, said = code or 0, err.getvalue()
-    assert time.process_time() - began < LONGEST_S
-    assert code in (0, 1, 2), said
-    if code == 2:
-        assert said.count("\n") == 1, said
-        assert len(said) < 1100, said
-    return code, out.getvalue(), said
 
 
 @pytest.fixture(scope="module")
