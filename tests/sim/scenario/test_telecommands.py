@@ -197,7 +197,7 @@ class TestNumbers:
         ({"message": "TC_MODE", "mode": "safe"}, "mode = 'safe' is not allowed"),
         ({"message": "TC_GAIN", "gain": "k_w", "value": 1.23456789012}, "value: 1.23456789012 does not fit"),
         ({"message": "TC_PARAMETER", "component": "torque", "value": 1e-8}, "component = 'torque' is not"),
-        ({"message": "TC_PARAMETER", "component": "torque_x", "value": 1e-150}, "value is not allowed: a number is 0, or"),
+        ({"message": "TC_PARAMETER", "component": "torque_x", "value": 1e-150}, "value is not allowed"),
         ({"message": "TC_FREEZE", "frozen": 1}, "frozen = 1 is not allowed"),
         ({"message": "TC_ORBIT_LOAD", "tle": ["1", "2"]}, "tle: element line 1 is not"),
     ],
