@@ -1,9 +1,11 @@
 """The flight software as a process: its node on a bus, faults as one sentence, an exit code."""
 
+from contextlib import suppress
+
 import click
 
 from fsw.bus.disarmed import Disarmed
-from fsw.bus.interface import Bus, BusError
+from fsw.bus.interface import Bus, BusClosed, BusError
 from fsw.bus.open_bus import join_bus, open_bus, resolve
 from fsw.input.error_text import error_text
 from fsw.input.schema import TableError
@@ -65,6 +67,7 @@ def _failed(error: Exception, exit_code: int) -> int:
 
 def _discard_backlog(bus: Bus) -> None:
     """Discard the frames sent before FSW_BOOT, up to a bound: other nodes may send without end."""
-    for _ in range(MOST_DISCARDED):
-        if bus.receive(0.0) is None:
-            return
+    with suppress(BusClosed):  # a run on it ends at once
+        for _ in range(MOST_DISCARDED):
+            if bus.receive(0.0) is None:
+                return

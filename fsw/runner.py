@@ -2,6 +2,7 @@
 
 import os
 import time
+from contextlib import suppress
 
 from fsw.bus.interface import Bus, BusClosed
 from fsw.node import End, FlightNode
@@ -15,7 +16,7 @@ SILENCE_S = 5.0
 
 
 def run(node: FlightNode, bus: Bus, parent: int | None = None, bench: bool = False) -> None:
-    """Send FSW_BOOT, then answer every SYNC.
+    """Send FSW_BOOT, then answer every SYNC; a bus that is gone ends the run.
 
     Args:
         node: the flight node.
@@ -23,13 +24,15 @@ def run(node: FlightNode, bus: Bus, parent: int | None = None, bench: bool = Fal
         parent: process that started this one; when it is gone the run is over.
         bench: no PLANT_END ends it.
     """
+    with suppress(BusClosed):
+        _answer_syncs(node, bus, parent, bench)
+
+
+def _answer_syncs(node: FlightNode, bus: Bus, parent: int | None, bench: bool) -> None:
     bus.send([node.start()])
     booted_s = received_s = answered_s = checked_s = time.monotonic()
     while bench or not node.ended:
-        try:
-            frame = bus.receive(IDLE_S)
-        except BusClosed:
-            return
+        frame = bus.receive(IDLE_S)
         now_s = time.monotonic()
         if parent is not None and (frame is None or now_s - checked_s > IDLE_S):
             if os.getppid() != parent:

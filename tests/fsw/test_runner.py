@@ -103,6 +103,22 @@ def test_ends_when_the_bus_is_gone(run):
     assert kinds(run(FIELD, FIELD)) == [FswBoot]
 
 
+class ClosedForSending(Script):
+    """A bus whose hub went away after a frame was received."""
+
+    def send(self, frames):
+        if self.sent or not self.happenings:
+            raise BusClosed("its hub is gone")
+        super().send(frames)
+
+
+@pytest.mark.parametrize("frames", [0, 1], ids=["at its boot", "while it answers"])
+def test_ends_as_well_when_it_is_sending_as_the_bus_goes(frames, config):
+    bus = ClosedForSending(*[sync(config, 0), FIELD][:frames])
+    runner.run(FlightNode(config), bus)
+    assert kinds(bus.sent) == [FswBoot] * frames
+
+
 def test_waits_on_while_nothing_comes(run, config):
     sent = run(NOTHING_CAME, NOTHING_CAME, sync(config, 0), END, parent=os.getppid())
     assert TickDone in kinds(sent)
