@@ -82,7 +82,8 @@ def campaign(
         progress=True,
     )
     say(str(done))
-    say(f"results: {done.path / RESULTS}{f', {PARQUET}' if parquet else ''}; page: {done.page}")
+    page = f"; page: {done.page}" if done.page.is_file() else ""
+    say(f"results: {done.path / RESULTS}{f', {PARQUET}' if parquet else ''}{page}")
     for sentence in done.flown.complaints:
         fail(sentence)
     flown = done.flown

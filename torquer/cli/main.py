@@ -136,9 +136,18 @@ def _of_the_system(error: OSError) -> tuple[str, int]:
         return f"the disk is full ({error.strerror}); what was written before is kept", 1
     if error.filename is not None:
         return f"{error.filename}: {error.strerror}", 2
-    if error.errno == errno.ENOENT:  # of os.getcwd alone
+    if error.errno == errno.ENOENT and not _has_folder():
         return "the folder that this runs in is no longer there: cd to another", 2
     raise error
+
+
+def _has_folder() -> bool:
+    """Whether the folder that this runs in is there: the error itself does not say what is missing."""
+    try:
+        os.getcwd()
+    except FileNotFoundError:
+        return False
+    return True
 
 
 def _sentence(error: click.ClickException) -> str:
