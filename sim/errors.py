@@ -4,8 +4,8 @@ import errno
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""``errno`` of an OSError that only means that there is no room."""
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""``errno`` where a disk, a quota, the size of a file or shared memory is used up; it does not say which."""
 
 
 class HarnessError(Exception):
@@ -18,6 +18,16 @@ class FlightError(HarnessError):
     """The flight ended before its time."""
 
     exit_code = 1
+
+
+def is_out_of_memory(error: BaseException) -> bool:
+    """Whether an error means that this process gets no more memory; a library that does not load says so."""
+    if isinstance(error, OSError):
+        return error.errno == errno.ENOMEM
+    words = ("failed to map segment", "cannot allocate memory")
+    return isinstance(error, MemoryError) or (
+        isinstance(error, ImportError) and any(word in str(error).lower() for word in words)
+    )
 
 
 @contextmanager
@@ -34,5 +44,7 @@ def needing(what: str, package: str, extra: str) -> Iterator[None]:
     """
     try:
         yield
-    except ImportError:
+    except ImportError as error:
+        if is_out_of_memory(error):
+            raise
         raise HarnessError(f"{what} needs {package}: pip install 'torquer[{extra}]'") from None

@@ -172,6 +172,6 @@ def test_a_disk_that_is_full_after_the_flight_loses_the_report_alone(start, tmp_
     words = ("torquer", "sil", "microsat", "--orbits", "0.02", "--bus", "virtual")
     ended = start(*words, "--out", tmp_path / "run", **with_files_of_at_most(75_000)).wait()
     assert ended.code == 1
-    assert "the disk is full (File too large)" in ended.sentence
+    assert "there is no room to write (File too large)" in ended.sentence
     assert torquer("replay", tmp_path / "run").code == 0
     assert torquer("check", tmp_path / "run").code == 0

@@ -15,7 +15,7 @@ import click
 
 from fsw.input.error_text import error_text
 from fsw.input.near import did_you_mean
-from sim.errors import DISK_FULL
+from sim.errors import NO_ROOM, is_out_of_memory
 
 GROUPS = {
     "Fly": {
@@ -112,7 +112,7 @@ class Commands(click.Group):
         except click.ClickException as error:
             click.echo(f"torquer: {error_text(_sentence(error))}", err=True)
             code = error.exit_code
-        except OSError as error:
+        except (OSError, MemoryError, ImportError) as error:
             sentence, code = _of_the_system(error)
             click.echo(f"torquer: {error_text(sentence)}", err=True)
         except click.Abort:
@@ -130,15 +130,23 @@ def _open_closed_streams() -> None:
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115  (until the process ends)
 
 
-def _of_the_system(error: OSError) -> tuple[str, int]:
-    """A sentence and an exit code, where it is no defect: a full disk, a file that cannot be used."""
-    if error.errno in DISK_FULL:
-        return f"the disk is full ({error.strerror}); what was written before is kept", 1
+def _of_the_system(error: OSError | MemoryError | ImportError) -> tuple[str, int]:
+    """A sentence and an exit code, where it is no defect: no memory, no room, a file that cannot be used.
+
+    An error need not say of which file it is; then neither does the sentence.
+    """
+    if is_out_of_memory(error):
+        return "there is not enough memory; what was written before is kept", 1
+    if not isinstance(error, OSError) or error.errno is None:
+        raise error
+    if error.errno in NO_ROOM:
+        of = "" if error.filename is None else f"{error.filename}: "
+        return f"{of}there is no room to write ({error.strerror}); what was written before is kept", 1
     if error.filename is not None:
         return f"{error.filename}: {error.strerror}", 2
     if error.errno == errno.ENOENT and not _has_folder():
         return "the folder that this runs in is no longer there: cd to another", 2
-    raise error
+    return f"the system refuses ({error.strerror}), and does not say of which file", 2
 
 
 def _has_folder() -> bool:

@@ -1,9 +1,11 @@
 """What a user mistypes is answered with what may have been meant: one sentence on stderr, exit code 2."""
 
+import errno
 import os
 import subprocess
 import sys
 
+import click
 import pytest
 
 from torquer.cli.main import main
@@ -145,6 +147,43 @@ def test_so_is_it_where_the_command_is_run_as_a_module(tmp_path):
     done = subprocess.run(words, cwd=gone, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == "torquer: the folder that this runs in is no longer there: cd to another\n"
+
+
+@pytest.mark.parametrize(
+    ("error", "says"),
+    [
+        (
+            OSError(errno.ENOENT, "No such file"),
+            (2, "the system refuses (No such file), and does not say of"),
+        ),
+        (OSError(errno.EMFILE, "Too many files"), (2, "the system refuses (Too many files), and does not")),
+        (OSError(errno.EFBIG, "File too large"), (1, "there is no room to write (File too large); what")),
+        (OSError(errno.ENOSPC, "No space"), (1, "there is no room to write (No space); what was")),
+        (OSError(errno.ENOSPC, "No space", "x.csv"), (1, "x.csv: there is no room to write (No space); ")),
+        (OSError(errno.ENOMEM, "Cannot allocate"), (1, "there is not enough memory; what was")),
+        (MemoryError(), (1, "there is not enough memory; what was")),
+        (ImportError("x.so: failed to map segment from shared object"), (1, "there is not enough memory; ")),
+    ],
+    ids=lambda value: repr(value) if isinstance(value, Exception) else "",
+)
+def test_what_the_system_refuses_is_one_sentence_that_guesses_no_file(error, says, monkeypatch, capsys):
+    def refuse(*words, **options):
+        raise error
+
+    monkeypatch.setattr(click.Group, "main", refuse)
+    code, out, err = run(capsys, "scenarios")
+    assert (code, out, err.count("\n")) == (says[0], "", 1)
+    assert err.startswith(f"torquer: {says[1]}")
+
+
+@pytest.mark.parametrize("error", [ImportError("no name x in y"), OSError("of nothing")])
+def test_what_may_be_a_defect_is_no_sentence(error, monkeypatch):
+    def refuse(*words, **options):
+        raise error
+
+    monkeypatch.setattr(click.Group, "main", refuse)
+    with pytest.raises(type(error)):
+        main(["scenarios"], prog_name="torquer")
 
 
 def test_elements_from_a_pipe_are_refused_at_once(tmp_path, capsys):
