@@ -18,6 +18,7 @@ from sim.campaign.definition.campaign import Campaign, DrawnRun
 from sim.campaign.definition.columns import Cell, cells, input_cells
 from sim.campaign.flight import record_scenario
 from sim.campaign.results.row import RunRow, Status
+from sim.campaign.runner import LOST
 from sim.campaign.scoring import score
 from sim.errors import HarnessError
 from sim.flight.record_flight import ticks_of
@@ -66,12 +67,15 @@ class RunTask:
 
         Raises:
             HarnessError: log and histories cannot be kept.
+            MemoryError: there is not enough memory, which is no result of the run.
         """
         began, drawn = time.monotonic(), self.campaign.draw(run)
         try:
             row = _flown(self.campaign, drawn)
         except (TableError, HarnessError, PlantError) as error:
             row = _failed(drawn, str(error))
+        except MemoryError:  # of this machine, and no result of the run
+            raise
         except Exception as error:  # a defect: the sentence says where, and the other runs are flown
             row = _failed(drawn, f"{type(error).__name__}: {error} ({_place(error)})")
         if self.keep is Keep.ALL or (self.keep is Keep.FAILURES and not row.success):
@@ -96,7 +100,7 @@ def _collect_garbage(flown_s: float) -> None:
 
 def lost_run(campaign: Campaign, run: int, losses: int) -> RunRow:
     """The row of a run that no worker survives."""
-    return _failed(campaign.draw(run), f"its worker process was ended from outside {losses} times")
+    return _failed(campaign.draw(run), f"its worker process was lost {losses} times ({LOST})")
 
 
 def run_folder(folder: Path, run: int) -> Path:

@@ -16,12 +16,15 @@ from typing import Any
 
 from sim.campaign.claim import ClaimOutcome, Study, Task
 from sim.errors import HarnessError
+from sim.progress import note
 
 Watch = Callable[[int], None]
+LOST = "ended from outside, out of memory, or crashed"
+"""Why a worker may be gone: the system does not tell these apart."""
 
 
 class WorkerLostError(HarnessError):
-    """A worker process was ended from outside before all tasks were done."""
+    """A worker process was lost before all tasks were done."""
 
     exit_code = 1
 
@@ -56,7 +59,7 @@ def run(
         The studies in their order.
 
     Raises:
-        HarnessError: a task failed with a message for the user, or a worker was ended; the rest is cancelled.
+        HarnessError: a task failed with a message for the user, or a worker was lost; the rest is cancelled.
     """
     waiting = {place: len(study.tasks) for place, study in enumerate(studies)}
     results: dict[tuple[int, int], tuple[float, Any]] = {}
@@ -90,12 +93,13 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
         for place, study in enumerate(studies)
         for number, task in enumerate(study.tasks)
     ]
-    if workers == 1 or len(tasks) < 2:
+    alone = workers == 1 or len(tasks) < 2
+    started = None if alone else start_pool(min(workers, len(tasks)))
+    if started is None:
         for place, number, task in tasks:
             yield place, number, _run_timed(task)
         return
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one task, one core
-    with ProcessPoolExecutor(min(workers, len(tasks)), worker_context()) as pool:
+    with started as pool:
         with children_ignore_interrupt():
             places: dict[Future[tuple[float, Any]], tuple[int, int]] = {
                 pool.submit(_run_timed, task): (place, number) for place, number, task in tasks
@@ -107,11 +111,37 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
             end_workers(pool)
             done = sum(future.done() and future.exception() is None for future in places)
             raise WorkerLostError(
-                f"a worker process was ended from outside: {done} of {len(places)} tasks were done"
+                f"a worker process was lost ({LOST}): {done} of {len(places)} tasks were done"
             ) from None
         except BaseException:
             end_workers(pool)  # breaks the pool, which then cancels waiting tasks and is joined
             raise
+
+
+def start_pool(workers: int, begin: Callable[[], None] | None = None) -> ProcessPoolExecutor | None:
+    """A pool of processes, each of which calls ``begin`` first; None, with a note, where there can be none.
+
+    It needs semaphores, shared memory that can be written, and room for one process: a system, a container or
+    a limit may refuse each.
+    """
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one task, one core
+    pool = None
+    try:
+        with children_ignore_interrupt():
+            pool = ProcessPoolExecutor(workers, worker_context(), initializer=begin)
+            pool.submit(os.getpid).result()
+            return pool
+    except (OSError, ImportError, NotImplementedError, BrokenProcessPool) as error:
+        if pool is not None:
+            end_workers(pool)
+            pool.shutdown()
+        why = f"the first was {LOST}" if isinstance(error, BrokenProcessPool) else _reason(error)
+        note(f"no worker processes can be started ({why}): this process does all, one after the other")
+        return None
+
+
+def _reason(error: Exception) -> str:
+    return (isinstance(error, OSError) and error.strerror) or str(error)
 
 
 def worker_context() -> BaseContext:

@@ -5,6 +5,7 @@ is a defect of this program: it stays a traceback (exit code 1), which shows whe
 """
 
 import errno
+import math
 import os
 import sys
 from importlib import import_module
@@ -61,6 +62,8 @@ GROUPS = {
 """The commands by what a user wants to do, with what they do: help need not load them for it."""
 COMMANDS = tuple(name for group in GROUPS.values() for name in group)
 """The commands; each is in the module of its name."""
+LEAST_MEMORY_MB = 400
+"""Address space of the libraries and a page; where it is less, OpenBLAS may wait for it without end."""
 
 
 class Commands(click.Group):
@@ -102,8 +105,19 @@ class Commands(click.Group):
             raise click.UsageError("an argument holds a NUL character")
         return super().parse_args(ctx, args)
 
+    def invoke(self, ctx: click.Context) -> Any:  # noqa: ANN401  (as in click)
+        """Run the command, where this process may have the memory that it needs."""
+        allowed_mb = _memory_limit_mb()
+        if allowed_mb < LEAST_MEMORY_MB:
+            raise click.ClickException(
+                f"there is not enough memory: this process may have {allowed_mb:.0f} MB (ulimit -v), "
+                f"and torquer needs {LEAST_MEMORY_MB} MB"
+            )
+        return super().invoke(ctx)
+
     def main(self, *args: Any, **kwargs: Any) -> Any:  # noqa: ANN401  (as in click)
         """Run a command line and exit."""
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads cost memory, and matrices are small
         _open_closed_streams()
         if isinstance(sys.stdout, TextIOWrapper):
             sys.stdout.reconfigure(errors="backslashreplace")  # a path need not be valid text
@@ -128,6 +142,16 @@ def _open_closed_streams() -> None:
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115  (until the process ends)
+
+
+def _memory_limit_mb() -> float:
+    """The address space that this process may have."""
+    if sys.platform == "win32":
+        return math.inf
+    import resource  # not on Windows
+
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    return math.inf if limit == resource.RLIM_INFINITY else limit / 1e6
 
 
 def _of_the_system(error: OSError | MemoryError | ImportError) -> tuple[str, int]:

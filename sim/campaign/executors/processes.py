@@ -15,7 +15,7 @@ from types import ModuleType
 
 from sim.campaign.one_run import RunTask, lost_run
 from sim.campaign.results.row import RunRow
-from sim.campaign.runner import children_ignore_interrupt, end_workers, worker_context
+from sim.campaign.runner import children_ignore_interrupt, end_workers, start_pool
 
 MOST_LOSSES = 3
 """A run whose worker was ended this many times is given up."""
@@ -25,7 +25,10 @@ HANDED_OUT = 2
 
 @dataclass(frozen=True, slots=True)
 class Processes:
-    """``workers`` processes. When one is killed, the runs that were handed out are flown again."""
+    """``workers`` processes. When one is killed, the runs that were handed out are flown again.
+
+    Where no process can be started, this one flies the runs, one after the other.
+    """
 
     workers: int
 
@@ -33,8 +36,13 @@ class Processes:
         """The rows of the runs, as they come."""
         waiting, losses = deque(runs), Counter[int]()
         while waiting:
+            with _without_script():
+                pool = start_pool(min(self.workers, len(waiting)), _begin_worker)
+            if pool is None:
+                yield from map(task.fly, waiting)
+                return
             flying: dict[Future[RunRow], int] = {}
-            yield from self._until_lost(task, waiting, losses, flying)
+            yield from self._until_lost(pool, task, waiting, losses, flying)
             losses.update(flying.values())
             for run in sorted(flying.values(), reverse=True):
                 if losses[run] < MOST_LOSSES:
@@ -43,15 +51,19 @@ class Processes:
                     yield lost_run(task.campaign, run, losses[run])
 
     def _until_lost(
-        self, task: RunTask, waiting: deque[int], losses: Counter[int], flying: dict[Future[RunRow], int]
+        self,
+        started: ProcessPoolExecutor,
+        task: RunTask,
+        waiting: deque[int],
+        losses: Counter[int],
+        flying: dict[Future[RunRow], int],
     ) -> Iterator[RunRow]:
         """Rows until no run is left or a worker is lost; then ``flying`` holds the runs without a row.
 
         Runs that were in flight at a loss are flown one at a time, which shows the one that causes it.
         """
-        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one run, one core
         workers = min(self.workers, len(waiting))
-        with ProcessPoolExecutor(workers, worker_context(), initializer=_begin_worker) as pool:
+        with started as pool:
             try:
                 while waiting or flying:
                     while waiting and len(flying) < (1 if losses[waiting[0]] else HANDED_OUT * workers):

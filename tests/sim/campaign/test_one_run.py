@@ -126,7 +126,9 @@ def test_a_defect_is_a_sentence_with_its_place(task, monkeypatch):
 def test_a_run_that_no_worker_survives_says_so(small):
     row = lost_run(small, 5, 3)
     assert (row.run, row.status) == (5, Status.FAILED)
-    assert row.failure == "its worker process was ended from outside 3 times"
+    assert (
+        row.failure == "its worker process was lost 3 times (ended from outside, out of memory, or crashed)"
+    )
 
 
 def test_nothing_stays_frozen_after_a_run(task):

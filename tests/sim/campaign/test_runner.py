@@ -88,6 +88,39 @@ if __name__ == "__main__":
             assert os.environ.get("PYTHONSAFEPATH") == before
 
 
+NO_SEMAPHORES = """
+import _multiprocessing
+from functools import partial
+
+def refuse(*words):
+    raise ERROR
+
+class SemLock(_multiprocessing.SemLock):
+    __new__ = refuse
+
+_multiprocessing.SemLock = SemLock
+from sim.campaign.claim import Study
+from sim.campaign.runner import run
+
+if __name__ == "__main__":
+    tasks = (partial(abs, -1), partial(abs, -2))
+    (done,) = run([Study("x", tasks, lambda results: [])], WORKERS, lambda done: None, lambda done: None)
+    print(done.results)
+"""
+
+
+@pytest.mark.parametrize("error", ["OSError(38, 'Function not implemented')", "PermissionError(13, 'no')"])
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_machine_without_semaphores_runs_all_tasks_in_one_process_and_says_so(error, workers, tmp_path):
+    script = tmp_path / "run.py"
+    script.write_text(NO_SEMAPHORES.replace("ERROR", error).replace("WORKERS", str(workers)))
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, check=False)
+    assert done.stdout == "(1, 2)\n", done.stderr
+    why = error.split("'")[1]
+    told = f"no worker processes can be started ({why}): this process does all, one after the other\n"
+    assert done.stderr == ("" if workers == 1 else told)
+
+
 def names_of_modules():
     return set(sys.modules)
 
@@ -117,7 +150,7 @@ def ended_from_outside():
 def test_a_worker_that_is_killed_is_one_sentence():
     others = multiprocessing.active_children()
     studies = [Study(f"s{number}", (ended_from_outside,), lambda results: []) for number in range(3)]
-    with pytest.raises(HarnessError, match="a worker process was ended from outside: 0 of 3 ") as caught:
+    with pytest.raises(HarnessError, match=r"a worker process was lost \(.*\): 0 of 3 ") as caught:
         run(studies, 2, lambda done: None, lambda done: None)
     assert caught.value.exit_code == 1
     assert multiprocessing.active_children() == others

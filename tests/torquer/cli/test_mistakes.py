@@ -176,6 +176,22 @@ def test_what_the_system_refuses_is_one_sentence_that_guesses_no_file(error, say
     assert err.startswith(f"torquer: {says[1]}")
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no such limit")
+@pytest.mark.parametrize("limit_mb", [100, 250, 399])
+def test_too_little_memory_is_one_sentence_and_no_hang(limit_mb, tmp_path):
+    import resource
+
+    def limit():
+        resource.setrlimit(resource.RLIMIT_AS, (limit_mb * 1_000_000,) * 2)
+
+    words = [sys.executable, "-m", "torquer", "campaign", "microsat", "--out", tmp_path / "campaign"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False, preexec_fn=limit, timeout=60)
+    told = f"this process may have {limit_mb} MB (ulimit -v), and torquer needs 400 MB"
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == f"torquer: there is not enough memory: {told}\n"
+    assert not (tmp_path / "campaign").exists()
+
+
 @pytest.mark.parametrize("error", [ImportError("no name x in y"), OSError("of nothing")])
 def test_what_may_be_a_defect_is_no_sentence(error, monkeypatch):
     def refuse(*words, **options):

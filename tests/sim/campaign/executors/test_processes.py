@@ -48,7 +48,21 @@ def test_a_lost_worker_loses_no_run_and_flies_none_twice(small, monkeypatch):
     assert sorted(row.run for row in rows) == list(range(6))
     failed = [row for row in rows if row.status is Status.FAILED]
     assert [row.run for row in failed] == [1]
-    assert failed[0].failure == "its worker process was ended from outside 2 times"
+    assert (
+        failed[0].failure
+        == "its worker process was lost 2 times (ended from outside, out of memory, or crashed)"
+    )
+
+
+def test_without_worker_processes_this_one_flies_all_runs(small, monkeypatch, capsys):
+    def refuse(*words, **options):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("multiprocessing.synchronize.SemLock.__init__", refuse)
+    task = RunTask(small, Keep.NONE, Path())
+    rows = list(Processes(2).rows(task, [1, 0]))
+    assert [untimed(row) for row in rows] == [untimed(task.fly(run)) for run in (1, 0)]
+    assert "no worker processes can be started (Permission denied)" in capsys.readouterr().err
 
 
 @dataclass(frozen=True, slots=True)
