@@ -68,6 +68,7 @@ def test_so_are_foreign_results(tmp_path):
         results.add(RunTask(campaign, Keep.NONE, tmp_path).fly(0))
     with closing(sqlite3.connect(tmp_path / RESULTS)) as connection, connection:
         connection.execute("UPDATE runs SET status = 'failed', failure = ?, success = 0", (HOSTILE,))
+        connection.execute("DELETE FROM profiles")
     code, sent = on_terminal("campaign", tmp_path)
     assert code == 1
     check_harmless(sent)

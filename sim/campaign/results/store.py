@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from sim.campaign.code_digest import code_digest
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.definition.columns import NUMBERS, TEXTS, Cell, input_cells
+from sim.campaign.results.consistency import find_contradiction, quoted
 from sim.campaign.results.row import RunRow, Status
 from sim.errors import HarnessError
 from sim.record.run_dir import fingerprint
@@ -65,7 +66,7 @@ class Results:
         now = datetime.now(UTC).isoformat(timespec="seconds")
         with self._connection as connection:
             connection.execute(
-                f"REPLACE INTO runs ({', '.join(map(_quoted, values))}) VALUES ({_marks(values)})",
+                f"REPLACE INTO runs ({', '.join(map(quoted, values))}) VALUES ({_marks(values)})",
                 tuple(values.values()),
             )
             connection.execute("DELETE FROM profiles WHERE run = ?", (row.run,))
@@ -89,7 +90,7 @@ class Results:
     def each(self, names: Sequence[str], status: Status | None = None) -> Iterator[tuple[Cell, ...]]:
         """These columns of the runs in order."""
         where, arguments = ("", ()) if status is None else (" WHERE status = ?", (status.value,))
-        wanted = ", ".join(map(_quoted, names))
+        wanted = ", ".join(map(quoted, names))
         yield from self._connection.execute(f"SELECT {wanted} FROM runs{where} ORDER BY run", arguments)
 
     def numbers(self, names: Sequence[str]) -> dict[str, Array]:
@@ -196,7 +197,7 @@ def _create(results: Results, campaign: Campaign) -> None:
     inputs = input_cells(campaign.draw(0).inputs)
     kinds = {name: "TEXT" if isinstance(value, str) else "NUMERIC" for name, value in inputs.items()}
     kinds |= FIGURES
-    columns = "".join(f", {_quoted(name)} {kind}" for name, kind in kinds.items())
+    columns = "".join(f", {quoted(name)} {kind}" for name, kind in kinds.items())
     meta = {
         "schema_version": str(SCHEMA_VERSION),
         "torquer_version": version("torquer"),
@@ -215,8 +216,14 @@ def _check(results: Results, campaign: Campaign | None) -> None:
     found = results.meta("schema_version")
     if found != str(SCHEMA_VERSION):
         raise HarnessError(f"{results.path}: schema_version is {found}, only {SCHEMA_VERSION} can be read")
-    if campaign is None:
-        return
+    if campaign is not None:
+        _check_campaign(results, campaign)
+    requirements = campaign.requirements if campaign is not None else ()
+    if contradiction := find_contradiction(results._connection, results.kinds(), requirements):
+        raise HarnessError(f"{results.path}: {contradiction}")
+
+
+def _check_campaign(results: Results, campaign: Campaign) -> None:
     folder, kinds = results.path.parent, results.kinds()
     if absent := [name for name in FIGURES if name not in kinds]:
         raise HarnessError(
@@ -227,10 +234,6 @@ def _check(results: Results, campaign: Campaign | None) -> None:
             f"{folder} holds the runs of another campaign, which differs in more than the number of runs, "
             "or of another version of torquer: choose another --out"
         )
-
-
-def _quoted(name: str) -> str:
-    return '"' + name.replace('"', '""') + '"'
 
 
 def _marks(values: dict[str, Cell]) -> str:

@@ -1,10 +1,15 @@
 """Small campaigns: every kind of dispersion, and runs of two minutes."""
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from sim.campaign.definition.campaign_file import load_campaign
+from sim.campaign.definition.columns import input_cells
+from sim.campaign.results.row import RunRow, Status
+from sim.statistics.indices import INDICES, POINTS
 
 CAMPAIGN = """
 scenario = "microsat"
@@ -86,3 +91,18 @@ def campaign_file(tmp_path_factory) -> Path:
 def small(campaign_file):
     """The campaign of that file."""
     return load_campaign(str(campaign_file), {}, {})
+
+
+@pytest.fixture(scope="session")
+def row_of():
+    """Makes the row of a run that was flown, with made-up figures, but for the changes."""
+
+    def made(campaign, run, **changes):
+        drawn = campaign.draw(run)
+        figures = {"limits_ok": 1, "pointing_deg_rms_last_orbit": 1.0 / (run + 3), "mode_final": "POINT"}
+        profiles = {name: np.linspace(0.5, run, POINTS).astype("<f4").tobytes() for name in INDICES}
+        inputs = input_cells(drawn.inputs)
+        row = RunRow(run, Status.DONE, "", drawn.seed, True, "", inputs | figures, profiles, 0.25)
+        return replace(row, **changes)
+
+    return made

@@ -15,11 +15,11 @@ from sim.errors import HarnessError
 
 
 @pytest.fixture
-def begun(small, tmp_path, monkeypatch):
+def begun(small, row_of, tmp_path, monkeypatch):
     """A folder with one of six runs; what flies the others, and what draws them, is left out."""
     small.write(tmp_path)
     with open_results(tmp_path, small) as results:
-        results.add(RunRow(0, Status.DONE, "", 1, True, "", {"limits_ok": 1}))
+        results.add(row_of(small, 0))
     monkeypatch.setattr("sim.campaign.command._fly", lambda *_: None)
     monkeypatch.setattr("sim.campaign.command._conclude", lambda *_: "continued")
     return tmp_path
@@ -48,11 +48,11 @@ def test_by_other_code_of_the_same_version_it_is_refused(begun):
     assert "choose another --out" in str(caught.value)
 
 
-def test_by_other_code_it_is_still_shown_where_no_run_is_missing(begun, small):
+def test_by_other_code_it_is_still_shown_where_no_run_is_missing(begun, small, row_of):
     meta(begun, f"UPDATE meta SET value = '0123' WHERE key = '{CODE}'")
     with open_results(begun, small) as results:
         for run in range(1, 6):
-            results.add(RunRow(run, Status.DONE, "", 1, True, "", {"limits_ok": 1}))
+            results.add(row_of(small, run))
     assert resume(begun) == "continued"
 
 

@@ -5,34 +5,23 @@ import subprocess
 import sys
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from sim.campaign.definition.campaign_file import load_campaign
-from sim.campaign.definition.columns import input_cells
-from sim.campaign.results.row import RunRow, Status
+from sim.campaign.results.row import Status
 from sim.campaign.results.store import RESULTS, SCHEMA_VERSION, open_results, read_results
 from sim.errors import HarnessError
 
-
-def row_of(campaign, run, **changes):
-    """A run that was flown, with made-up figures."""
-    drawn = campaign.draw(run)
-    figures = {"limits_ok": 1, "pointing_deg_rms_last_orbit": 1.0 / (run + 3), "mode_final": "POINT"}
-    profiles = {"ape": np.array([0.5, run], "<f4").tobytes()}
-    row = RunRow(
-        run, Status.DONE, "", drawn.seed, True, "", {**input_cells(drawn.inputs), **figures}, profiles, 0.25
-    )
-    return replace(row, **changes)
+FAILED = {"status": Status.FAILED, "failure": "no fuel", "success": False, "cells": {}, "profiles": {}}
 
 
-def test_a_row_is_read_as_it_was_written(small, tmp_path):
+def test_a_row_is_read_as_it_was_written(small, row_of, tmp_path):
     with open_results(tmp_path, small) as results:
         results.add(row_of(small, 4))
     with read_results(tmp_path) as results:
         found = results.row(4)
         assert results.row(3) is None
-        assert results.profiles("ape")[4].tolist() == [0.5, 4.0]
+        assert results.profiles("ape")[4].tolist()[::255] == [0.5, 4.0]
         assert results.numbers(()) == {}, "no columns are no error"
         assert results.numbers(("pointing_deg_rms_last_orbit",))["pointing_deg_rms_last_orbit"] == [1.0 / 7.0]
     assert (found["run"], found["status"], found["seed"]) == (4, "done", small.draw(4).seed)
@@ -42,7 +31,7 @@ def test_a_row_is_read_as_it_was_written(small, tmp_path):
     assert found["nees_mean"] is None
 
 
-def test_columns_and_rows_do_not_depend_on_the_order_of_the_runs(small, tmp_path):
+def test_columns_and_rows_do_not_depend_on_the_order_of_the_runs(small, row_of, tmp_path):
     tables = []
     for folder, order in (("a", (2, 0, 1)), ("b", (0, 1, 2))):
         (tmp_path / folder).mkdir()
@@ -60,9 +49,9 @@ def test_columns_and_rows_do_not_depend_on_the_order_of_the_runs(small, tmp_path
     assert tables[0] == tables[1]
 
 
-def test_a_run_that_is_flown_again_replaces_its_row(small, tmp_path):
+def test_a_run_that_is_flown_again_replaces_its_row(small, row_of, tmp_path):
     with open_results(tmp_path, small) as results:
-        results.add(row_of(small, 1, status=Status.FAILED, failure="no fuel", cells={}))
+        results.add(row_of(small, 1, **FAILED))
         assert results.runs(Status.FAILED) == [1]
         results.add(row_of(small, 1))
         assert (results.runs(), results.runs(Status.FAILED)) == ([1], [])
@@ -71,7 +60,7 @@ def test_a_run_that_is_flown_again_replaces_its_row(small, tmp_path):
         assert attempts == [(1, "no fuel"), (1, "")]
 
 
-def test_another_campaign_is_refused_and_more_runs_of_this_are_not(small, campaign_file, tmp_path):
+def test_another_campaign_is_refused_and_more_runs_of_this_are_not(small, row_of, campaign_file, tmp_path):
     with open_results(tmp_path, small) as results:
         results.add(row_of(small, 1))
     other = load_campaign(str(campaign_file), {"seed": 5}, {})
@@ -84,7 +73,7 @@ def test_another_campaign_is_refused_and_more_runs_of_this_are_not(small, campai
         assert results.runs() == [1]
 
 
-def test_there_is_one_writer_and_any_number_of_readers(small, tmp_path):
+def test_there_is_one_writer_and_any_number_of_readers(small, row_of, tmp_path):
     with open_results(tmp_path, small) as results:
         results.add(row_of(small, 0))
         with (
@@ -112,7 +101,7 @@ from sim.campaign.results.store import open_results
 campaign = load_campaign(sys.argv[1], {}, {})
 with open_results(Path(sys.argv[2]), campaign) as results:
     for run in range(3):
-        results.add(RunRow(run, Status.DONE, "", 1, True, "", {}))
+        results.add(RunRow(run, Status.FAILED, "no fuel", 1, False, "", {}))
     os.kill(os.getpid(), signal.SIGKILL)
 """
 
@@ -152,7 +141,7 @@ def test_results_of_another_version_are_refused(small, tmp_path):
         pass
 
 
-def test_a_campaign_of_an_older_torquer_is_refused_and_left_as_it_was(small, tmp_path):
+def test_a_campaign_of_an_older_torquer_is_refused_and_left_as_it_was(small, row_of, tmp_path):
     with open_results(tmp_path, small) as results:
         results.add(row_of(small, 0))
     with sqlite3.connect(tmp_path / RESULTS) as connection:
