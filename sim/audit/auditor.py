@@ -70,7 +70,9 @@ class _Auditor:
         self._driver = DriverJudge(limits.is_continuous)
         self._together: list[BoardStatus] = []
         self._booted = False
+        self._booted_after: int | None = None
         self._tick: int | None = None
+        self._began_at = 0
         self._timestamp_off: int | None = None
         self._unix_off: int | None = None
         self._first: int | None = None
@@ -96,9 +98,12 @@ class _Auditor:
         elif not intact(entry.frame):
             self._broken_boots += 1
         elif self._by_ticks is not None:
-            self._booted = True
+            self._booted, self._booted_after = True, self._tick
+            if self._by_recorder is not None:
+                self._by_recorder.boot(entry.timestamp_us)
         else:
-            self._boot(self._clock.of_timestamp(entry.timestamp_us))
+            instant = self._clock.of_timestamp(entry.timestamp_us)
+            self._boot(instant, instant)
 
     def _take_status(self, entry: LogEntry) -> None:
         self._statuses += 1
@@ -144,6 +149,7 @@ class _Auditor:
             return
         step = 1 if self._tick is None else tick - self._tick
         if self._tick is None:
+            self._began_at = tick
             self._unreported.begin(tick * MICRO)
         if step < 1:
             sentence = f"SYNC goes back from tick {self._tick} to tick {tick}: two runs in one log?"
@@ -161,9 +167,7 @@ class _Auditor:
             self._judge_tick(of_tick, boards)
         if self._booted:  # the board has said nothing since: its boot is of the tick whose SYNC follows
             self._booted = False
-            self._boot(tick * MICRO)
-            if self._by_recorder is not None:
-                self._by_recorder.boot(tick)
+            self._boot_in(tick)
         if not closed or closed[-1][0] != tick:
             self._unreported.sync()
         self._judge_driver(tick * MICRO, tick)
@@ -171,9 +175,7 @@ class _Auditor:
     def _judge_tick(self, tick: int, boards: list[BoardStatus]) -> None:
         instant = tick * MICRO
         if any(board.booted for board in boards):
-            self._boot(instant)
-            if self._by_recorder is not None:
-                self._by_recorder.boot(tick)
+            self._boot_in(tick)
         statuses = self._trusted(boards, instant, tick)
         if self._by_recorder is not None:
             self._by_recorder.observe(tick, boards)
@@ -241,10 +243,16 @@ class _Auditor:
         self._unreported.take(instant, statuses)
         return statuses
 
-    def _boot(self, instant: int) -> None:
+    def _boot_in(self, tick: int) -> None:
+        """The board has booted in the interval of ``tick``, or sooner where ticks before are missing."""
+        after = self._booted_after
+        sooner = None if after is None and tick > 0 else min(tick, (-1 if after is None else after) + 1)
+        self._boot(tick * MICRO, None if sooner is None else sooner * MICRO)
+
+    def _boot(self, instant: int, sooner: int | None) -> None:
         self._unreported.boot(instant)
         for judge in self._judges():
-            judge.boot(instant)
+            judge.boot(instant, sooner)
 
     def _interrupt(self) -> None:
         if self._tick is not None:
@@ -283,12 +291,17 @@ class _Auditor:
             complete=log.ended or (log.truncated_at is None and not expect_end),
             dipoles=self._driver.count,
             unreported_s=seconds(self._unreported.total),
-            doubt="" if self._limits.is_continuous else self._unreported.doubt or self._recorder_doubt(),
+            doubt=self._doubt(),
             not_real_time="" if self._by_recorder is None else self._by_recorder.unjudged(),
         )
 
-    def _recorder_doubt(self) -> str:
-        return "" if self._by_recorder is None else self._by_recorder.doubted()
+    def _doubt(self) -> str:
+        """Why a limit may have been broken, for the first way found, a clause."""
+        if self._limits.is_continuous:
+            return ""
+        by_recorder = [] if self._by_recorder is None else [self._by_recorder.doubted()]
+        doubts = [self._unreported.doubt, *(judge.doubt for judge in self._judges()), *by_recorder]
+        return next(filter(None, doubts), "")
 
     def _all_violations(self) -> tuple[Violation, ...]:
         """The violations of both judges; one that both report counts once."""
@@ -306,6 +319,10 @@ class _Auditor:
         if self._statuses == 0:
             return
         yield from clock_notes(self._clock, self._limits.tick_hz, self._ticks_alone)
+        if self._began_at:
+            yield f"the log begins at tick {self._began_at}: what came before it is not judged"
+        if self._by_recorder is not None:
+            yield from self._by_recorder.notes()
         if self._ticks.silent:
             yield f"{_count(self._ticks.silent, 'tick')} without COIL_STATUS"
         yield from self._unreported.notes()

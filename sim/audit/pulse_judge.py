@@ -39,10 +39,16 @@ class PulseJudge:
         self._drives: dict[int, _Drive] = {}
         self._ended: dict[int, int] = {}
         self._booted: int | None = None
+        self._booted_sooner: int | None = None
+        self.doubt = ""
+        """Why a pulse may have come too soon after a boot, for the first that may, a clause."""
 
-    def boot(self, instant: int) -> None:
-        """The board has started: its lockout begins."""
-        self._booted = instant
+    def boot(self, instant: int, sooner: int | None) -> None:
+        """The board has started, and its lockout begins: no later than ``instant``.
+
+        ``sooner``: and no sooner than that; None where the log does not show it.
+        """
+        self._booted, self._booted_sooner = instant, sooner
 
     def observe(self, now: int, tick: int | None, line: int, statuses: list[CoilStatus]) -> None:
         """All statuses of one tick: what was driven in the interval that ends ``now``.
@@ -136,9 +142,20 @@ class PulseJudge:
             self._add_backoff(ViolationKind.GAP, drive, gap, f"the end of {whose}")
 
     def _judge_boot(self, drive: _Drive) -> None:
-        if self._booted is not None and 0 <= drive.start - self._booted < self._backoff:
-            drive.reported_boot = True
+        if self._booted is None or not 0 <= drive.start - self._booted < self._backoff:
+            return
+        drive.reported_boot = True
+        sooner = self._booted_sooner
+        if sooner is not None and drive.start - sooner < self._backoff:
             self._add_backoff(ViolationKind.BOOT, drive, drive.start - self._booted, "the boot of the board")
+        elif not self.doubt:
+            start, least = (
+                seconds_text(self._clock.seconds(one)) for one in (drive.start, drive.start - self._booted)
+            )
+            self.doubt = (
+                f"the pulse at t={start} s may have started {least} s after the boot of the board: "
+                "the log lacks ticks before its boot"
+            )
 
     def _judge_on_since_boot(
         self, drive: _Drive, status: CoilStatus, now: int, tick: int | None, line: int

@@ -6,12 +6,15 @@ status; and a board without a clock of its own keeps it on until the SYNC of its
 sure bound breaks is a violation. One that only the other breaks is a doubt: such a log is not OK.
 
 Stamps are allowed ``TOLERANCE_US`` of jitter. A stamp that goes back is a step of the recorder's clock: what
-lies between the two SYNCs counts as its ticks say, and the log as not judged in real time.
+lies between the two SYNCs counts as its ticks say, and the log as not judged in real time. A stamp that goes
+far ahead of the ticks may be a tick that was held, or such a step too: in doubt it is no part of a back-off.
 """
 
 from array import array
 from bisect import bisect_left
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import takewhile
 
 from fsw.wire.messages import CoilStatus
 from sim.audit.findings import AuditLimits, Violation, ViolationKind, seconds_text
@@ -22,6 +25,8 @@ TOLERANCE_US = 50_000
 """Of a recorder's stamps: the jitter that a limit may seem broken by."""
 _PACE = 0.05
 """Part by which the median second of the stamps may differ from one."""
+_AHEAD = MICRO
+"""A SYNC that comes later than its ticks say by over a second is told."""
 _KEPT = 64
 """SYNCs that are kept: statuses come at most a few ticks after theirs."""
 
@@ -61,6 +66,7 @@ class RecorderJudge:
         self._seconds = array("q")
         self._steps = 0
         self._step = ""
+        self._ahead: list[tuple[int, int, int]] = []  # tick, instant, by how much
         self._pulses: dict[int, _Pulse] = {}
         self._ended: dict[int, tuple[int, int]] = {}  # no sooner and no later
         self._booted: int | None = None
@@ -73,6 +79,9 @@ class RecorderJudge:
         stamp = self._stamp(timestamp_us)
         if self._syncs:
             last_tick, last = self._syncs[-1]
+            ahead = stamp - last - (tick - last_tick) * MICRO
+            if ahead > _AHEAD * self._clock.units:
+                self._ahead.append((tick, stamp, ahead))
             if stamp < last - self._tolerance:
                 if not self._step:
                     back = seconds_text(self._clock.seconds(last - stamp))
@@ -90,9 +99,9 @@ class RecorderJudge:
             self._seconds.append((stamp - self._second[1]) // ticks)
             self._second = tick, stamp
 
-    def boot(self, tick: int) -> None:
-        """The board has started in the interval that ends with ``tick``."""
-        self._booted = self._at(tick)
+    def boot(self, timestamp_us: int) -> None:
+        """The board has started."""
+        self._booted = self._stamp(timestamp_us)
 
     def interrupt(self) -> None:
         """The log, or a run in it, ends."""
@@ -130,6 +139,17 @@ class RecorderJudge:
             return f"its timestamps run at {1 / median:.4g} times the pace of its ticks"
         more = f", and {self._steps - 1} times more" if self._steps > 1 else ""
         return f"{self._step}{more}" if self._step else ""
+
+    def notes(self) -> Iterator[str]:
+        """What a reader must know of the stamps, a sentence each."""
+        if self._ahead and not self._other_pace():
+            tick, _, ahead = self._ahead[0]
+            more = f", and {len(self._ahead) - 1} times more" if len(self._ahead) > 1 else ""
+            by = seconds_text(self._clock.seconds(ahead))
+            yield (
+                f"the recorder's clock goes on by {by} s more than its ticks at tick {tick}{more}: "
+                "ticks that were held, or a step of that clock"
+            )
 
     def found(self) -> list[Violation]:
         """The violations; none where the stamps run at another pace than the ticks."""
@@ -217,7 +237,7 @@ class RecorderJudge:
             (ViolationKind.BOOT, booted, "the boot of the board"),
         ):
             most = min((shown - sooner for sooner, _ in since), default=self._least)
-            least = min((begun - later for _, later in since), default=self._least)
+            least = min((begun - later - self._ahead_since(later) for _, later in since), default=self._least)
             if least >= self._least:
                 continue
             sure = most < self._least
@@ -230,6 +250,11 @@ class RecorderJudge:
                 self._add(kind, tick - 1, coil, line, sentence)
             else:
                 self._doubt(f"the pulse of coil {coil} at tick {tick - 1} may start {gap} s after {event}")
+
+    def _ahead_since(self, instant: int) -> int:
+        """By how much the stamps have gone ahead of the ticks since then."""
+        since = takewhile(lambda one: one[1] > instant, reversed(self._ahead))
+        return sum(ahead for _, _, ahead in since)
 
     def _units(self, milliseconds: int) -> int:
         return milliseconds * 1000 * self._clock.units

@@ -113,7 +113,7 @@ def _entries(path: Path, readline: Callable[[int], bytes], asked: str | None) ->
             if channel is not None:
                 raise LogError(
                     f"{path}: line {number} is of channel {fields[1]}, those before it are of {channel}: "
-                    "name one (--channel), or keep the lines of one"
+                    "keep the lines of one; torquer check and replay read one by --channel"
                 )
             channel = fields[1]
         yield LogEntry(number, *fields)

@@ -24,7 +24,19 @@ JITTER_US = 20_000
 TOLERANCE_MS = 50 + 2 * JITTER_US // 1000
 """Of the auditor, beyond the jitter of both edges."""
 LIMITS = AuditLimits(pulse_us=PULSE_MS * 1000, backoff_us=BACKOFF_MS * 1000)
-ATTACKS = ("none", "hold", "rush", "repeat", "lose", "step", "cut", "join", "tenfold", "hold and rush")
+ATTACKS = (
+    "none",
+    "hold",
+    "rush",
+    "repeat",
+    "lose",
+    "step",
+    "cut",
+    "join",
+    "tenfold",
+    "hold and rush",
+    "rush and step",
+)
 
 
 class Recorded:
@@ -128,8 +140,9 @@ def record(attack: str, has_clock: bool, random: Random) -> Recorded:
             rushed = range(tick, tick + random.choice((1, 5, 10, 15)) * tick_hz)
         if tick in rushed and log.on_ms is None:
             lasts_ms = max(5, period_ms // 10)
-        if attack == "step" and tick in chosen and log.on_ms is None:
-            log.offset_us += random.choice((-3600, -100, -7, 5, 100, 3600)) * 1_000_000
+        if "step" in attack and tick in chosen:  # forward in a pulse it cannot be told from a held tick
+            steps_s = (-3600, -100, -7) if log.on_ms is not None else (-3600, -100, -7, 5, 100, 3600)
+            log.offset_us += random.choice(steps_s) * 1_000_000
         log.run_tick(
             lasts_ms,
             repeats=random.randint(0, 3) if attack == "repeat" else 0,

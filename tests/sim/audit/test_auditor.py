@@ -251,6 +251,27 @@ def test_a_boot_right_after_the_status_of_its_tick_locks_the_next_interval(bus_l
     assert found(audit(log.entries(), AuditLimits())) == [(ViolationKind.BOOT, 150, 150, 0)]
 
 
+@pytest.mark.parametrize(
+    ("start", "missing", "verdict"),
+    [
+        (179, range(80, 91), "violation"),  # 99 s after tick 80, before which it did not boot
+        (180, range(80, 91), "doubt"),
+        (190, range(80, 91), "doubt"),  # 99 s after tick 91, at which it has booted
+        (191, range(80, 91), "OK"),
+        (92, range(91), "doubt"),  # nothing shows how long before tick 91 it has booted
+        (191, range(91), "OK"),
+    ],
+)
+def test_a_boot_among_missing_ticks_may_have_been_at_any_of_them(bus_log, fired, start, missing, verdict):
+    log = bus_log(1, 300, [fired(0, start)], boots=[90])
+    boot = next(entry for entry in log.entries() if entry.frame.can_id == CoilBoot.ID)
+    gone = {log.timestamp_us(tick) for tick in missing}
+    kept = [entry for entry in log.entries() if entry == boot or entry.timestamp_us not in gone]
+    report = audit(kept, AuditLimits())
+    said = "violation" if report.violations else "doubt" if report.doubt else "OK"
+    assert said == verdict
+
+
 # --- levels and coils
 
 

@@ -172,6 +172,24 @@ def test_a_step_back_of_the_recorders_clock_is_one_finding(bus_log, fired):
     assert report.not_real_time == "the recorder's clock goes back by 3599.000 s at tick 151"
 
 
+def test_a_step_ahead_of_the_recorders_clock_is_told_and_breaks_no_limit(bus_log, fired):
+    log = bus_log(1, 400, [fired(0, 100), fired(1, 203)])
+    report = audit(recorded(log, {150: 3_600_000_000, 180: 2_000_000}), AuditLimits())
+    assert report.exit_code == 0
+    told = "the recorder's clock goes on by 3600.000 s more than its ticks at tick 151, and 1 times more"
+    assert f"{told}: ticks that were held, or a step of that clock" in report.notes
+
+
+def test_rushed_ticks_that_a_step_ahead_of_the_recorders_clock_would_hide_are_a_doubt(bus_log, fired):
+    log = bus_log(1, 400, [fired(0, 100), fired(1, 203)])
+    rushed = dict.fromkeys(range(110, 200), -900_000)
+    assert audit(recorded(log, rushed), AuditLimits()).violations
+    log = bus_log(1, 400, [fired(0, 100), fired(1, 203)])
+    report = audit(recorded(log, rushed | {150: 90_000_000}), AuditLimits())
+    assert (report.violations, report.exit_code) == ((), 1)
+    assert "coil 1 at tick 203 may start" in report.doubt
+
+
 def test_a_boot_counts_by_the_recorders_clock(bus_log, fired):
     log = bus_log(1, 400, [fired(0, 250)], boots=[150])
     report = audit(recorded(log, dict.fromkeys(range(160, 200), -900_000)), AuditLimits())
@@ -292,6 +310,13 @@ def test_statuses_that_come_after_their_sync_belong_to_their_tick(bus_log, fired
 def test_a_boot_that_comes_after_its_sync_belongs_to_its_tick(bus_log, fired):
     assert audit(bus_log(1, 200, [fired(1, 150)], boots=[50], late={50}).entries(), AuditLimits()).ok
     assert not audit(bus_log(1, 200, [fired(1, 149)], boots=[50], late={50}).entries(), AuditLimits()).ok
+
+
+def test_a_log_without_its_beginning_says_where_it_begins(bus_log, fired):
+    log = bus_log(10, 1500, [fired(1, 1234)])
+    told = "the log begins at tick 700: what came before it is not judged"
+    assert told in audit(log.entries(700), AuditLimits()).notes
+    assert not any("begins" in note for note in audit(log.entries(0), AuditLimits()).notes)
 
 
 def test_a_log_too_short_to_tell_its_tick_rate_is_judged_by_the_scenarios(bus_log, fired):
