@@ -6,7 +6,7 @@ from fsw.core.actuation.actuator import actuate, update_view, wait_ticks
 from fsw.core.actuation.drives import find_drives
 from fsw.core.actuation.wheel import WheelView
 from fsw.core.algebra.quaternion import rotate
-from fsw.core.algebra.vector import ZERO
+from fsw.core.algebra.vector import ZERO, Vec3
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
@@ -70,8 +70,9 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> Outbox:
     ticks = tick - before.tick if before.tick >= 0 else 1
     motion = wheel.wheel_motion(state.wheel, tick, ticks, config.wheel)
     reference = _predict(state, model, before.tick, motion, config)
-    observation = _update(state, measurements, reference, motion, config)
-    _judge(state, observation, config)
+    wheel_nms = ZERO if motion is None else motion.momentum_nms
+    observation = _update(state, measurements, reference, wheel_nms, config)
+    _judge(state, observation, wheel_nms, config)
     violated = supervise(state, config)
     acks = command(state, observation.measurements, violated, config)
     law_input = _law_input(state, observation, model, config)
@@ -149,7 +150,7 @@ def _update(
     state: FlightState,
     measurements: Measurements,
     reference: Reference | None,
-    motion: WheelMotion | None,
+    wheel_nms: Vec3,
     config: FlightConfig,
 ) -> Observation:
     """Update the estimate by the samples that may be trusted."""
@@ -161,19 +162,18 @@ def _update(
     known = state.estimator.estimate if state.attitude.valid else None
     findings = fdir.examine(measurements, state.health, reference, config.fdir, known)
     fdir.judge_samples(measurements, state.health, findings)
-    momentum_nms = ZERO if motion is None else motion.momentum_nms
-    used = update(state.estimator, measurements, reference, config.estimator, momentum_nms)
+    used = update(state.estimator, measurements, reference, config.estimator, wheel_nms)
     attitude = orbital_attitude(state.estimator.estimate, reference, config.estimator.valid_sigma_rad)
     return Observation(measurements, reference, state.estimator, attitude, used, findings)
 
 
-def _judge(state: FlightState, observation: Observation, config: FlightConfig) -> None:
+def _judge(state: FlightState, observation: Observation, wheel_nms: Vec3, config: FlightConfig) -> None:
     """Judge sensors and coils by all samples, those of isolated sensors included."""
     state.attitude = observation.attitude
     reference, findings, tick = observation.reference, observation.findings, state.tick
     if reference is not None and findings is not None:
         settled = state.syncs.settled(tick)
-        evidence = Evidence(tick, findings, state.coil, reference, observation.used, settled)
+        evidence = Evidence(tick, findings, state.coil, reference, observation.used, settled, wheel_nms)
         state.attitude = fdir.judge(state.health, state.estimator, state.attitude, evidence, config.fdir)
 
 

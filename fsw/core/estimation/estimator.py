@@ -210,7 +210,7 @@ def update(
     rejected = (field is not None and not took_field) + (sun is not None and not took_sun)
     by_cell = NO_CELLS
     if cells is not None and known is not None:
-        by_cell = update_cells(estimate, currents, known, config.mekf, cells, frozen)
+        by_cell = update_cells(estimate, currents, known, config.mekf, cells, frozen, wheel_nms)
         relinearise(estimate, known, config.mekf, cells, frozen)
         took_sun = bool(by_cell.taken)
         rejected += len(by_cell.refused) > 1 and not took_sun  # one alone may be faulty

@@ -102,7 +102,9 @@ def start(q_body_from_eci: Quaternion, omega_body_radps: Vec3, config: MekfConfi
     return Estimate(q_body_from_eci, omega_body_radps, parameters, config.initial_covariance)
 
 
-def correct(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: MekfConfig) -> None:
+def correct(
+    estimate: Estimate, error: Matrix, uncertainty: Matrix, config: MekfConfig, wheel_nms: Vec3 = ZERO
+) -> None:
     """Correct the estimate by something other than a measurement.
 
     Args:
@@ -110,8 +112,9 @@ def correct(estimate: Estimate, error: Matrix, uncertainty: Matrix, config: Mekf
         error: what is to be added, (n), laid out as the error state.
         uncertainty: covariance that this adds, (n, n).
         config: the filter.
+        wheel_nms: momentum of a driven wheel, body axes.
     """
-    _fold(estimate, tuple(error.tolist()), estimate.covariance + uncertainty, config, ZERO)
+    _fold(estimate, tuple(error.tolist()), estimate.covariance + uncertainty, config, wheel_nms)
 
 
 def healthy(estimate: Estimate) -> bool:

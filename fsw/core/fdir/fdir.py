@@ -5,7 +5,7 @@ from math import inf
 from typing import Final, final
 
 from fsw.core.actuation.actuator import CoilView, unexpected
-from fsw.core.algebra.vector import Vec3
+from fsw.core.algebra.vector import ZERO, Vec3
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.estimation.estimator import EstimatorState, Used, discard_estimate, discard_trace
 from fsw.core.estimation.mekf import Estimate
@@ -55,10 +55,10 @@ class Evidence:
 
     ``findings`` are of all that the sensors sent; ``view`` is that of the coil driver; ``used`` is what the
     filter took. ``settled``: the time is not in doubt; otherwise field and Sun may be those of another,
-    and no sensor is judged by them.
+    and no sensor is judged by them. ``wheel_nms`` is the momentum of a driven wheel, body axes.
     """
 
-    __slots__ = ("findings", "reference", "settled", "tick", "used", "view")
+    __slots__ = ("findings", "reference", "settled", "tick", "used", "view", "wheel_nms")
 
     def __init__(
         self,
@@ -68,6 +68,7 @@ class Evidence:
         reference: Reference,
         used: Used,
         settled: bool = True,
+        wheel_nms: Vec3 = ZERO,
     ) -> None:
         self.tick = tick
         self.findings = findings
@@ -75,6 +76,7 @@ class Evidence:
         self.reference = reference
         self.used = used
         self.settled = settled
+        self.wheel_nms = wheel_nms
 
 
 def judge_current(
@@ -155,7 +157,9 @@ def judge(
         retest.retest(coils, estimator, proven and not isolated, config.coils)
         believed = _believed(estimator.estimate, both, proven or isolated, config)
         doubt, tick, view = both.doubt > 1.0, evidence.tick, evidence.view
-        torques.judge_effect(coils, view, reference, estimator, tick, believed, doubt, config.coils)
+        torques.judge_effect(
+            coils, view, reference, estimator, tick, believed, doubt, config.coils, evidence.wheel_nms
+        )
     if changed or both.ended:
         coils.older = coil_health.NONE_OLDER  # a faulty sensor may have shown it
     if both.ended:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from flight_states import altered
 
+from fsw.core.fdir import fdir
 from fsw.core.restart import begin_count
 from fsw.core.state_bytes import checksum
 from fsw.wire.messages import Mode, WheelStatus, WheelTorque
@@ -64,6 +65,18 @@ def test_the_controller_knows_the_momentum_and_the_filter_stays_honest(acting):
     rate = np.subtract(acting.state.attitude.omega_body_orbit_radps, truth.omega_body_orbit_radps)
     assert np.abs(rate).max() < acting.state.attitude.sigma3_rate_radps
     assert acting.state.attitude.sigma3_rate_radps < 2e-3
+
+
+@pytest.mark.interpreted
+def test_the_coils_are_judged_with_the_momentum_of_the_tick(acting, monkeypatch):
+    judged = []
+    monkeypatch.setattr(fdir.torques, "judge_effect", lambda *words: judged.append(words[-1]))
+    before = acting.state.wheel.speed_radps
+    acting.step()
+    mean_nms = 0.5 * WHEEL["inertia_kgm2"] * (before + acting.state.wheel.speed_radps)
+    axis = np.array(WHEEL["axis"]) / np.linalg.norm(WHEEL["axis"])
+    (wheel_nms,) = judged
+    np.testing.assert_allclose(wheel_nms, mean_nms * axis, rtol=1e-3)
 
 
 def test_without_one_nothing_is_asked_of_it_and_the_state_has_no_place_for_it(make_world):

@@ -5,7 +5,7 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from fsw.core.algebra.vector import norm
+from fsw.core.algebra.vector import ZERO, Vec3, norm
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import CellSet, Light
 from fsw.core.estimation.cells.prediction import prediction
@@ -46,6 +46,7 @@ def update_cells(
     config: MekfConfig,
     cells: CellSet,
     frozen: bool = False,
+    wheel_nms: Vec3 = ZERO,
 ) -> CellsUsed:
     """Take the cells that see the Sun, then those that the Earth lights, each gated by itself.
 
@@ -59,6 +60,7 @@ def update_cells(
         config: the filter.
         cells: the cells.
         frozen: whether the parameters keep their values.
+        wheel_nms: momentum of a driven wheel, body axes.
     """
     accepted: list[int] = []
     refused: list[int] = []
@@ -69,7 +71,7 @@ def update_cells(
         took = False
         if current > cells.dark:
             shown, row = cell_shown(known, number, estimate, config)
-            took = _take(estimate, current - shown, row, config, cells, frozen)
+            took = _take(estimate, current - shown, row, config, cells, frozen, wheel_nms)
         if cell in known.by_sun:
             (accepted if took else refused).append(cell)
     return CellsUsed(tuple(accepted), tuple(refused))
@@ -81,14 +83,20 @@ def take_cell(
     """Take the current of a cell; False when the gate refuses it."""
     shown, row = prediction(estimate, cell, seen, config, cells)
     innovation = current - shown - estimate.parameters.cell_excess[cell]
-    return _take(estimate, innovation, row, config, cells, False)
+    return _take(estimate, innovation, row, config, cells, False, ZERO)
 
 
 def _take(
-    estimate: Estimate, innovation: float, row: Matrix, config: MekfConfig, cells: CellSet, frozen: bool
+    estimate: Estimate,
+    innovation: float,
+    row: Matrix,
+    config: MekfConfig,
+    cells: CellSet,
+    frozen: bool,
+    wheel_nms: Vec3,
 ) -> bool:
     noise = np.array([[cells.sigma**2]])
-    return mekf.take(estimate, (innovation,), row, noise, config, GATE_NIS, frozen=frozen)
+    return mekf.take(estimate, (innovation,), row, noise, config, GATE_NIS, 0, frozen, wheel_nms)
 
 
 def fade(estimate: Estimate, config: MekfConfig) -> None:

@@ -27,7 +27,7 @@ import numpy as np
 
 from fsw.core.actuation.pulses import PulseConfig, impulse
 from fsw.core.algebra.quaternion import rotate
-from fsw.core.algebra.vector import Vec3, norm, scale, transform
+from fsw.core.algebra.vector import ZERO, Vec3, norm, scale, transform
 from fsw.core.estimation import mekf
 from fsw.core.estimation.kalman import Cause, Matrix, Trace, unexplained
 from fsw.core.estimation.mekf import Estimate
@@ -134,12 +134,13 @@ def select(trace: Trace, kept: list[int], sums: Matrix) -> Trace:
     return Trace(causes, trace.effect[:, places], sums[places][:, places], trace.measured)
 
 
-def solve(estimate: Estimate, tuning: MekfConfig) -> Solution | None:
+def solve(estimate: Estimate, tuning: MekfConfig, wheel_nms: Vec3 = ZERO) -> Solution | None:
     """Solve for what the causes did, and correct the estimate where a deviation is certain.
 
     Args:
         estimate: of this tick.
         tuning: of the filter.
+        wheel_nms: momentum of a driven wheel, body axes.
 
     Returns:
         The solution, if the causes explain what was measured. Pulses that no coil fault explains are no
@@ -154,13 +155,13 @@ def solve(estimate: Estimate, tuning: MekfConfig) -> Solution | None:
         estimate.trace = None
         return None
     try:
-        return _solve(estimate, trace, tuning)
+        return _solve(estimate, trace, tuning, wheel_nms)
     except np.linalg.LinAlgError:  # from damaged sums
         estimate.trace = None
         return None
 
 
-def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> Solution | None:
+def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig, wheel_nms: Vec3) -> Solution | None:
     covariance: Matrix = np.asarray(np.linalg.inv(trace.sums[:-1, :-1] + np.eye(len(trace.causes))), float)
     covariance = 0.5 * (covariance + covariance.T)
     np.linalg.cholesky(covariance)  # raises if it is not positive, before an inverse of a part of it does
@@ -180,7 +181,7 @@ def _solve(estimate: Estimate, trace: Trace, tuning: MekfConfig) -> Solution | N
     effect, deviation, covariance = trace.effect[:, pulses], deviation[pulses], covariance[pulses][:, pulses]
     certain = deviation**2 > SIGMAS**2 * solution.noise(pulses).diagonal()
     if (certain & effect.any(axis=0)).any():
-        mekf.correct(estimate, effect @ deviation, effect @ covariance @ effect.T, tuning)
+        mekf.correct(estimate, effect @ deviation, effect @ covariance @ effect.T, tuning, wheel_nms)
         left = trace.effect.copy()
         left[:, pulses] = 0.0
         trace.effect = left

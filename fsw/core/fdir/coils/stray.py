@@ -9,7 +9,7 @@ of the fractions into account at once, long before the coil is certain; the trac
 import numpy as np
 
 from fsw.core.algebra.quaternion import rotate
-from fsw.core.algebra.vector import Mat3, Vec3, cross, scale, transform
+from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, scale, transform
 from fsw.core.estimation import mekf
 from fsw.core.estimation.kalman import Cause, Matrix, Trace
 from fsw.core.estimation.mekf import Estimate
@@ -69,7 +69,7 @@ def _places(traced: Trace) -> slice:
     return slice(first, first + 3)
 
 
-def follow(estimate: Estimate, solution: Solution, tuning: MekfConfig) -> Vec3 | None:
+def follow(estimate: Estimate, solution: Solution, tuning: MekfConfig, wheel_nms: Vec3 = ZERO) -> Vec3 | None:
     """Correct the estimate by what the current has certainly done, in whichever coils; its fraction in each.
 
     None while nothing is certain. The fractions stay as uncertain as before: the trace is of the rest.
@@ -78,23 +78,25 @@ def follow(estimate: Estimate, solution: Solution, tuning: MekfConfig) -> Vec3 |
         estimate: of this tick.
         solution: of this tick.
         tuning: of the filter.
+        wheel_nms: momentum of a driven wheel, body axes.
     """
     deviation, weights = _lacking(solution)
     if not deviation @ weights @ deviation > SIGMAS**2:
         return None
-    _shift(estimate, deviation, np.zeros_like(estimate.covariance), tuning)
+    _shift(estimate, deviation, np.zeros_like(estimate.covariance), tuning, wheel_nms)
     first = solution.causes.index(STRAY)
     one, two, three = solution.part[first : first + 3].tolist()
     return one, two, three
 
 
-def settle(estimate: Estimate, coil: int, tuning: MekfConfig) -> None:
+def settle(estimate: Estimate, coil: int, tuning: MekfConfig, wheel_nms: Vec3 = ZERO) -> None:
     """Correct the estimate for a stray current that certainly flows in this coil, and stop tracing it.
 
     Args:
         estimate: of this tick, with the trace of a stray current.
         coil: in which it flows.
         tuning: of the filter.
+        wheel_nms: momentum of a driven wheel, body axes.
 
     Raises:
         ValueError: the estimate has no such trace.
@@ -104,15 +106,17 @@ def settle(estimate: Estimate, coil: int, tuning: MekfConfig) -> None:
         raise ValueError("no stray current is traced")
     lacks = np.eye(3)[coil] - np.array([cause.assumed for cause in traced.causes[_places(traced)]])
     effect = traced.effect[:, _places(traced)][:, coil]
-    _shift(estimate, lacks, MODEL_ERROR**2 * np.outer(effect, effect), tuning)
+    _shift(estimate, lacks, MODEL_ERROR**2 * np.outer(effect, effect), tuning, wheel_nms)
     estimate.trace = _without_stray(estimate.trace or traced)
 
 
-def _shift(estimate: Estimate, parts: Matrix, uncertainty: Matrix, tuning: MekfConfig) -> None:
+def _shift(
+    estimate: Estimate, parts: Matrix, uncertainty: Matrix, tuning: MekfConfig, wheel_nms: Vec3
+) -> None:
     """Correct the estimate by these further fractions of the current; the trace is of what then remains."""
     traced = estimate.trace or effects.empty_trace(estimate)
     flows = _places(traced)
-    mekf.correct(estimate, traced.effect[:, flows] @ parts, uncertainty, tuning)
+    mekf.correct(estimate, traced.effect[:, flows] @ parts, uncertainty, tuning, wheel_nms)
     shift = np.eye(len(traced.sums))
     shift[flows, -1] = -parts  # the innovations less what these parts have done to them
     causes = list(traced.causes)

@@ -3,6 +3,7 @@
 from typing import Final, final
 
 from fsw.core.actuation.actuator import CoilView
+from fsw.core.algebra.vector import ZERO, Vec3
 from fsw.core.estimation.estimator import EstimatorState
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.fdir.coils import effects, explanations, stray
@@ -47,6 +48,7 @@ def judge_effect(
     believed: BelievedParts,
     unexplained: bool,
     config: CoilHealthConfig,
+    wheel_nms: Vec3 = ZERO,
 ) -> None:
     """Compare what the filter had to correct with what pulses, and a stray current, should have done.
 
@@ -61,6 +63,7 @@ def judge_effect(
         believed: the fractions of its effect below which the fault counts as a coil's own.
         unexplained: whether both sensors are in doubt.
         config: limits.
+        wheel_nms: momentum of a driven wheel, body axes.
     """
     estimate, age, b_eci_t = state.estimate, tick - view.fired_tick, reference.b_eci_t
     as_asked = view.driven_level != 0 and view.as_fired
@@ -76,7 +79,7 @@ def judge_effect(
         begins = health.unrequested_ticks == 1
         stray.trace_current(estimate, health.stray_parts, kicks_radps, config.mekf.tick_s, begins)
     if due:
-        _isolate(health, estimate, view.fired.coil if ended else None, believed, config)
+        _isolate(health, estimate, view.fired.coil if ended else None, believed, config, wheel_nms)
     if ended:
         gravity_ps2 = 3.0 * MU_M3PS2 / reference.radius_m**3
         effects.trace_pulse(estimate, view.fired, b_eci_t, gravity_ps2, config.pulses, config.mekf)
@@ -92,6 +95,7 @@ def _isolate(
     ended: int | None,
     believed: BelievedParts,
     config: CoilHealthConfig,
+    wheel_nms: Vec3,
 ) -> None:
     """Isolate the coil that did something other than assumed, if any, and correct the estimate.
 
@@ -104,7 +108,7 @@ def _isolate(
         first, second, third = earlier
         health.older = (Older(kept=first.kept), Older(kept=second.kept), Older(kept=third.kept))
         return
-    solution = effects.solve(estimate, config.mekf)
+    solution = effects.solve(estimate, config.mekf, wheel_nms)
     if solution is None:
         if estimate.trace is None:
             health.older = NONE_OLDER
@@ -119,19 +123,23 @@ def _isolate(
             isolate_coil(health, found[0], coil_fault(found[1], weak.weak_part), config)
             break
     if has_unassigned_torque(health):
-        _assign_torque(health, estimate, solution, config)
+        _assign_torque(health, estimate, solution, config, wheel_nms)
 
 
 def _assign_torque(
-    health: CoilHealth, estimate: Estimate, solution: Solution, config: CoilHealthConfig
+    health: CoilHealth,
+    estimate: Estimate,
+    solution: Solution,
+    config: CoilHealthConfig,
+    wheel_nms: Vec3,
 ) -> None:
     """Isolate the coil in which a stray current certainly flows, or take into account what is known of it."""
     coil = stray.conducting_coil(solution)
     if coil is not None:
         isolate_coil(health, coil, CoilFault.STUCK, config)
-        stray.settle(estimate, coil, config.mekf)
+        stray.settle(estimate, coil, config.mekf, wheel_nms)
         return
-    parts = stray.follow(estimate, solution, config.mekf)
+    parts = stray.follow(estimate, solution, config.mekf, wheel_nms)
     if parts is not None:
         health.stray_parts = parts
 

@@ -7,8 +7,10 @@ import pytest
 from filter_steps import predict
 
 from fsw.core.algebra.vector import ZERO
-from fsw.core.estimation.mekf import start
+from fsw.core.estimation.mekf import correct, start
 from fsw.core.estimation.mekf_config import FilterStep, WheelMotion, mekf_config
+from fsw.core.estimation.parameters import Prior
+from fsw.core.packing import pack
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
 from sim.plant.dynamics.torques import TorqueFunction
 from sim.plant.dynamics.wheel import SpinningWheel
@@ -21,11 +23,11 @@ STILL = Surroundings((1.0, 0.0, 0.0), 0.0, ZERO)
 TICK_S = 0.5
 
 
-def tuned(wheel_body_nms=ZERO):
+def tuned(wheel_body_nms=ZERO, priors=None):
     return mekf_config(
         INERTIA,
         TICK_S,
-        {},
+        priors or {},
         wheel_body_nms=wheel_body_nms,
         magnetometer_sigma_t=2e-7,
         sun_sigma_rad=radians(0.5),
@@ -51,6 +53,20 @@ def test_a_steady_wheel_is_one_of_constant_momentum():
 def test_the_momentum_comes_on_top_of_a_constant_one():
     step = FilterStep(tuned(along(0.1)), 1, WheelMotion(along(0.3)))
     assert step.rotor.wheel_body_nms == pytest.approx(along(0.4))
+
+
+def test_what_a_coil_has_done_corrects_a_fast_body_as_one_with_the_wheels_momentum():
+    """The age of the samples is an error along the motion, which the momentum bends."""
+    late, momentum_nms = {"delay_s": Prior((0.5, 0.6), (0.0, 0.0))}, along(0.3)
+    error, uncertainty = np.full(8, 2e-3), np.diag(np.full(8, 1e-6))
+    constant, driven, without = (
+        start((0.5, -0.5, 0.5, 0.5), (0.2, -0.3, 0.5), tuned(priors=late)) for _ in range(3)
+    )
+    correct(constant, error, uncertainty, tuned(momentum_nms, late))
+    correct(driven, error, uncertainty, tuned(priors=late), momentum_nms)
+    correct(without, error, uncertainty, tuned(priors=late))
+    assert pack(driven) == pack(constant)
+    assert np.abs(driven.covariance - without.covariance).max() > 1e-4 * np.abs(driven.covariance).max()
 
 
 @pytest.mark.parametrize("driven_am2", [ZERO, (0.3, 0.0, -0.2)], ids=["alone", "beside coils"])
