@@ -24,6 +24,8 @@ FASTEST_HZ = 100
 MOST_TICKS, BESIDE_TICK = 10, 0.01
 """How much finer than the samples ticks may be, and how far beside a tick the usual sample may be, ticks."""
 YEAR_DAYS = 366.0
+MOST_OFF = 30.0
+"""Factor between the fields measured and expected that no offset explains: units differ by 100 and more."""
 GPS_EPOCH_UNIX_S, J2000_UNIX_S = 315_964_800.0, 946_728_000.0
 OLD_DAYS = 7.0
 """Elements further away put the satellite tens of kilometres off: 10 nT and more each."""
@@ -83,8 +85,10 @@ def placed(recorded: RecordedPass, tle: Path) -> Along:
         HarnessError: as ``nearest_elements`` and ``along``.
     """
     elements = nearest_elements(tle, recorded.middle_unix_s)
-    _check_clock(recorded, elements)
-    around = screened(along(recorded, elements))
+    _check_clock(recorded, elements, tle)
+    around = along(recorded, elements)
+    _check_unit(around)
+    around = screened(around)
     age_days = around.elements.age_days(recorded.middle_unix_s)
     if abs(age_days) > OLD_DAYS:
         warn(f"{tle}: the nearest element set is {abs(age_days):.0f} days away: its field may be off")
@@ -97,7 +101,7 @@ def placed(recorded: RecordedPass, tle: Path) -> Along:
     return around
 
 
-def _check_clock(recorded: RecordedPass, elements: ElementSet) -> None:
+def _check_clock(recorded: RecordedPass, elements: ElementSet, tle: Path) -> None:
     """Check that the times are not those of another clock, by which the elements would be of the same year.
 
     Raises:
@@ -111,11 +115,27 @@ def _check_clock(recorded: RecordedPass, elements: ElementSet) -> None:
         ("GPS seconds, since 1980", middle_s + GPS_EPOCH_UNIX_S),
         ("seconds since 2000", middle_s + J2000_UNIX_S),
     ):
-        if abs(elements.age_days(unix_s)) <= YEAR_DAYS:
+        there = nearest_elements(tle, unix_s)
+        if abs(there.age_days(unix_s)) <= YEAR_DAYS:
             raise HarnessError(
                 f"{recorded.name}: column 'utc_unix_s' is about {middle_s:.15g}, and the elements are of "
-                f"Unix time {elements.epoch_unix_s} s: is it in {clock}?"
+                f"Unix time {there.epoch_unix_s} s: is it in {clock}?"
             )
+
+
+def _check_unit(around: Along) -> None:
+    """Check that the field is of the order of the Earth's: an offset may be as large, and not much larger.
+
+    Raises:
+        HarnessError: it is not.
+    """
+    measured_nt = float(np.median(np.linalg.norm(around.recorded.mag_nt, axis=1)))
+    expected_nt = float(np.median(around.strength_nt))
+    if not expected_nt / MOST_OFF < measured_nt < expected_nt * MOST_OFF:
+        raise HarnessError(
+            f"{around.recorded.name}: by the unit in its columns the field is about {measured_nt:.3g} nT, "
+            f"and the Earth's is {expected_nt:.3g} nT there: is it in another unit?"
+        )
 
 
 def along(recorded: RecordedPass, elements: ElementSet) -> Along:

@@ -135,6 +135,21 @@ def test_elements_that_are_far_away_are_warned_of(tmp_path, capsys, days, said):
     assert bool(said) == bool(warned)
 
 
+@pytest.mark.parametrize("factor", [1e-9, 1e-5, 1e-3, 1e-2, 1e2, 1e3])
+def test_a_field_of_another_unit_is_asked_about(tmp_path, factor):
+    recorded = made_up(20).along(tmp_path).recorded
+    with pytest.raises(
+        HarnessError, match=r"by the unit in its columns the field is about .*: is it in anot"
+    ):
+        placed(replace(recorded, mag_nt=factor * recorded.mag_nt), TLE)
+
+
+@pytest.mark.parametrize("offset_nt", [0.0, 2e5, -2e5])
+def test_an_offset_as_large_as_they_come_is_no_other_unit(tmp_path, offset_nt):
+    recorded = made_up(20).along(tmp_path).recorded
+    placed(replace(recorded, mag_nt=recorded.mag_nt + offset_nt), TLE)
+
+
 @pytest.mark.parametrize(
     ("clock", "said"),
     [
@@ -153,3 +168,18 @@ def test_times_of_another_clock_are_named(tmp_path, clock, said):
     path.write_text("\n".join([head, *map(",".join, fields)]) + "\n")
     with pytest.raises(HarnessError, match=f"is it in {said}"):
         placed(read_pass(path), TLE)
+
+
+OLDER = """s3_20220919T153638Z
+1 52191U 22033AL  22262.21660011  .00008304  00000+0  36142-3 0  9992
+2 52191  97.3907 342.0333 0011202  29.0466 331.1391 15.22431409 25937
+"""
+
+
+def test_gps_seconds_are_named_where_older_elements_are_nearer_to_them(tmp_path):
+    elements = tmp_path / "tle.txt"
+    elements.write_text(OLDER + TLE.read_text())
+    recorded = made_up(20).along(tmp_path).recorded
+    of_gps = replace(recorded, utc_unix_s=recorded.utc_unix_s - 315_964_782.0)
+    with pytest.raises(HarnessError, match="is it in GPS seconds"):
+        placed(of_gps, elements)
