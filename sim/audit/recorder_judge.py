@@ -137,17 +137,15 @@ class RecorderJudge:
             if not median:
                 return "its timestamps are all equal"
             return f"its timestamps run at {1 / median:.4g} times the pace of its ticks"
-        more = f", and {self._steps - 1} times more" if self._steps > 1 else ""
-        return f"{self._step}{more}" if self._step else ""
+        return f"{self._step}{_more(self._steps)}" if self._step else ""
 
     def notes(self) -> Iterator[str]:
         """What a reader must know of the stamps, a sentence each."""
         if self._ahead and not self._other_pace():
             tick, _, ahead = self._ahead[0]
-            more = f", and {len(self._ahead) - 1} times more" if len(self._ahead) > 1 else ""
             by = seconds_text(self._clock.seconds(ahead))
             yield (
-                f"the recorder's clock goes on by {by} s more than its ticks at tick {tick}{more}: "
+                f"the recorder's clock goes on by {by} s more than its ticks at tick {tick}{_more(len(self._ahead))}: "
                 "ticks that were held, or a step of that clock"
             )
 
@@ -265,3 +263,7 @@ class RecorderJudge:
     def _add(self, kind: ViolationKind, tick: int, coil: int, line: int, sentence: str) -> None:
         seconds = self._clock.seconds(tick * MICRO)
         self.violations.append(Violation(kind, seconds, tick, coil, line, sentence))
+
+
+def _more(count: int) -> str:
+    return {0: "", 1: "", 2: ", and once more"}.get(count, f", and {count - 1} times more")

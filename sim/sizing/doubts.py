@@ -40,6 +40,8 @@ SLIGHT, SLIGHT_NT, SLIGHT_KM = 0.01, 100.0, 1.0
 """Beyond its bound, but of no consequence: part of what the coils can give, bias, way along the track."""
 LEAST_TIMES = 2.5
 """The bound of the torque over drag and light, half of what lets the filter follow them along the orbit."""
+LARGEST_M = 20.0
+"""How far from the mass centre a plate may be, and its edge."""
 LEAST_CURRENT_MA, MOST_CURRENT_MA = 1.0, 10_000.0
 SAME_AT_ANY_TIME = (TcLaw, TcGain, TcSpin, TcOrbitElement, TcParameter)
 """Telecommands that are refused for what they say, not for the state of the satellite."""
@@ -188,6 +190,22 @@ def _sensors(scenario: Scenario) -> Iterator[str]:
         )
 
 
+def _sizes(scenario: Scenario) -> Iterator[str]:
+    view_deg = scenario.sensors.sun.fov_half_deg
+    if view_deg is not None and view_deg <= pi:
+        yield f"sensors.sun.fov_half_deg = {view_deg:g} is a narrow view: is it in deg, not in rad?"
+    for number, plate in enumerate(scenario.body.plates):
+        for key, value, most, unit in (
+            ("area_m2", plate.area_m2, LARGEST_M**2, "m^2"),
+            ("centre_m", hypot(*plate.centre_m), LARGEST_M, "m"),
+        ):
+            if value > most:
+                yield (
+                    f"body.plates: plate {number} has {key} = {value:g}, and coils turn satellites of some "
+                    f"metres: is it in {unit}?"
+                )
+
+
 def _start(scenario: Scenario) -> Iterator[str]:
     rate_degps = hypot(*scenario.initial.rate_degps)
     if rate_degps > FASTEST_DEGPS:
@@ -289,6 +307,7 @@ _JUDGES: tuple[Callable[[Scenario], Iterator[str]], ...] = (
     _ticks,
     _currents,
     _sensors,
+    _sizes,
     _load,
     _beyond_bounds,
     _drag_and_light,

@@ -176,7 +176,7 @@ def test_a_step_ahead_of_the_recorders_clock_is_told_and_breaks_no_limit(bus_log
     log = bus_log(1, 400, [fired(0, 100), fired(1, 203)])
     report = audit(recorded(log, {150: 3_600_000_000, 180: 2_000_000}), AuditLimits())
     assert report.exit_code == 0
-    told = "the recorder's clock goes on by 3600.000 s more than its ticks at tick 151, and 1 times more"
+    told = "the recorder's clock goes on by 3600.000 s more than its ticks at tick 151, and once more"
     assert f"{told}: ticks that were held, or a step of that clock" in report.notes
 
 

@@ -44,6 +44,18 @@ def test_no_scenario_that_ships_is_doubted(scenario):
         ("sensors.magnetometer.noise_nt=9e3", ["noisier"]),
         ("sensors.sun.noise_deg=30", ["sensors.sun.noise_deg = 30", "noisier", "is it in deg?"]),
         ("sensors.magnetometer.saturation_nt=30000", ["saturation_nt = 30000", "field over the poles"]),
+        (
+            "sensors.sun.fov_half_deg=1.05 sensors.sun.boresights=[[1,0,0]]",
+            ["sensors.sun.fov_half_deg = 1.05 is a narrow view", "in deg, not in rad?"],
+        ),
+        (
+            "body.plates=[{area_m2=0.01,normal=[1,0,0]},{area_m2=10000,normal=[0,1,0]}]",
+            ["body.plates: plate 1 has area_m2 = 10000", "is it in m^2?"],
+        ),
+        (
+            "body.plates=[{area_m2=0.01,normal=[1,0,0],centre_m=[50,0,10]}]",
+            ["body.plates: plate 0 has centre_m = 50.9", "is it in m?"],
+        ),
         ("initial.rate_degps=[60,0,0]", ["initial.rate_degps is 60 deg/s"]),
         ("control.leak_s=30", ["control.leak_s = 30", "103 s"]),
         ("disturbance.residual_dipole_am2=[0.002,0,0]", ["residual_dipole_am2 is off by 0.002", "= 0"]),
