@@ -145,8 +145,8 @@ class RecorderJudge:
             tick, _, ahead = self._ahead[0]
             by = seconds_text(self._clock.seconds(ahead))
             yield (
-                f"the recorder's clock goes on by {by} s more than its ticks at tick {tick}{_more(len(self._ahead))}: "
-                "ticks that were held, or a step of that clock"
+                f"the recorder's clock goes on by {by} s more than its ticks at tick {tick}"
+                f"{_more(len(self._ahead))}: ticks that were held, or a step of that clock"
             )
 
     def found(self) -> list[Violation]:
