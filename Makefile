@@ -43,7 +43,8 @@ bin := .venv/bin
 installed := .venv/.installed
 kernel := .venv/.kernel
 compiled := .venv/.compiled
-pip := TORQUER_INTERPRETED=1 $(bin)/pip install --quiet --disable-pip-version-check
+# Python compiles a module at its first import, and most of these are never imported
+pip := TORQUER_INTERPRETED=1 $(bin)/pip install --quiet --disable-pip-version-check --no-compile
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
 .PHONY: help venv environment compiled sil test test-interpreted test-long test-unpaced test-paced lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate validate-recorded same-flights fuzz scenarios attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
