@@ -144,6 +144,15 @@ def test_a_field_of_another_unit_is_asked_about(tmp_path, factor):
         placed(replace(recorded, mag_nt=factor * recorded.mag_nt), TLE)
 
 
+@pytest.mark.parametrize("missing", [np.nan, 0.0], ids=["left empty", "zeros"])
+@pytest.mark.parametrize("part", [0.1, 0.6])
+def test_rows_without_a_field_are_no_other_unit(tmp_path, missing, part):
+    recorded = made_up(200).along(tmp_path).recorded
+    mag_nt = recorded.mag_nt.copy()
+    mag_nt[: round(part * len(mag_nt))] = missing
+    placed(replace(recorded, mag_nt=mag_nt), TLE)
+
+
 @pytest.mark.parametrize("offset_nt", [0.0, 2e5, -2e5])
 def test_an_offset_as_large_as_they_come_is_no_other_unit(tmp_path, offset_nt):
     recorded = made_up(20).along(tmp_path).recorded
