@@ -245,9 +245,12 @@ class _Auditor:
 
     def _boot_in(self, tick: int) -> None:
         """The board has booted in the interval of ``tick``, or sooner where ticks before are missing."""
-        after = self._booted_after
-        sooner = None if after is None and tick > 0 else min(tick, (-1 if after is None else after) + 1)
-        self._boot(tick * MICRO, None if sooner is None else sooner * MICRO)
+        sooner: int | None = None  # nothing shows how long before the log it was
+        if self._booted_after is not None:
+            sooner = min(tick, self._booted_after + 1) * MICRO
+        elif tick == 0:
+            sooner = 0
+        self._boot(tick * MICRO, sooner)
 
     def _boot(self, instant: int, sooner: int | None) -> None:
         self._unreported.boot(instant)
