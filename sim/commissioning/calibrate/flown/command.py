@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import tomli_w
 
-from fsw.input.schema import Nested
+from fsw.input.schema import Nested, TableError, merge, validated
 from fsw.table.table import FlightTable
 from sim.commissioning.calibrate.flown.run_fit import RunCalibration, calibrated
 from sim.commissioning.calibrate.flown.samples import read_samples
@@ -73,10 +73,12 @@ def _read(log: Path, scenario: str | None) -> dict[str, Path | None]:
 
 
 def _tables(found: RunCalibration, table: FlightTable) -> tuple[str, str]:
-    """Both tables as TOML, or why there are none."""
+    """Both tables as TOML, or why there are none; with them the onboard table can be read."""
     try:
-        return tomli_w.dumps(tables(found, table)), ""
-    except HarnessError as error:
+        new = tables(found, table)
+        validated(FlightTable, merge(table.model_dump(), new), "no table is written, as none could fly by it")
+        return tomli_w.dumps(new), ""
+    except (HarnessError, TableError) as error:
         return "", str(error)
 
 

@@ -104,6 +104,17 @@ def test_a_log_too_poor_for_the_tables_still_gives_page_and_document(a_run, good
     assert run(a_run).exit_code == 1
 
 
+def test_tables_by_which_no_satellite_could_fly_are_not_written(a_run, good, calibrated_as):
+    calibrated_as(replace(good, field=replace(good.field, matrix=1e-5 * good.field.matrix)))
+    result = run(a_run, "--out", "c.toml")
+    assert result.exit_code == 1
+    assert (
+        "c.toml: no table is written, as none could fly by it: calibration.magnetometer: matrix"
+        in result.stdout
+    )
+    assert not Path("c.toml").exists()
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
