@@ -17,7 +17,7 @@
 # make scaling    what a campaign costs beside its flights, and what 10^6 runs take, into docs/scaling.md: ten minutes
 # make sizing   flights of what torquer size judges, into docs/sizing.md: a quarter of an hour
 # make soak       72 simulated hours, and an hour on the bench in real time, into docs/soak.md
-# make gains      search the gains of every law for the bodies that compare ships gains for: some hours; stopped, it goes on where it was
+# make gains      search the gains of every law for the bodies that compare ships gains for, on all cores: an hour or two; stopped, it goes on where it was
 # make comparison every law that a body has a use for, on the same bodies, with those gains, into docs/comparison.md: an hour or two; stopped, it goes on where it was
 # make golden     record the golden logs again: after a change that means to alter the answers of fsw
 # make docs      build the documentation into build/docs, each warning an error: half a minute
@@ -142,7 +142,7 @@ test-chromium: venv
 bodies := microsat cubesat3u posat1 pitch-wheel microsat-wheel spinner
 gains: $(bodies:%=gains-%)
 gains-%: venv
-	$(bin)/torquer design $* --laws all --keep sim/design/tuning/found/$*.toml
+	$(bin)/torquer design $* --laws all --keep sim/tuning/found/$*.toml
 
 comparison: venv
 	$(bin)/python tools/comparison.py $(COMPARISON)

@@ -27,14 +27,14 @@ from sim.compare.command import JSON as COMPARED
 from sim.compare.command import compare
 from sim.compare.score import Score
 from sim.compare.table import as_table, error_text, ranked
-from sim.design.tuning.cost import BY_RATE
-from sim.design.tuning.kept import FOLDER as GAINS
 from sim.drawing.page_parts import Table
 from sim.errors import HarnessError
 from sim.record.destination import check_file
 from sim.record.whole_file import replace_file, replace_text
 from sim.report.figures.controlled import Controlled
 from sim.scenario.schema import load
+from sim.tuning.cost import BY_RATE
+from sim.tuning.kept import FOLDER as GAINS
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE, TEMPLATE = ROOT / "docs" / "comparison.md", ROOT / "tools" / "comparison.md.j2"

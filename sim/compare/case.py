@@ -10,10 +10,10 @@ from fsw.input.schema import Nested, merge
 from fsw.table.own_law import declared
 from fsw.table.table import lay_over
 from sim.campaign.flight import Order
-from sim.design.tuning.applicable import aims_of, check_suited, coils_of, is_suited
-from sim.design.tuning.kept import KeptGains
 from sim.errors import HarnessError
 from sim.scenario.schema import Scenario, load
+from sim.tuning.applicable import aims_of, check_suited, coils_of, is_suited
+from sim.tuning.kept import KeptGains
 
 
 class Driver(StrEnum):

@@ -17,7 +17,6 @@ from sim.compare.score import Result, Score, fly_case
 from sim.compare.table import as_csv, as_json, as_text, error_text, ranked
 from sim.compare.yardstick import yardstick
 from sim.console import answer, counted, fail, plain, say
-from sim.design.tuning.kept import KeptGains, body_checksum, read_gains, shipped_gains
 from sim.errors import HarnessError
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.progress import note, progress
@@ -28,6 +27,7 @@ from sim.report.figures.controlled import Controlled
 from sim.report.summary_text import last_orbit
 from sim.scenario.schema import Scenario, load, orbit_period_s, parse_settings
 from sim.statistics.settling import HELD_S
+from sim.tuning.kept import KeptGains, body_checksum, read_gains, shipped_gains
 
 BEST, SCENARIO = "best", "scenario"
 """Gains: those that were found for the body, or the scenario's."""

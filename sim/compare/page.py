@@ -6,7 +6,6 @@ from sim.compare.case import Driver
 from sim.compare.picture import axis_label, colour_of, laws_of, with_unit
 from sim.compare.score import WINDOW_ORBITS, Result, Score
 from sim.compare.table import as_table, error_text
-from sim.design.tuning.kept import KeptGains, gains_text
 from sim.drawing.canvas import style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import PageHeader, PageSection, Table, Tile, sections_page
@@ -14,6 +13,7 @@ from sim.drawing.time_chart import Level, Panel, Series, TimeChart, draw, time_d
 from sim.report.figures.controlled import Controlled
 from sim.scenario.schema import Scenario
 from sim.statistics.settling import HELD_S
+from sim.tuning.kept import KeptGains, gains_text
 
 PANEL_IN = 2.8
 _MEANING = (

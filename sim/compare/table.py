@@ -11,9 +11,9 @@ from typing import Any
 
 from fsw.core.laws.entry import Aim
 from sim.compare.score import Score
-from sim.design.tuning.cost import BY_RATE
 from sim.drawing.page_parts import Table
 from sim.report.figures.controlled import Controlled
+from sim.tuning.cost import BY_RATE
 
 SCHEMA_VERSION = 2
 ITS_UNIT = "its"

@@ -1,9 +1,9 @@
 """What the laws of a comparison are judged by: the quantity that they are meant to control on this body."""
 
-from sim.design.tuning.applicable import aims_of
-from sim.design.tuning.cost import BY_RATE
 from sim.report.figures.controlled import SETTLED_DEG, Controlled, controlled
 from sim.scenario.schema import Scenario, flight_table
+from sim.tuning.applicable import aims_of
+from sim.tuning.cost import BY_RATE
 
 WORDS = {"spin": "spin rate about axis 1", "rate": "rate"}
 

@@ -11,8 +11,8 @@ from fsw.core.laws.entry import Aim
 from sim.compare.case import Driver
 from sim.compare.score import Score
 from sim.compare.yardstick import yardstick
-from sim.design.tuning.kept import FOLDER
 from sim.scenario.schema import load
+from sim.tuning.kept import FOLDER
 
 GOOD = Score(
     "pd", Aim.THREE_AXIS, Driver.PULSED, 1.5, 1.25, 2.5, 0.001, 4000.0, 70, 0.02, "POINT", True, tuned=True

@@ -62,10 +62,9 @@ def design(
         laws, {"--gains": gains, "--write": write, "--out": out}, {"--keep": keep, "--flights": flights}
     )
     if laws is not None:
-        from sim.compare.whole_flight import fly_whole
-        from sim.design.tuning.command import design_laws
+        from sim.tuning.command import design_laws
 
-        kept = design_laws(scenario, over, laws, keep, fly_whole, flights)
+        kept = design_laws(scenario, over, laws, keep, flights)
         answer({"gains": kept.rows})
         return 0
     if out is None and not current().as_json:

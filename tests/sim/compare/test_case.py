@@ -6,9 +6,9 @@ from fsw.core.laws.entry import Aim, Need
 from fsw.core.laws.table import LAWS
 from fsw.input.schema import TableError
 from sim.compare.case import Driver, cases, chosen_laws
-from sim.design.tuning.kept import KeptGains
 from sim.errors import HarnessError
 from sim.scenario.schema import load
+from sim.tuning.kept import KeptGains
 
 BOTH = (Driver.PULSED, Driver.CONTINUOUS)
 

@@ -24,7 +24,7 @@ from math import pi
 import numpy as np
 
 from fsw.core.algebra.quaternion import from_small_rotation, rotate
-from fsw.core.algebra.vector import Mat3, Vec3, norm, sub
+from fsw.core.algebra.vector import Mat3, Vec3, add, cross, norm, sub
 from fsw.core.estimation.attitude import Attitude
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.optimal.lqr import (
@@ -133,7 +133,8 @@ def lqg_field(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Cont
     if not 0.0 < seconds <= table.problem.step_s:
         x, seconds = np.zeros(6), config.tick_s
     else:
-        x = _moved(np.array(memory[1:7]), np.array(memory[7:10]), b_orbit, seconds, table, config)
+        m1, m2, m3 = memory[7:]
+        x = _moved(np.array(memory[1:7]), (m1, m2, m3), b_orbit, seconds, table, config)
     if inputs.sample.tick == inputs.tick:
         x = _corrected(x, inputs.sample.b_body_t, b_orbit, seconds, table.observer[step])
     w1, w2, w3, t1, t2, t3 = x.tolist()
@@ -148,13 +149,13 @@ def lqg_field(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Cont
 
 
 def _moved(
-    x: Array, m_orbit_am2: Array, b_orbit: Vec3, seconds: float, table: Schedule, config: ControlConfig
+    x: Array, m_orbit_am2: Vec3, b_orbit: Vec3, seconds: float, table: Schedule, config: ControlConfig
 ) -> Array:
     """The state after ``seconds`` under the dipole given and the torque on the nominal attitude."""
     w0 = 2.0 * pi / STEPS / table.problem.step_s
     free = free_step(config.inertia_kgm2, config.wheel_body_nms, w0, seconds)
-    torque = np.cross(m_orbit_am2, np.array(b_orbit)) + np.array(table.problem.resting_nm)
-    moved: Array = free @ np.concatenate([x, torque])
+    torque_nm = add(cross(m_orbit_am2, b_orbit), table.problem.resting_nm)
+    moved: Array = free @ np.concatenate([x, torque_nm])
     return moved
 
 

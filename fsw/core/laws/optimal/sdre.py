@@ -24,7 +24,7 @@ from math import sqrt, tau
 import numpy as np
 
 from fsw.core.algebra.quaternion import Quaternion, canonical, dcm
-from fsw.core.algebra.vector import Mat3, Vec3, skew
+from fsw.core.algebra.vector import Mat3, Vec3, cross, skew
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.motion import wheel_momentum
 from fsw.core.laws.optimal.lqr import (
@@ -159,8 +159,8 @@ def _course(
     for problem, b, gain in zip(problems, fields[:, :, 0], gains, strict=True):
         known = np.concatenate([states[-1], torque_nm])
         m1, m2, m3 = (gain @ known).tolist()
-        m = np.array(within((m1, m2, m3), most_am2))
-        known[6:] += np.cross(m, b)
+        b1, b2, b3 = b.tolist()
+        known[6:] += cross(within((m1, m2, m3), most_am2), (b1, b2, b3))
         states.append(problem.free @ known)
     return states
 

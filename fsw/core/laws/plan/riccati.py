@@ -245,4 +245,7 @@ def pushes_of(problem: Problem, b_orbit_t: Array) -> Array:
 
 def skews(v: Array) -> Array:
     """[v x], shape (..., 3, 3) for v of shape (..., 3)."""
-    return np.cross(np.eye(3), v[..., None, :]).swapaxes(-1, -2) * -1.0
+    whole = np.zeros((*v.shape, 3))
+    whole[..., 2, 1], whole[..., 0, 2], whole[..., 1, 0] = v[..., 0], v[..., 1], v[..., 2]
+    whole[..., 1, 2], whole[..., 2, 0], whole[..., 0, 1] = -v[..., 0], -v[..., 1], -v[..., 2]
+    return whole

@@ -11,7 +11,7 @@ from fsw.core.laws.predictive.nmpc import NmpcGains, NmpcReferenceGains
 from fsw.input.schema import Nested
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.design.theory.bodies import BODIES
-from sim.design.tuning.flown import RigidFlight
+from sim.tuning.flown import RigidFlight
 from sim.validate.review.figures import judged
 from sim.validate.review.law_flight import LawFlight, fly
 from sim.validate.review.rigid.trial import NEAR, RigidTrial, Trial, TrialFigure, over

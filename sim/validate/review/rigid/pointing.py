@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from fsw.core.laws.optimal.lqr import LqrGains
 from fsw.input.schema import Nested
 from sim.campaign.claim import Study
-from sim.design.tuning.flown import RigidFlight
+from sim.tuning.flown import RigidFlight
 from sim.validate.review.rigid.trial import NEAR, RigidTrial, Trial, TrialFigure, gains, over
 from sim.validate.review.satellites.fifty_kg import BODY, PD
 

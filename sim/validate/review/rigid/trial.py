@@ -6,9 +6,9 @@ from typing import Any
 
 from fsw.input.schema import Nested, merge
 from sim.campaign.claim import Claim, ClaimOutcome, Study
-from sim.design.tuning.flown import RigidFlight
-from sim.design.tuning.rigid_flight import fly
 from sim.scenario.schema import load
+from sim.tuning.flown import RigidFlight
+from sim.tuning.rigid_flight import fly
 
 REVIEW = "Ovchinnikov, Roldugin 2019"
 BASE: Nested = {

@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fsw.core.laws.entry import Aim
-from sim.design.tuning.flown import FlownMotion
 from sim.scenario.schema import Scenario, flight_table
 from sim.statistics.settling import Settling, held_ticks
+from sim.tuning.flown import FlownMotion
 
 Array = NDArray[np.float64]
 BY_RATE = frozenset({Aim.RATE, Aim.SPIN, Aim.SUN})

@@ -18,12 +18,12 @@ from typing_extensions import TypedDict
 from fsw.input.schema import Nested
 from fsw.input.text_file import read_text
 from fsw.input.toml_text import MOST_BYTES, BoundsError
-from sim.design.tuning.applicable import coils_of
-from sim.design.tuning.free_gains import flat
-from sim.design.tuning.search import SEED, TunedGains
 from sim.errors import HarnessError
 from sim.record.whole_file import replace_file
 from sim.scenario.schema import Scenario, flight_table
+from sim.tuning.applicable import coils_of
+from sim.tuning.free_gains import flat
+from sim.tuning.search import SEED, TunedGains
 
 
 class GainRow(TypedDict):
@@ -76,7 +76,7 @@ class KeptGains:
         if found.cost.settle_orbits is not None:
             row["settle_orbits"] = round(found.cost.settle_orbits, 4)
         of_driver = dict(sorted({**self.rows.get(found.driver, {}), found.law: row}.items()))
-        return replace(self, rows={**self.rows, found.driver: of_driver})
+        return replace(self, rows=dict(sorted({**self.rows, found.driver: of_driver}.items())))
 
 
 def body_checksum(scenario: Scenario) -> int:

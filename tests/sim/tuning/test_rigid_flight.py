@@ -8,8 +8,8 @@ from fsw.input.schema import merge
 from sim.design.from_scenario import body_of
 from sim.design.theory.floquet import monodromy
 from sim.design.theory.linear import Gains, closed_loop, dipole_field
-from sim.design.tuning.rigid_flight import fly
 from sim.scenario.schema import load
+from sim.tuning.rigid_flight import fly
 
 CALM = {
     "knowledge": "perfect",

@@ -8,12 +8,12 @@ from fsw.core.laws.entry import Aim
 from fsw.core.laws.table import LAWS
 from sim.design.from_scenario import body_of
 from sim.design.theory.search import natural_gains
-from sim.design.tuning import search
-from sim.design.tuning.cost import Cost
-from sim.design.tuning.free_gains import FreeGain, as_control, common_gains, flat, own_gains
-from sim.design.tuning.search import tune
 from sim.errors import HarnessError
 from sim.scenario.schema import load
+from sim.tuning import search
+from sim.tuning.cost import Cost
+from sim.tuning.free_gains import FreeGain, as_control, common_gains, flat, own_gains
+from sim.tuning.search import tune
 
 PULSED = {"coils": {"driver": "pulsed"}}
 
@@ -42,34 +42,34 @@ def bowl(monkeypatch):
 
 
 def test_it_keeps_to_its_budget_and_finds_the_least(bowl):
-    found = tune("microsat", PULSED, "pd", as_rigid, budget=60)
+    found = tune("microsat", PULSED, "pd", budget=60, whole=as_rigid)
     assert len(bowl) == found.flights <= 60
     assert found.cost.total < 0.2 < found.before.total
     assert found.control["k_w"] == pytest.approx(1e7, rel=0.2)
 
 
 def test_twice_the_same(bowl):
-    assert tune("microsat", PULSED, "pd", as_rigid, budget=20) == tune(
-        "microsat", PULSED, "pd", as_rigid, budget=20
+    assert tune("microsat", PULSED, "pd", budget=20, whole=as_rigid) == tune(
+        "microsat", PULSED, "pd", budget=20, whole=as_rigid
     )
 
 
 def test_a_gain_that_the_law_does_not_use_is_not_searched(monkeypatch, bowl):
     monkeypatch.setattr(search, "cost_of", lambda control, *_: Cost(abs(control.k_w / 1e7 - 1.0), 1.0, 0.1))
-    tune("microsat", PULSED, "pd", as_rigid, budget=20)
+    tune("microsat", PULSED, "pd", budget=20, whole=as_rigid)
     searched = [k_a for _, k_a in bowl[3:]]
     assert set(searched) == {load("microsat").control.k_a}
 
 
 def test_the_scenarios_gains_stay_where_nothing_better_is_found(monkeypatch, bowl):
     monkeypatch.setattr(search, "cost_of", lambda *_: Cost(1.0, None, 5.0))
-    found = tune("microsat", PULSED, "pd", as_rigid, budget=8)
+    found = tune("microsat", PULSED, "pd", budget=8, whole=as_rigid)
     assert (found.control, found.cost) == ({}, found.before)
 
 
 def test_a_value_that_no_table_allows_is_a_lost_flight(monkeypatch, bowl):
     monkeypatch.setattr(search, "own_gains", lambda law: (FreeGain("gains.lqr.effort", 1e-9, 1e-8),))
-    found = tune("microsat", PULSED, "lqr", as_rigid, budget=12)
+    found = tune("microsat", PULSED, "lqr", budget=12, whole=as_rigid)
     assert "gains" not in found.control
 
 
@@ -92,7 +92,7 @@ class TestWholeFlights:
 
     def test_gains_that_fail_there_give_way_to_the_next_best_that_are_not_near_them(self, bowl):
         whole, flown = self.refusing(1e7)
-        found = tune("microsat", PULSED, "pd", whole, budget=60)
+        found = tune("microsat", PULSED, "pd", budget=60, whole=whole)
         assert flown[0] == load("microsat").control.k_w
         assert flown[1] == pytest.approx(1e7, rel=0.2)
         assert abs(log(found.control["k_w"] / 1e7)) >= 0.25
@@ -106,12 +106,12 @@ class TestWholeFlights:
                 raise HarnessError("lost")
             return scenario.control
 
-        found = tune("microsat", PULSED, "pd", whole, budget=60)
+        found = tune("microsat", PULSED, "pd", budget=60, whole=whole)
         assert (found.control, found.cost) == ({}, found.before)
 
     def test_few_are_flown(self, bowl):
         whole, flown = self.refusing(*(1e6 * 1.2**power for power in range(40)))
-        tune("microsat", PULSED, "pd", whole, budget=60)
+        tune("microsat", PULSED, "pd", budget=60, whole=whole)
         assert len(flown) <= 1 + search.CANDIDATES
 
 

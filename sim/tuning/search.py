@@ -24,12 +24,13 @@ from scipy.stats import qmc
 from fsw.core.laws.table import LAWS
 from fsw.input.schema import Nested, TableError, merge
 from fsw.table.table import lay_over
-from sim.design.tuning.cost import LOST, Cost, cost_of
-from sim.design.tuning.flown import FlownMotion
-from sim.design.tuning.free_gains import FreeGain, as_control, common_gains, flat, own_gains
-from sim.design.tuning.rigid_flight import fly
 from sim.errors import HarnessError
 from sim.scenario.schema import Scenario, load
+from sim.tuning.cost import LOST, Cost, cost_of
+from sim.tuning.flown import FlownMotion
+from sim.tuning.free_gains import FreeGain, as_control, common_gains, flat, own_gains
+from sim.tuning.rigid_flight import fly
+from sim.tuning.whole_flight import fly_whole
 
 BUDGET = 24
 """Flights for a law."""
@@ -48,7 +49,6 @@ USED = 1e-9
 DIRECT: Nested = {"knowledge": "perfect", "field": {"model": "direct_dipole"}}
 
 Array = NDArray[np.float64]
-Watch = Callable[[int], None]
 WholeFlight = Callable[[Scenario, int, float], FlownMotion]
 """Flies a scenario as it is, with filter, boards and bus, with a seed, for so many orbits."""
 
@@ -84,14 +84,12 @@ class _Trials:
     orbits: float
     step_s: float | None
     whole: WholeFlight
-    watch: Watch
     flown: list[tuple[float, Nested]] = field(default_factory=list)
 
     def cost(self, control: Nested) -> Cost:
         """Of a flight of the rigid body with these gains."""
         found = self._cost(control, DIRECT, lambda scenario: fly(scenario, self.orbits, self.step_s))
         self.flown.append((found.total, control))
-        self.watch(len(self.flown))
         return found
 
     def whole_cost(self, control: Nested) -> Cost:
@@ -122,11 +120,10 @@ def tune(
     scenario: str,
     over: Nested,
     law: str,
-    whole: WholeFlight,
     budget: int = BUDGET,
     orbits: float = ORBITS,
     step_s: float | None = None,
-    watch: Watch = lambda done: None,
+    whole: WholeFlight = fly_whole,
 ) -> TunedGains:
     """The best gains of a law of the table.
 
@@ -134,17 +131,16 @@ def tune(
         scenario: its name or path.
         over: laid over it, the driver among it.
         law: the name of the law.
-        whole: flies a scenario as it is.
         budget: flights of the search.
         orbits: length of each.
         step_s: of the flights; None: as ``fly`` has it.
-        watch: called with the number of flights done.
+        whole: flies a scenario as it is.
 
     Raises:
         TableError: the scenario is not valid.
     """
     as_it_is = load(scenario, over)
-    trials = _Trials(scenario, over, law, orbits, step_s, whole, watch)
+    trials = _Trials(scenario, over, law, orbits, step_s, whole)
     before = trials.cost({})
     free = [*_used(trials, common_gains(as_it_is), before), *own_gains(law)]
     if free:

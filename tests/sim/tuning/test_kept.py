@@ -2,10 +2,12 @@
 
 import pytest
 
-from sim.design.tuning import command, kept
-from sim.design.tuning.applicable import is_suited, laws_for
-from sim.design.tuning.cost import Cost
-from sim.design.tuning.kept import (
+from sim.errors import HarnessError
+from sim.scenario.schema import load, shipped_names
+from sim.tuning import command, kept
+from sim.tuning.applicable import is_suited, laws_for
+from sim.tuning.cost import Cost
+from sim.tuning.kept import (
     KeptGains,
     body_checksum,
     gains_text,
@@ -13,9 +15,7 @@ from sim.design.tuning.kept import (
     shipped_gains,
     write_gains,
 )
-from sim.design.tuning.search import TunedGains
-from sim.errors import HarnessError
-from sim.scenario.schema import load, shipped_names
+from sim.tuning.search import TunedGains
 
 FOUND = TunedGains(
     "lqr",
@@ -25,10 +25,6 @@ FOUND = TunedGains(
     Cost(0.9, None, 2.0),
     24,
 )
-
-
-def no_flight(scenario, seed, orbits):
-    raise AssertionError("what searches is replaced")
 
 
 @pytest.fixture
@@ -135,17 +131,26 @@ class TestCommand:
 
     def test_each_law_by_each_driver_that_it_has_a_use_for(self, searched, tmp_path, capsys):
         path = tmp_path / "a.toml"
-        found = command.design_laws("microsat", {}, "pd,pulse_mpc", path, no_flight)
+        found = command.design_laws("microsat", {}, "pd,pulse_mpc", path, workers=1)
         assert searched == [("pd", "pulsed"), ("pulse_mpc", "pulsed"), ("pd", "continuous")]
         assert read_gains(path) == found
         assert "pd, pulsed: settled after 1.00 orbits, then 0.3 RMS" in capsys.readouterr().out
 
     def test_what_the_file_has_is_not_searched_again(self, searched, tmp_path):
         path = tmp_path / "a.toml"
-        command.design_laws("microsat", {}, "pd", path, no_flight)
+        command.design_laws("microsat", {}, "pd", path, workers=1)
         searched.clear()
-        command.design_laws("microsat", {}, "pd,lqr", path, no_flight)
+        command.design_laws("microsat", {}, "pd,lqr", path, workers=1)
         assert {law for law, _ in searched} == {"lqr"}
+
+    @pytest.mark.long
+    def test_two_processes_find_what_one_finds(self, tmp_path):
+        one, two = (
+            command.design_laws("microsat", {}, "pd,lqr", tmp_path / f"{workers}.toml", 5, 0.3, workers)
+            for workers in (1, 2)
+        )
+        assert one == two
+        assert (tmp_path / "1.toml").read_bytes() == (tmp_path / "2.toml").read_bytes()
 
     @pytest.mark.parametrize(
         ("over", "flights"),
@@ -154,13 +159,13 @@ class TestCommand:
     )
     def test_a_file_of_something_else_is_left_alone(self, searched, tmp_path, over, flights):
         path = tmp_path / "a.toml"
-        command.design_laws("microsat", {}, "pd", path, no_flight)
+        command.design_laws("microsat", {}, "pd", path, workers=1)
         before = path.read_bytes()
         searched.clear()
         with pytest.raises(
             HarnessError, match=r"a\.toml: holds gains of another body, .* give --keep another"
         ):
-            command.design_laws("microsat", over, "pd", path, no_flight, flights)
+            command.design_laws("microsat", over, "pd", path, flights, workers=1)
         assert (path.read_bytes(), searched) == (before, [])
 
     @pytest.mark.parametrize(
@@ -170,7 +175,7 @@ class TestCommand:
         path = tmp_path / "a.toml"
         path.mkdir() if text is None else path.write_text(text)
         with pytest.raises(HarnessError, match=says) as told:
-            command.design_laws("microsat", {}, "pd", path, no_flight)
+            command.design_laws("microsat", {}, "pd", path, workers=1)
         assert "Errno" not in str(told.value)
         assert path.is_dir() if text is None else path.read_text() == text
         assert searched == []
@@ -181,7 +186,7 @@ class TestCommand:
 
     def test_an_unknown_law_is_named(self, tmp_path):
         with pytest.raises(HarnessError, match="--laws pdd: there is no law 'pdd'"):
-            command.design_laws("microsat", {}, "pdd", tmp_path / "a.toml", no_flight)
+            command.design_laws("microsat", {}, "pdd", tmp_path / "a.toml")
 
     def test_a_body_that_spins_has_shorter_steps(self):
         assert command.step_s(load("microsat")) == 10.0

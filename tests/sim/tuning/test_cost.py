@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from fsw.core.laws.entry import Aim
-from sim.design.tuning.cost import LOST, cost_of
-from sim.design.tuning.flown import FlownMotion
 from sim.scenario.schema import load
+from sim.tuning.cost import LOST, cost_of
+from sim.tuning.flown import FlownMotion
 
 ROWS, STEP_S = 400, 10.0
 """Four orbits of a hundred rows."""

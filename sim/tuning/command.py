@@ -1,20 +1,24 @@
 """``torquer design --laws``: the best gains of each law on a body, kept as they are found."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from fsw.core.laws.table import LAWS
 from fsw.input.near import did_you_mean
 from fsw.input.schema import Nested, merge
+from sim.campaign.claim import Study
+from sim.campaign.runner import StudyResult, run
 from sim.console import counted, say
-from sim.design.tuning.applicable import check_suited, coils_of, is_suited, laws_for
-from sim.design.tuning.kept import KeptGains, body_checksum, gains_text, read_gains, write_gains
-from sim.design.tuning.rigid_flight import STEP_S
-from sim.design.tuning.search import BUDGET, ORBITS, SEED, TunedGains, WholeFlight, tune
 from sim.errors import HarnessError
-from sim.progress import Watch, progress
+from sim.progress import progress
 from sim.scenario.schema import Scenario, load
+from sim.tuning.applicable import check_suited, coils_of, is_suited, laws_for
+from sim.tuning.kept import KeptGains, body_checksum, gains_text, read_gains, write_gains
+from sim.tuning.rigid_flight import STEP_S
+from sim.tuning.search import BUDGET, ORBITS, SEED, TunedGains, tune
 
 DRIVERS = ("pulsed", "continuous")
 FASTEST_RAD = 0.4
@@ -26,9 +30,9 @@ def design_laws(
     over: Nested,
     laws: str,
     path: Path | None,
-    whole: WholeFlight,
     flights: int | None = None,
     orbits: float = ORBITS,
+    workers: int | None = None,
 ) -> KeptGains:
     """Search the gains of laws for a scenario, print them, and keep each in the file once it is found.
 
@@ -39,9 +43,9 @@ def design_laws(
         over: laid over it.
         laws: names with commas between, or ``all`` that suit the body.
         path: the file; None: ``<scenario>-gains.toml``.
-        whole: flies a scenario as it is.
         flights: for each law; None: ``BUDGET``.
         orbits: length of each flight.
+        workers: processes, each of which searches a law; None: as many as there are cores.
 
     Raises:
         TableError: the scenario is not valid, or has not what a law needs.
@@ -65,23 +69,26 @@ def design_laws(
         for law in chosen
         if is_suited(law, scenario, driver) and kept.control(driver, law) is None
     ]
-    with progress(
-        f"gains of {counted(len(chosen), 'law')} for {scenario.name}", len(wanted) * budget
-    ) as watch:
-        for number, (driver, law) in enumerate(wanted):
-            values = merge(over, coils_of(scenario, driver))
-            onward = _after(watch, number * budget)
-            found = tune(name, values, law, whole, budget, orbits, step_s(scenario), onward)
-            kept = kept.with_row(found)
-            write_gains(path, kept)
-            say(line(found))
+    searches = [
+        partial(tune, name, merge(over, coils_of(scenario, driver)), law, budget, orbits, step_s(scenario))
+        for driver, law in wanted
+    ]
+    studies = [
+        Study(f"{law}, {driver}", (search,), lambda found: [])
+        for (driver, law), search in zip(wanted, searches, strict=True)
+    ]
+
+    def keep(finished: StudyResult) -> None:
+        nonlocal kept
+        found = finished.results[0]
+        kept = kept.with_row(found)
+        write_gains(path, kept)
+        say(line(found))
+
+    with progress(f"gains of {counted(len(chosen), 'law')} for {scenario.name}", len(wanted)) as watch:
+        run(studies, workers or os.cpu_count() or 1, watch, keep)
     say(f"gains: {path}")
     return kept
-
-
-def _after(watch: Watch, done_before: int) -> Watch:
-    """Counts on from what was done before."""
-    return lambda done: watch(done_before + done)
 
 
 def step_s(scenario: Scenario) -> float:

@@ -30,12 +30,12 @@ from fsw.core.orbit.ephemeris import Reference
 from fsw.table.config import flight_config
 from fsw.table.schedules import planned_pulses
 from fsw.wire.messages import CoilFire, Mode
-from sim.design.tuning.flown import RigidFlight
-from sim.design.tuning.orbit_path import Path, path_of
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
 from sim.plant.dynamics.torques import BodyTorque
 from sim.plant.rotation import Quaternion
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
+from sim.tuning.flown import RigidFlight
+from sim.tuning.orbit_path import Path, path_of
 
 STEP_S = 10.0
 NO_FAULTS = (0, 0, 0)

@@ -1,8 +1,8 @@
 """A flight of a scenario as it is, as the search of gains judges it."""
 
 from sim.campaign.flight import record_scenario
-from sim.design.tuning.flown import FlownMotion
 from sim.scenario.schema import Scenario, orbit_period_s
+from sim.tuning.flown import FlownMotion
 
 
 def fly_whole(scenario: Scenario, seed: int, orbits: float) -> FlownMotion:
