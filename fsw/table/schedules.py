@@ -9,11 +9,11 @@ import numpy as np
 
 from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.algebra.vector import Mat3, Vec3, cross, dot, inverse, norm
-from fsw.core.laws.optimal.averaged import averaged_schedule
-from fsw.core.laws.optimal.disturbed import disturbed_schedule
-from fsw.core.laws.optimal.field_only import field_only_schedule
-from fsw.core.laws.optimal.h_infinity import robust_schedule
-from fsw.core.laws.optimal.lqr import STEPS, LqrGains, schedule
+from fsw.core.laws.h_infinity import robust_schedule
+from fsw.core.laws.lqg_field import field_only_schedule
+from fsw.core.laws.lqr import STEPS, LqrGains, schedule
+from fsw.core.laws.lqr_averaged import averaged_schedule
+from fsw.core.laws.lqr_disturbed import disturbed_schedule
 from fsw.core.laws.plan.cost_to_go import rounded_problem, rounded_schedule
 from fsw.core.laws.plan.orbit_ahead import sight
 from fsw.core.laws.plan.pulse_model import PulseModel, choices

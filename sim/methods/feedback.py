@@ -7,7 +7,7 @@ METHODS: tuple[Method, ...] = (
         name="PD law, projected (`pd`)",
         source="[O19] 3.1 eq. 9 [68, 69]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/pd.py",
+        where="fsw/core/laws/pd.py",
         claim=(
             "With small enough gains the nominal attitude is asymptotically stable, though the "
             "projection is not the Lyapunov law."
@@ -21,7 +21,7 @@ METHODS: tuple[Method, ...] = (
         name="filtered attitude in place of the rate (`output_feedback`)",
         source="[O19] 3.1 [68]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/output_feedback.py",
+        where="fsw/core/laws/output_feedback.py",
         claim="The attitude converges without a measured rate.",
         claims=("review.feedback.output.final",),
     ),
@@ -46,7 +46,7 @@ METHODS: tuple[Method, ...] = (
         name="inertial PD law, gains by averaging and Floquet theory (`pd_inertial`)",
         source="[O19] 3.1 [71]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/inertial.py, sim/design/feedback/inertial.py",
+        where="fsw/core/laws/pd_inertial.py, sim/design/feedback/inertial.py",
         claim="A simple scheme by analytical results and Floquet theory gives gains for inertial pointing.",
         claims=(
             "review.feedback.inertial.pointing",
@@ -118,7 +118,7 @@ METHODS: tuple[Method, ...] = (
         name="dipole held over several steps (`pd_held`)",
         source="[O19] 3.1 [78]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/held.py, sim/design/feedback/held.py",
+        where="fsw/core/laws/pd_held.py, sim/design/feedback/held.py",
         claim=(
             "A dipole that is constant over a control interval stabilises with gains chosen for the interval."
         ),
@@ -147,7 +147,7 @@ METHODS: tuple[Method, ...] = (
         name="measuring and acting apart (`pd_apart`)",
         source="[O19] 3.1 [79]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/held.py",
+        where="fsw/core/laws/pd_held.py",
         claim="The same holds where intervals of measuring are as long as those of acting.",
         claims=("review.feedback.held.apart",),
     ),
@@ -155,7 +155,7 @@ METHODS: tuple[Method, ...] = (
         name="delayed output feedback (`pd_delayed`)",
         source="[O19] 3.1 [80]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/delayed.py",
+        where="fsw/core/laws/pd_delayed.py",
         claim="The attitude and the delayed attitude hold three axes.",
         claims=("review.feedback.delayed", "review.feedback.delayed.pd"),
         remark=(
@@ -166,7 +166,7 @@ METHODS: tuple[Method, ...] = (
         name="projection weighted by axes (`pd_weighted`)",
         source="[O19] 3.1 [81]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/projection.py",
+        where="fsw/core/laws/projection.py",
         claim="A weight on the axis of small moment points it far better at some cost of the others.",
         claims=(
             "review.feedback.weighted.gain",
@@ -177,7 +177,7 @@ METHODS: tuple[Method, ...] = (
         name="regularised inverse (`pd_regularised`)",
         source="[O19] 3.1 [82, 83]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/projection.py",
+        where="fsw/core/laws/projection.py",
         claim=(
             "A small addition makes the matrix of the cross product regular; the law stays that of the "
             "projection."
@@ -188,7 +188,7 @@ METHODS: tuple[Method, ...] = (
         name="error of the field's direction (`field_direction`)",
         source="[O19] 3.1 [84]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/field_direction.py",
+        where="fsw/core/laws/field_direction.py",
         claim="PD on e = t - n, t the direction in body axes that is to lie along the field.",
         claims=("review.feedback.direction.attitude",),
         remark="The scan loses the torque; derived. Three axes need a wheel or a firm gravity gradient.",
@@ -197,7 +197,7 @@ METHODS: tuple[Method, ...] = (
         name="sphere without a measured rate (`sphere_output`)",
         source="[O19] 3.1 [85, 86]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/sphere.py",
+        where="fsw/core/laws/sphere.py",
         claim="A sphere is held by feedback without a measured rate.",
         claims=("review.feedback.sphere.output", "review.feedback.sphere.pd"),
         remark=(
@@ -209,7 +209,7 @@ METHODS: tuple[Method, ...] = (
         name="sphere to the local vertical (`sphere_vertical`)",
         source="[O19] 3.1 [87]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/sphere.py",
+        where="fsw/core/laws/sphere.py",
         claim="An intuitive law turns an axis of a sphere to the local vertical.",
         claims=("review.feedback.sphere.vertical",),
         remark="Equation not found; derived from a Lyapunov function.",
@@ -218,7 +218,7 @@ METHODS: tuple[Method, ...] = (
         name="sphere to the field (`field_direction`)",
         source="[O19] 3.1 [88]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/field_direction.py",
+        where="fsw/core/laws/field_direction.py",
         claim="An intuitive law turns an axis of a sphere to the geomagnetic field.",
         claims=("review.feedback.direction.axis",),
         remark="The axis lags by some degrees, as the field turns.",
@@ -227,7 +227,7 @@ METHODS: tuple[Method, ...] = (
         name="two turns across the field (`two_step`)",
         source="[O19] 3.1 [89]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/two_step.py",
+        where="fsw/core/laws/two_step.py",
         claim="Near the magnetic equator two simple turns bring a sphere to any attitude.",
         claims=(
             "review.feedback.two_step.equator",
@@ -240,7 +240,7 @@ METHODS: tuple[Method, ...] = (
         name="shortest dipole for an energy law (`rate_damping`)",
         source="[T] eq. 5, Wisniewski 1997",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/damping/damping.py",
+        where="fsw/core/laws/damping.py",
         claim="The dipole m = h Omega x b damps libration as the predictive law does.",
         claims=(
             "posat1.energy_law",

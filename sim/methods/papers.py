@@ -7,7 +7,7 @@ METHODS: tuple[Method, ...] = (
         name="PD law in the orbital frame (`pd`)",
         source="[O15] eq. 3",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/pd.py",
+        where="fsw/core/laws/pd.py",
         claim="The law holds the orbital frame although gravity and gyroscopic torques are left out of it.",
         claims=("linearisation",),
     ),

@@ -7,7 +7,7 @@ METHODS: tuple[Method, ...] = (
         name="model predictive control (`mpc`)",
         source="[O19] 3.3 [12, 108, 109]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/predictive/mpc.py",
+        where="fsw/core/laws/mpc.py",
         claim=(
             "The plan uses the field of the orbit ahead and is renewed often; a constant disturbance is "
             "a state."
@@ -22,7 +22,7 @@ METHODS: tuple[Method, ...] = (
         name="prediction along a field fitted by five functions (`mpc_fitted`)",
         source="[O19] 3.3 [12, 49]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/predictive/simple_field.py",
+        where="fsw/core/laws/mpc_simple_field.py",
         claim="A constant and terms at once and twice the orbital rate stand for the field.",
         claims=(
             "review.predictive.fitted.model",
@@ -33,7 +33,7 @@ METHODS: tuple[Method, ...] = (
         name="prediction with the field held over a short horizon (`mpc_held`)",
         source="[O19] 3.3 [109]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/predictive/simple_field.py",
+        where="fsw/core/laws/mpc_simple_field.py",
         claim="With a short horizon field and disturbance may be taken as constants.",
         claims=(
             "review.predictive.held.short",
@@ -45,7 +45,7 @@ METHODS: tuple[Method, ...] = (
         name="sequences of pulses with the cost to go (`pulse_mpc`)",
         source="[T] on the choice, [O19] 3.3 [12]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/predictive/pulse_mpc.py",
+        where="fsw/core/laws/pulse_mpc.py",
         claim="The choice among pulses looks beyond the next one; the search is this project's.",
         claims=(
             "pulse_mpc.rms_zero",
@@ -59,7 +59,7 @@ METHODS: tuple[Method, ...] = (
         name="prediction within the coils' limits as a quadratic programme (`mpc_box`)",
         source="[O19] 3.3 [108, 110]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/predictive/mpc_box.py",
+        where="fsw/core/laws/mpc_box.py",
         claim="The limits are part of the problem, not a cut of its solution.",
         claims=("review.predictive.box",),
     ),
@@ -76,7 +76,7 @@ METHODS: tuple[Method, ...] = (
         name="nonlinear prediction for damping, with a rule that stops the search (`nmpc_damping`)",
         source="[O19] 3.3 [111]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/predictive/nmpc.py",
+        where="fsw/core/laws/nmpc.py",
         claim="The rule saves most of the search.",
         claims=(
             "review.predictive.stopping",
@@ -88,7 +88,7 @@ METHODS: tuple[Method, ...] = (
         name="nonlinear prediction near the course of the damping law (`nmpc_reference`)",
         source="[O19] 3.3 [112]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/predictive/nmpc.py",
+        where="fsw/core/laws/nmpc.py",
         claim=(
             "The cost is the deviation from the course of the rate damping, eq. 1, which is the first "
             "approximation."
@@ -100,7 +100,7 @@ METHODS: tuple[Method, ...] = (
         name="gains of the PD law (8) by dynamic neural units (`pd_neural`)",
         source="[O19] 3.4 [113]",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/feedback/neural.py",
+        where="fsw/core/laws/pd_neural.py",
         claim="The gains so found do well, above all against disturbances that are not known.",
         claims=("review.feedback.neural",),
         remark=(
@@ -113,7 +113,7 @@ METHODS: tuple[Method, ...] = (
         name="predictive law of pulses (`predictive`)",
         source="[T] eq. 5, 14-18",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/predictive/predictive.py",
+        where="fsw/core/laws/predictive.py",
         claim=(
             "Libration of 60 deg falls under 5 deg in 3 orbits, in 4 with spin; each choice takes energy "
             "away."
@@ -130,7 +130,7 @@ METHODS: tuple[Method, ...] = (
         name="unrestricted coils by a genetic search",
         source="[T] on implementation",
         kind=Kind.FLOWN,
-        where="fsw/core/laws/predictive/genetic.py",
+        where="fsw/core/laws/plan/genetic.py",
         claim="The results with restricted actuators are similar to those with unrestricted ones.",
         claims=(
             "genetic.median",

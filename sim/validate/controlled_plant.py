@@ -10,7 +10,7 @@ from math import pi, radians, sqrt
 
 import numpy as np
 
-from fsw.core.laws.feedback.pd import attitude_error, pd_dipole
+from fsw.core.laws.pd import attitude_error, pd_dipole
 from sim.design.theory.bodies import Body
 from sim.design.theory.linear import Gains
 from sim.plant.config import OrbitConfig

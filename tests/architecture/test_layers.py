@@ -200,6 +200,16 @@ def test_the_flight_core_only_calculates(path):
     assert impurities(path.read_text(), CALCULATION | {"fsw.core", "fsw.wire"}) == []
 
 
+BESIDE_LAWS = {f"fsw.core.laws.{name}" for name in ("plan", "interface", "entry", "motion")}
+SHARED_BY_LAWS = [path for path in modules("fsw.core.laws") if within(dotted(path), BESIDE_LAWS)]
+
+
+@pytest.mark.parametrize("path", SHARED_BY_LAWS, ids=dotted)
+def test_what_laws_share_knows_no_law(path):
+    laws = [name for name in imported(ast.parse(path.read_text())) if within(name, {"fsw.core.laws"})]
+    assert [name for name in laws if not within(name, BESIDE_LAWS)] == []
+
+
 @pytest.mark.parametrize("path", modules("fsw.wire"), ids=dotted)
 def test_the_wire_only_calculates(path):
     assert impurities(path.read_text(), CALCULATION | {"fsw.wire"}) == []
@@ -248,9 +258,9 @@ PLANTED = {
     "torquer: the command line over": ("torquer/api/run.py", "import torquer.cli.main"),
     "fsw: the node over its table": ("fsw/core/step.py", "from fsw.bus import interface"),
     "fsw.core: a step over what it is made of": ("fsw/core/algebra/vector.py", "import fsw.core.laws.table"),
-    "fsw.core.laws: the choice among them, the laws, what they share": (
+    "fsw.core.laws: the choice among them and their table over the laws": (
         "fsw/core/laws/plan/riccati.py",
-        "import fsw.core.laws.feedback.pd",
+        "import fsw.core.laws.interface",
     ),
     "what is thought of the sensors and of the coils": (
         "fsw/core/fdir/coils/effects.py",

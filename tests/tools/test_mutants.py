@@ -121,12 +121,12 @@ def test_of_a_sign_in_a_sum_that_grows():
 
 def test_the_laws_are_all_there_each_with_the_tests_that_mirror_it():
     (laws,) = [target for target in targets() if target.name == "laws"]
-    assert "fsw/core/laws/spin/spin.py" in laws.modules
-    assert laws.stages_of("fsw/core/laws/spin/spin.py") == [
-        ["tests/fsw/core/laws/spin/test_spin.py"],
+    assert "fsw/core/laws/spin.py" in laws.modules
+    assert laws.stages_of("fsw/core/laws/spin.py") == [
+        ["tests/fsw/core/laws/test_spin.py"],
         ["tests/fsw/core/laws/spin"],
     ]
-    assert laws.stages_of("fsw/core/laws/spin/relay_stages.py")[0] == ["tests/fsw/core/laws/spin"]
+    assert laws.stages_of("fsw/core/laws/relay_stages.py")[0] == ["tests/fsw/core/laws/spin"]
 
 
 def test_of_every_method_of_the_papers_the_signs_are_changed():

@@ -10,8 +10,8 @@ from typing import Final, final
 from fsw.core.actuation.pulses import PulseConfig, PulseState
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3, cross, dot, is_finite, scale, transform
 from fsw.core.laws.interface import Demand
-from fsw.core.laws.predictive.genetic import search
-from fsw.core.laws.predictive.predictive import best_impulse
+from fsw.core.laws.plan.genetic import search
+from fsw.core.laws.predictive import best_impulse
 from fsw.wire.messages import CoilDipole
 
 MOST: Final = 1.0 - 2.0**-16

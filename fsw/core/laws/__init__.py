@@ -1,1 +1,1 @@
-"""Control laws: what each sees and asks for, the table of them, and the laws chapter by chapter."""
+"""Control laws, a file each: gains, law, rows of the table; what they share is in ``plan`` and ``interface``."""

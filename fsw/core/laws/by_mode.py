@@ -2,10 +2,10 @@
 
 from fsw.core.algebra.vector import sub
 from fsw.core.estimation.attitude import rate_bounded
-from fsw.core.laws.damping.damping import bdot, rate_damping
+from fsw.core.laws.damping import bdot, rate_damping
 from fsw.core.laws.entry import LawEntry
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, OwnLaw, Setpoint
-from fsw.core.laws.predictive.predictive import predictive
+from fsw.core.laws.predictive import predictive
 from fsw.core.laws.table import LAWS, open_loop
 from fsw.wire.messages import Mode
 

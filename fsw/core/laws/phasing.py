@@ -7,6 +7,7 @@ attitude, and is flown in every mode but SAFE: a satellite that is wired wrongly
 
 from dataclasses import dataclass
 
+from fsw.core.laws.entry import Aim, LawEntry, Need
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.plan.pulse_model import NO_PULSE, Pulse
 
@@ -48,3 +49,8 @@ def phasing(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Contro
 def nth_pulse(number: int, level: int) -> Pulse:
     """The pulse of this number, counted from 0."""
     return Pulse(number % COILS, level if number // COILS % 2 == 0 else -level)
+
+
+LAWS = {
+    "phasing": LawEntry(70, Aim.CHECK, phasing, phasing, PhasingGains, needs=Need.PULSES, open_loop=True),
+}

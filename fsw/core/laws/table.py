@@ -7,29 +7,130 @@ use for the torque: coils can oppose only its component normal to the field, whi
 ``pd``, ``sliding_integral`` and ``wheel_integral`` counter its mean by their integral.
 """
 
-from fsw.core.laws.damping.table import LAWS as DAMPING
-from fsw.core.laws.entry import Aim, LawEntry, Need
-from fsw.core.laws.feedback.table import LAWS as FEEDBACK
+from types import ModuleType
+
+from fsw.core.laws import (
+    bdot_held,
+    damping,
+    direction_tracking,
+    dual_spin,
+    field_direction,
+    field_tracking,
+    h_infinity,
+    horizon_roll,
+    lqg_field,
+    lqr,
+    lqr_averaged,
+    lqr_disturbed,
+    mpc,
+    mpc_box,
+    mpc_simple_field,
+    nmpc,
+    optimal_damping,
+    output_feedback,
+    pd,
+    pd_boxed,
+    pd_delayed,
+    pd_held,
+    pd_inertial,
+    pd_neural,
+    pd_when_slow,
+    phasing,
+    pitch_wheel,
+    predictive,
+    projection,
+    pulse_mpc,
+    rate_damping_matrix,
+    relay_stages,
+    roll_precession,
+    sdre,
+    six_gain,
+    sliding,
+    sliding_rate,
+    sliding_realisable,
+    sliding_sphere,
+    sliding_twisting,
+    slow_spin,
+    sphere,
+    spin,
+    spin_axis,
+    stepped_precession,
+    sun_critical,
+    sun_panels,
+    sun_pointing,
+    target_precession,
+    two_coils,
+    two_step,
+    wheel_allocation,
+    wheel_integral,
+    wheel_relay,
+)
+from fsw.core.laws.entry import LawEntry
 from fsw.core.laws.interface import Setpoint
-from fsw.core.laws.one_axis.table import LAWS as ONE_AXIS
-from fsw.core.laws.optimal.table import LAWS as OPTIMAL
-from fsw.core.laws.phasing import PhasingGains, phasing
-from fsw.core.laws.predictive.table import LAWS as PREDICTIVE
-from fsw.core.laws.sliding.table import LAWS as SLIDING
-from fsw.core.laws.spin.table import LAWS as SPIN
-from fsw.core.laws.wheel.table import LAWS as WHEEL
 
 OWN_NUMBER = 255
 """The number of a law that is not in this table."""
 
-CHECK = {
-    "phasing": LawEntry(70, Aim.CHECK, phasing, phasing, PhasingGains, needs=Need.PULSES, open_loop=True),
-}
-
+MODULES: tuple[ModuleType, ...] = (
+    bdot_held,
+    damping,
+    direction_tracking,
+    dual_spin,
+    field_direction,
+    field_tracking,
+    h_infinity,
+    horizon_roll,
+    lqg_field,
+    lqr,
+    lqr_averaged,
+    lqr_disturbed,
+    mpc,
+    mpc_box,
+    mpc_simple_field,
+    nmpc,
+    optimal_damping,
+    output_feedback,
+    pd,
+    pd_boxed,
+    pd_delayed,
+    pd_held,
+    pd_inertial,
+    pd_neural,
+    pd_when_slow,
+    phasing,
+    pitch_wheel,
+    predictive,
+    projection,
+    pulse_mpc,
+    rate_damping_matrix,
+    relay_stages,
+    roll_precession,
+    sdre,
+    six_gain,
+    sliding,
+    sliding_rate,
+    sliding_realisable,
+    sliding_sphere,
+    sliding_twisting,
+    slow_spin,
+    sphere,
+    spin,
+    spin_axis,
+    stepped_precession,
+    sun_critical,
+    sun_panels,
+    sun_pointing,
+    target_precession,
+    two_coils,
+    two_step,
+    wheel_allocation,
+    wheel_integral,
+    wheel_relay,
+)
 LAWS: dict[str, LawEntry] = dict(
     sorted(
-        (DAMPING | SPIN | WHEEL | ONE_AXIS | FEEDBACK | SLIDING | OPTIMAL | PREDICTIVE | CHECK).items(),
-        key=lambda item: item[1].number,
+        ((name, entry) for module in MODULES for name, entry in module.LAWS.items()),
+        key=lambda law: law[1].number,
     )
 )
 """All laws, in the order of their numbers."""

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import Bounds, differential_evolution
 
-from fsw.core.laws.optimal.lqr import LqrGains, orbit_problem
+from fsw.core.laws.lqr import LqrGains, orbit_problem
 from fsw.core.laws.plan.riccati import Array, Problem, pushes_of, skews
 from sim.design.theory.bodies import Body
 

@@ -7,7 +7,7 @@ come to rest where there are none. Differential evolution lowers the cost (Storn
 which the weights are judged must be others.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.4, after Das, Sinha, Misra 2012; the units as in
-``fsw/core/laws/feedback/neural.py``.
+``fsw/core/laws/pd_neural.py``.
 """
 
 from collections.abc import Callable
@@ -19,7 +19,7 @@ from typing import cast
 import numpy as np
 from scipy.optimize import Bounds, differential_evolution
 
-from fsw.core.laws.feedback.neural import RANGE, SMALL
+from fsw.core.laws.pd_neural import RANGE, SMALL
 from sim.design.theory import side_by_side
 from sim.design.theory.bodies import Body
 from sim.design.theory.linear import Array, Gains, dipole_field

@@ -8,7 +8,7 @@ Source: Hablani 1995 (Comparative stability analysis) compares the laws, as Ovch
 section 2.2, says; the figures are this project's.
 """
 
-from fsw.core.laws.wheel.six_gain import SixGainGains
+from fsw.core.laws.six_gain import SixGainGains
 from sim.design.theory.bodies import Body
 from sim.design.wheel.elliptic import Ellipse, WheelLaw, decays
 

@@ -20,9 +20,9 @@ from math import pi, radians, sin
 
 import numpy as np
 
-from fsw.core.laws.wheel.roll_yaw import RollYaw
-from fsw.core.laws.wheel.six_gain import SixGainGains, six_gain_dipole
-from fsw.core.laws.wheel.wheel_integral import BOTH_ANGLES
+from fsw.core.laws.roll_yaw import RollYaw
+from fsw.core.laws.six_gain import SixGainGains, six_gain_dipole
+from fsw.core.laws.wheel_integral import BOTH_ANGLES
 from sim.design.theory.bodies import Body
 from sim.design.theory.floquet import monodromy
 from sim.design.theory.linear import Array, System

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fsw.core.laws.predictive.simple_field import harmonics
+from fsw.core.laws.mpc_simple_field import harmonics
 from sim.design.theory.linear import Array
 
 FUNCTIONS = 5

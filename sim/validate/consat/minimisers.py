@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from fsw.core.laws.predictive.genetic import search
-from fsw.core.laws.predictive.predictive import best_impulse, free_rate_change, missing_impulse
+from fsw.core.laws.plan.genetic import search
+from fsw.core.laws.predictive import best_impulse, free_rate_change, missing_impulse
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.campaign.study import spread_of
 from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2

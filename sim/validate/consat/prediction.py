@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fsw.core.actuation.pulses import PulseConfig, PulseState, choose, dipole_am2
-from fsw.core.laws.predictive.predictive import best_impulse, free_rate_change, missing_impulse
+from fsw.core.laws.predictive import best_impulse, free_rate_change, missing_impulse
 from sim.campaign.claim import Claim, ClaimOutcome, Study, Threshold
 from sim.campaign.study import spread_of
 from sim.plant.dynamics.rigid_body import Motion, RigidBody

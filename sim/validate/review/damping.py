@@ -5,10 +5,10 @@ from functools import partial
 
 import numpy as np
 
-from fsw.core.laws.damping.damping import SwitchedGains
-from fsw.core.laws.damping.held_torque import HeldGains
-from fsw.core.laws.damping.matrix_gain import MatrixGains
-from fsw.core.laws.damping.optimal import EnergyGains, ModelGains, MomentumGains
+from fsw.core.laws.bdot_held import HeldGains
+from fsw.core.laws.damping import SwitchedGains
+from fsw.core.laws.optimal_damping import EnergyGains, ModelGains, MomentumGains
+from fsw.core.laws.rate_damping_matrix import MatrixGains
 from sim.campaign.claim import Claim, Study, Threshold
 from sim.plant.dynamics.jacobi import jacobi_integral
 from sim.validate.review.figures import one_figure

@@ -5,10 +5,10 @@ from math import inf, radians
 
 import numpy as np
 
-from fsw.core.laws.wheel.allocation import affordable
-from fsw.core.laws.wheel.dual_spin import DualSpinGains
-from fsw.core.laws.wheel.pitch_wheel import PitchWheelGains
-from fsw.core.laws.wheel.two_coils import TwoCoilsGains, two_coils_and_wheel
+from fsw.core.laws.dual_spin import DualSpinGains
+from fsw.core.laws.pitch_wheel import PitchWheelGains
+from fsw.core.laws.two_coils import TwoCoilsGains, two_coils_and_wheel
+from fsw.core.laws.wheel_allocation import affordable
 from sim.campaign.claim import Study
 from sim.campaign.flight import Order
 from sim.campaign.study import Figure, Group, campaign, summary_value

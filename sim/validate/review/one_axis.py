@@ -7,11 +7,11 @@ from math import inf, sqrt
 
 import numpy as np
 
-from fsw.core.laws.one_axis.field_tracking import HandOverGains
-from fsw.core.laws.one_axis.pd_when_slow import SlowGains
-from fsw.core.laws.one_axis.sun_critical import CriticalGains
-from fsw.core.laws.one_axis.sun_panels import PanelGains
-from fsw.core.laws.spin.spin import SpinGains
+from fsw.core.laws.field_tracking import HandOverGains
+from fsw.core.laws.pd_when_slow import SlowGains
+from fsw.core.laws.spin import SpinGains
+from fsw.core.laws.sun_critical import CriticalGains
+from fsw.core.laws.sun_panels import PanelGains
 from sim.campaign.claim import Claim, Study
 from sim.design.one_axis.field_tracking import best_tracking
 from sim.design.theory.bodies import Body

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fsw.core.laws.feedback.projection import torque_dipole
-from fsw.core.laws.optimal.boxed import boxed_dipole
-from fsw.core.laws.optimal.h_infinity import HInfinityGains, robust_schedule
-from fsw.core.laws.optimal.lqr import LqrGains, orbit_problem, schedule
+from fsw.core.laws.h_infinity import HInfinityGains, robust_schedule
+from fsw.core.laws.lqr import LqrGains, orbit_problem, schedule
+from fsw.core.laws.pd_boxed import boxed_dipole
 from fsw.core.laws.plan.riccati import periodic
+from fsw.core.laws.projection import torque_dipole
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.design.robust.invariant import periodic_cost
 from sim.design.robust.measured import Measured, central, least, norm

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from fsw.core.laws.optimal.lqr import LqrGains, orbit_problem, schedule
+from fsw.core.laws.lqr import LqrGains, orbit_problem, schedule
+from fsw.core.laws.mpc_box import programme
 from fsw.core.laws.plan.box import box_minimum
 from fsw.core.laws.plan.riccati import Array
 from fsw.core.laws.plan.tumbling import Tumbling, costs, descend
-from fsw.core.laws.predictive.mpc_box import programme
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.design.predictive.explicit import pieces
 from sim.design.theory.bodies import BODIES

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from fsw.core.laws.sliding.realisable import RealisableGains
+from fsw.core.laws.sliding_realisable import RealisableGains
 from sim.campaign.claim import Claim, Study
 from sim.validate.review.figures import judged
 from sim.validate.review.law_flight import LawFlight, fly

@@ -6,12 +6,12 @@ from math import cos, inf, radians, sin
 
 import numpy as np
 
-from fsw.core.laws.spin.relay_stages import StageGains
-from fsw.core.laws.spin.roll_precession import RollGains
-from fsw.core.laws.spin.spin import SpinGains
-from fsw.core.laws.spin.spin_axis import SpinAxisGains, TargetGains, ThreeTermGains
-from fsw.core.laws.spin.stepped_precession import StepGains
-from fsw.core.laws.spin.target_precession import PrecessionGains
+from fsw.core.laws.relay_stages import StageGains
+from fsw.core.laws.roll_precession import RollGains
+from fsw.core.laws.spin import SpinGains
+from fsw.core.laws.spin_axis import SpinAxisGains, TargetGains, ThreeTermGains
+from fsw.core.laws.stepped_precession import StepGains
+from fsw.core.laws.target_precession import PrecessionGains
 from sim.campaign.claim import Claim, Study
 from sim.design.spin import roll_precession
 from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2, Array

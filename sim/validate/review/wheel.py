@@ -6,9 +6,9 @@ from math import inf
 
 import numpy as np
 
-from fsw.core.laws.wheel.horizon_roll import HorizonRollGains
-from fsw.core.laws.wheel.six_gain import SixGainGains
-from fsw.core.laws.wheel.wheel_relay import WheelRelayGains
+from fsw.core.laws.horizon_roll import HorizonRollGains
+from fsw.core.laws.six_gain import SixGainGains
+from fsw.core.laws.wheel_relay import WheelRelayGains
 from sim.campaign.claim import Study
 from sim.design.theory.bodies import Body, diagonal
 from sim.design.theory.floquet import monodromy, multipliers

@@ -5,7 +5,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from fsw.core.laws.optimal.lqr import STEPS
+from fsw.core.laws.lqr import STEPS
 from fsw.core.laws.table import LAWS
 from fsw.input.schema import TableError
 from fsw.table.config import flight_config

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from fsw.core.laws.feedback.field_direction import FieldDirectionGains
-from fsw.core.laws.feedback.held import ApartGains, HoldGains
+from fsw.core.laws.field_direction import FieldDirectionGains
+from fsw.core.laws.pd_held import ApartGains, HoldGains
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.design.feedback.inertial import best_on_line
 from sim.plant.config import OrbitConfig

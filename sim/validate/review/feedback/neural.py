@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 
-from fsw.core.laws.feedback.neural import NeuralGains
+from fsw.core.laws.pd_neural import NeuralGains
 from sim.campaign.claim import Claim, Study
 from sim.design.feedback.neural import MOST_AM2, PD_GAINS, cost, orbit_rms_deg, trials
 from sim.validate.review.figures import one_figure

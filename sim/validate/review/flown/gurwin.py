@@ -6,7 +6,7 @@ from math import inf, radians
 
 import numpy as np
 
-from fsw.core.laws.optimal.lqr import LqrGains, schedule
+from fsw.core.laws.lqr import LqrGains, schedule
 from sim.campaign.claim import Study
 from sim.design.theory.bodies import Body, diagonal
 from sim.design.wheel.harmonics import fit, orbit

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fsw.core.laws.predictive.nmpc import NmpcGains, NmpcReferenceGains
+from fsw.core.laws.nmpc import NmpcGains, NmpcReferenceGains
 from fsw.input.schema import Nested
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.design.theory.bodies import BODIES

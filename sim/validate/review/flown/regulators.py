@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from fsw.core.laws.optimal.averaged import AveragedGains, averaged_schedule
-from fsw.core.laws.optimal.disturbed import DisturbedGains, disturbed_schedule
-from fsw.core.laws.optimal.lqr import LqrGains, schedule
+from fsw.core.laws.lqr import LqrGains, schedule
+from fsw.core.laws.lqr_averaged import AveragedGains, averaged_schedule
+from fsw.core.laws.lqr_disturbed import DisturbedGains, disturbed_schedule
 from fsw.core.laws.plan.riccati import Schedule
 from fsw.input.schema import Nested
 from sim.campaign.claim import Claim, ClaimOutcome, Study

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fsw.core.laws.spin.spin_axis import ThreeTermGains
+from fsw.core.laws.spin_axis import ThreeTermGains
 from sim.campaign.claim import Claim, Study
 from sim.validate.review.figures import one_figure
 from sim.validate.review.law_flight import LawFlight, fly

@@ -6,7 +6,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from fsw.core.laws.optimal.lqr import LqrGains
+from fsw.core.laws.lqr import LqrGains
 from fsw.input.schema import Nested
 from sim.campaign.claim import Study
 from sim.tuning.flown import RigidFlight

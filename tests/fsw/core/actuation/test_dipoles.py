@@ -16,7 +16,7 @@ from fsw.core.actuation.dipoles import MOST, DipoleConfig, RequestedDipole, dipo
 from fsw.core.actuation.pulses import PulseConfig
 from fsw.core.algebra.vector import ZERO, inverse
 from fsw.core.laws.interface import Demand
-from fsw.core.laws.predictive.predictive import best_impulse
+from fsw.core.laws.predictive import best_impulse
 from fsw.wire.messages import CoilDipole, CoilDipoleStatus, CoilStatus
 
 INERTIA = ((1.02, 0.13, -0.09), (0.13, 1.85, 0.21), (-0.09, 0.21, 1.55))

@@ -8,11 +8,11 @@ from fsw.core.algebra.quaternion import dcm, normalise
 from fsw.core.algebra.vector import ZERO, Mat3, cross, inverse, sub
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws import by_mode
-from fsw.core.laws.damping.damping import bdot, bdot_dipole, rate_damping, rate_damping_dipole
-from fsw.core.laws.feedback.pd import attitude_error, far_error, pd_dipole
+from fsw.core.laws.damping import bdot, bdot_dipole, rate_damping, rate_damping_dipole
 from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, LawInput, OwnLaw, Setpoint
+from fsw.core.laws.pd import attitude_error, far_error, pd_dipole
 from fsw.core.laws.plan.pulse_model import NO_PULSE, Pulse
-from fsw.core.laws.predictive.predictive import predictive
+from fsw.core.laws.predictive import predictive
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.ephemeris import Reference
 from fsw.wire.messages import Mode

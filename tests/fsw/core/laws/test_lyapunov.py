@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from fsw.core.actuation.pulses import PulseConfig, PulseState, choose, impulse
-from fsw.core.laws.predictive.predictive import best_impulse, free_rate_change, missing_impulse
+from fsw.core.laws.predictive import best_impulse, free_rate_change, missing_impulse
 
 MU_M3PS2 = 3.986004418e14
 LEVELS_AM2 = (15.0, 30.0, 60.0)

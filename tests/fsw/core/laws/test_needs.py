@@ -123,7 +123,7 @@ def test_without_a_field_nothing_is_asked_for(ask, bench, name):
 
 
 def test_the_table_of_laws_knows_those_that_hold_a_wheel():
-    """The others of the chapter drive theirs."""
+    """The others with a wheel drive theirs."""
     assert {name for name, row in LAWS.items() if row.needs is Need.MOMENTUM} == {
         name for name, needs in NEEDS.items() if "wheel" in needs
     }

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from fsw.core.algebra.quaternion import multiply
-from fsw.core.laws.feedback.pd import far_error, pd_dipole
+from fsw.core.laws.pd import far_error, pd_dipole
 from sim.design.feedback import minimax as module
 from sim.design.feedback.inertial import best_on_line
 from sim.design.feedback.minimax import minimax, settling_orbits, spread_starts

@@ -6,7 +6,7 @@ from math import radians
 import numpy as np
 import pytest
 
-from fsw.core.laws.feedback.neural import NeuralGains
+from fsw.core.laws.pd_neural import NeuralGains
 from sim.design.feedback import neural
 from sim.design.feedback.neural import MOST_AM2, PD_GAINS, Trials, cost, orbit_rms_deg, train, trials
 from sim.design.theory.bodies import BODIES

@@ -5,9 +5,9 @@ from math import radians
 import numpy as np
 import pytest
 
-from fsw.core.laws.optimal.lqr import LqrGains, orbit_problem, schedule
+from fsw.core.laws.lqr import LqrGains, orbit_problem, schedule
+from fsw.core.laws.mpc_box import programme
 from fsw.core.laws.plan.box import box_minimum
-from fsw.core.laws.predictive.mpc_box import programme
 from sim.design.predictive.explicit import evaluate, held_of, piece, pieces
 
 INERTIA = ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95))

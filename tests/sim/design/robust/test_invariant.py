@@ -5,7 +5,7 @@ from math import radians
 import numpy as np
 import pytest
 
-from fsw.core.laws.optimal.lqr import LqrGains, orbit_problem
+from fsw.core.laws.lqr import LqrGains, orbit_problem
 from fsw.core.laws.plan.riccati import NotHeldError, periodic
 from sim.design.robust.invariant import periodic_cost
 

@@ -5,8 +5,8 @@ from math import radians
 import numpy as np
 import pytest
 
-from fsw.core.laws.optimal.h_infinity import price
-from fsw.core.laws.optimal.lqr import LqrGains, orbit_problem
+from fsw.core.laws.h_infinity import price
+from fsw.core.laws.lqr import LqrGains, orbit_problem
 from fsw.core.laws.plan.game import game_periodic
 from fsw.core.laws.plan.riccati import periodic, skews
 from sim.design.robust.norms import UnstableLoopError, norms

@@ -5,7 +5,7 @@ from math import radians
 import numpy as np
 import pytest
 
-from fsw.core.laws.optimal.lqr import LqrGains, orbit_problem
+from fsw.core.laws.lqr import LqrGains, orbit_problem
 from sim.design.robust.norms import norms
 from sim.design.robust.pd_gains import best_pd, pd_tabulated
 

@@ -5,7 +5,7 @@ from math import radians
 import numpy as np
 import pytest
 
-from fsw.core.laws.spin.roll_precession import roll_dipole
+from fsw.core.laws.roll_precession import roll_dipole
 from sim.design.spin.roll_precession import DIPOLE_TM3, averaged, degree, gain_of, motion
 
 RADIUS_M, RATE_RADPS, INCLINATION_RAD = 7.178e6, 1.038e-3, radians(98.6)

@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from fsw.core.laws.feedback.pd import attitude_error, pd_dipole
+from fsw.core.laws.pd import attitude_error, pd_dipole
 from sim.design.theory.bodies import BODIES, Body, diagonal
 from sim.design.theory.floquet import degree_of_stability, monodromy
 from sim.design.theory.linear import (

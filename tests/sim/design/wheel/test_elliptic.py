@@ -6,8 +6,8 @@ from math import radians, sqrt
 import numpy as np
 import pytest
 
-from fsw.core.laws.wheel.roll_yaw import RollYaw
-from fsw.core.laws.wheel.six_gain import SixGainGains, six_gain_dipole
+from fsw.core.laws.roll_yaw import RollYaw
+from fsw.core.laws.six_gain import SixGainGains, six_gain_dipole
 from sim.design.theory.bodies import Body, diagonal
 from sim.design.theory.linear import free_motion
 from sim.design.wheel.elliptic import Ellipse, WheelLaw, decays, roll_yaw_motion

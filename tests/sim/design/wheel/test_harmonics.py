@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fsw.core.laws.predictive.simple_field import harmonics
+from fsw.core.laws.mpc_simple_field import harmonics
 from sim.design.wheel.harmonics import fit, orbit
 
 WANTED = np.array([[1, -2, 3], [4, 5, -6], [-7, 8, 9], [0.5, -1.5, 2.5], [3.5, 4.5, -5.5]]) * 1e-7

@@ -3,7 +3,7 @@
 import pytest
 
 from fsw.core.algebra.vector import ZERO, scale
-from fsw.core.laws.feedback import delayed, sphere
+from fsw.core.laws import pd_delayed, sphere
 from sim.campaign.claim import ClaimVerdict
 from sim.validate.review.feedback import laws
 
@@ -27,6 +27,8 @@ def test_an_observer_that_is_not_told_its_torque_points_as_well_but_lags(monkeyp
 def test_a_delayed_law_with_half_of_its_attitude_points_as_well_but_takes_another_way(monkeypatch):
     """The gravity gradient holds the body besides."""
     assert missed(laws.delayed()) == set()
-    whole = delayed.far_error
-    monkeypatch.setattr(delayed, "far_error", lambda q_body_from_orbit: scale(0.5, whole(q_body_from_orbit)))
+    whole = pd_delayed.far_error
+    monkeypatch.setattr(
+        pd_delayed, "far_error", lambda q_body_from_orbit: scale(0.5, whole(q_body_from_orbit))
+    )
     assert missed(laws.delayed()) == {"review.feedback.delayed.pd"}

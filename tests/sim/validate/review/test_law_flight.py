@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from fsw.core.laws.one_axis.field_tracking import HandOverGains
+from fsw.core.laws.field_tracking import HandOverGains
 from sim.plant.dynamics.jacobi import jacobi_integral
 from sim.validate.review.law_flight import LawFlight, fly
 from sim.validate.review.law_history import angle_deg

@@ -3,7 +3,7 @@
 import pytest
 
 from fsw.core.algebra.vector import add, scale
-from fsw.core.laws.one_axis import sun_critical, sun_panels
+from fsw.core.laws import sun_critical, sun_panels
 from sim.campaign.claim import ClaimVerdict
 from sim.validate.review import one_axis
 

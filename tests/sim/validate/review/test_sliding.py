@@ -3,7 +3,7 @@
 import pytest
 
 from fsw.core.algebra.vector import ZERO
-from fsw.core.laws.sliding import super_twisting
+from fsw.core.laws import sliding_twisting
 from sim.campaign.claim import ClaimVerdict
 from sim.validate.review import sliding
 
@@ -17,5 +17,5 @@ def verdict():
 @pytest.mark.interpreted
 def test_super_twisting_without_its_integral_is_another_law(monkeypatch):
     assert verdict() is ClaimVerdict.PASS
-    monkeypatch.setattr(super_twisting, "_grown", lambda *words: ZERO)
+    monkeypatch.setattr(sliding_twisting, "_grown", lambda *words: ZERO)
     assert verdict() is ClaimVerdict.FAIL

@@ -3,8 +3,8 @@
 import pytest
 
 from fsw.core.algebra.vector import ZERO
-from fsw.core.laws.spin import spin as thomson
-from fsw.core.laws.spin import spin_axis, target_precession
+from fsw.core.laws import spin as thomson
+from fsw.core.laws import spin_axis, target_precession
 from sim.campaign.claim import ClaimVerdict
 from sim.validate.review import spin
 from sim.validate.review.flown import three_term

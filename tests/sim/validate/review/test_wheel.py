@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from fsw.core.laws.wheel import wheel_integral
-from fsw.core.laws.wheel.six_gain import SixGainGains
+from fsw.core.laws import wheel_integral
+from fsw.core.laws.six_gain import SixGainGains
 from sim.design.wheel.elliptic import WheelLaw
 from sim.validate.review import wheel
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fsw.core.laws.optimal.lqr import LqrGains, schedule
+from fsw.core.laws.lqr import LqrGains, schedule
 from fsw.core.laws.plan.cost_to_go import cost_to_go, rounded, rounded_schedule, times
 from fsw.core.laws.plan.riccati import backward, regulator_problem
 

@@ -5,8 +5,8 @@ from math import radians
 import numpy as np
 import pytest
 
-from fsw.core.laws.optimal.h_infinity import price
-from fsw.core.laws.optimal.lqr import LqrGains, orbit_problem
+from fsw.core.laws.h_infinity import price
+from fsw.core.laws.lqr import LqrGains, orbit_problem
 from fsw.core.laws.plan.game import game_backward, game_periodic
 from fsw.core.laws.plan.riccati import NotHeldError, periodic, skews
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fsw.core.laws.optimal import disturbed
+from fsw.core.laws import lqr_disturbed
 from sim.plant.rotation import ZERO
 from sim.validate.review.flown import regulators
 
@@ -22,8 +22,8 @@ def test_a_regulator_that_learns_nothing_misses_its_claim():
 @pytest.mark.interpreted
 def test_without_its_functions_of_twice_the_latitude_a_torque_of_that_kind_is_not_learned(monkeypatch):
     """The torque of light has no such part: its claims do not notice."""
-    whole = disturbed.functions
-    monkeypatch.setattr(disturbed, "functions", lambda u_rad: (*whole(u_rad)[:3], 0.0, 0.0))
+    whole = lqr_disturbed.functions
+    monkeypatch.setattr(lqr_disturbed, "functions", lambda u_rad: (*whole(u_rad)[:3], 0.0, 0.0))
     found = [task() for task in regulators.disturbed().tasks]
     assert claims_of(regulators.disturbed(), found) == ["PASS", "PASS", "FAIL"]
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fsw.core.laws.feedback import pd
+from fsw.core.laws import pd
 from sim.campaign.claim import ClaimVerdict
 from sim.validate.review.rigid.pointing import feedback_trials, other_trials
 

@@ -1,1 +1,0 @@
-"""Laws that damp the rate."""

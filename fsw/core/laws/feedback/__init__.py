@@ -1,1 +1,0 @@
-"""Laws that feed attitude and rate back."""

@@ -1,1 +1,0 @@
-"""Laws that point one axis, where something else holds the others."""

@@ -1,1 +1,0 @@
-"""Laws that minimise the cost of a linear model."""

@@ -1,1 +1,0 @@
-"""Laws that predict what each choice will lead to."""

@@ -1,1 +1,0 @@
-"""Laws that hold the motion to a sliding surface."""

@@ -1,1 +1,0 @@
-"""Laws that build up a spin, and turn its axis."""

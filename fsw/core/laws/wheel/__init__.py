@@ -1,1 +1,0 @@
-"""Laws of a satellite with a momentum wheel."""
