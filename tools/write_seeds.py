@@ -3,8 +3,7 @@
 import sys
 from pathlib import Path
 
-from sim.methods.page import page
-from sim.methods.table import METHODS
+from sim.methods import page, read_methods
 from sim.record.whole_file import replace_text
 from sim.validate.outcomes import as_figures, read_record
 
@@ -13,7 +12,7 @@ TARGET = DOCS / "seeds.md"
 
 
 def main() -> int:
-    text = page(METHODS, as_figures(read_record(DOCS / "validation.json")))
+    text = page(read_methods(), as_figures(read_record(DOCS / "validation.json")))
     if "--check" in sys.argv[1:]:
         stale = not TARGET.is_file() or TARGET.read_text(encoding="utf-8") != text
         if stale:

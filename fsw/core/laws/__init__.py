@@ -1,1 +1,1 @@
-"""Control laws, a file each: gains, law, rows of the table; what they share is in ``plan`` and ``interface``."""
+"""Control laws, a file each: gains, law and rows of the table; what they share is in ``plan``."""

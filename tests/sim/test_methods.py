@@ -4,18 +4,16 @@ from dataclasses import replace
 
 import pytest
 
-from sim.methods.method import Kind, Method
-from sim.methods.page import page, verdict
-from sim.methods.table import missing, numbers
+from sim.methods import Kind, Method, missing, numbers, page, verdict
 
 FIGURES = {
     "a.one": {"figure": "1.5 deg", "limits": "<= 2", "verdict": "PASS"},
     "a.two": {"figure": "3 deg", "limits": "<= 2", "verdict": "FAIL"},
     "a.fitted": {"figure": "1.9 deg", "limits": "<= 2", "verdict": "fitted"},
 }
-LAW = Method("A | law", "[O19] 1 [18, 20-23]", Kind.FLOWN, "a.py", "So.", ("a.one",))
-STUDY = Method("Study", "[O15] sec. 3 [4]", Kind.GROUND, "sim/b.py", "It is so.", ("a.one", "a.new"))
-NONE = Method("None", "[O19] 2 [1]", Kind.PASSED_OVER, "", "Nothing.", remark="No equation was found.")
+LAW = Method("A | law", "[O19] 1 [18, 20-23]", Kind.FLOWN, "So.", "a.py", ("a.one",))
+STUDY = Method("Study", "[O15] sec. 3 [4]", Kind.GROUND, "It is so.", "sim/b.py", ("a.one", "a.new"))
+NONE = Method("None", "[O19] 2 [1]", Kind.PASSED_OVER, "Nothing.", remark="No equation was found.")
 
 
 @pytest.mark.parametrize(
@@ -32,7 +30,7 @@ NONE = Method("None", "[O19] 2 [1]", Kind.PASSED_OVER, "", "Nothing.", remark="N
     ],
 )
 def test_the_verdict_is_that_of_all_figures(claims, expected):
-    method = Method("A", "[T] 1", Kind.FLOWN, "a.py", "It holds.", claims)
+    method = Method("A", "[T] 1", Kind.FLOWN, "It holds.", "a.py", claims)
     assert verdict(method, FIGURES) == expected
 
 

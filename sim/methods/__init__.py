@@ -1,1 +1,0 @@
-"""The methods of the source papers: where each is, what is claimed for it, and by what that is measured."""
