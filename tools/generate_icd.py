@@ -27,7 +27,7 @@ from fsw.wire.messages import CoilFire, CoilRefusedReason, CoilStatus
 from hil_stub import bench, node
 from hil_stub.coils import coil_driver, events, interlock, read_back
 from hil_stub.wheel import wheel_driver, wheel_guard
-from sim.conformance.check_runner import CHECKS
+from sim.conformance.command import CHECKS
 from sim.record.whole_file import replace_text
 
 DBC = ROOT / "fsw" / "wire" / "torquer.dbc"

@@ -43,8 +43,8 @@ NOT_FLOWN = (
 """Within those, what no flight imports: what orders flights, stores their results and shows them."""
 WORDS = (
     "sim/report/requirements/causes.py",
-    "sim/report/requirements/mismatch.py",
-    "sim/report/requirements/settling.py",
+    "sim/report/requirements/causes.py",
+    "sim/report/requirements/causes.py",
     "sim/report/requirements/sizing.py",
 )
 """Within those, why a requirement is missed, in words: a flight imports it, and no figure follows from it."""

@@ -1,16 +1,152 @@
 """``torquer export``: a run, or a log alone, in the format of another tool."""
 
+import csv
 from collections.abc import Callable
+from math import isnan
 from pathlib import Path
 from typing import NamedTuple
 
-from sim.console import say
-from sim.errors import HarnessError
-from sim.export import can_log, mcap, netcdf, tables
+import can
+import numpy as np
+from numpy.typing import NDArray
+
+from fsw.bus.can_message import message_of
+from sim.console import counted, say
+from sim.errors import HarnessError, needing
+from sim.export import mcap
 from sim.export.destination import whole_file
+from sim.export.history_table import AXES, Block, HistoryTable
 from sim.export.source import LogPass, Source, open_source
 from sim.progress import Watch, progress
 from sim.record import run_dir
+
+# --- Histories as CSV and Parquet: a row a tick, a column a component, its unit in its name
+
+
+def _columns(block: Block) -> NDArray[np.float64]:
+    """The columns side by side, (n, columns)."""
+    return np.column_stack(list(block.values()))
+
+
+def write_csv(source: Source, path: Path, watch: Watch) -> list[str]:
+    """Write a CSV file with one line of names; numbers read back to the last bit, none is an empty field."""
+    table = HistoryTable(source)
+    with path.open("w", encoding="ascii", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([name for quantity in table.quantities for name in quantity.columns])
+
+        def take(block: Block) -> None:
+            for row in _columns(block).tolist():
+                writer.writerow(["" if isnan(value) else repr(value) for value in row])
+
+        return table.read(take, watch)
+
+
+def write_parquet(source: Source, path: Path, watch: Watch) -> list[str]:
+    """Write a Parquet file; columns have unit and meaning as metadata, the file what identifies the flight.
+
+    Raises:
+        HarnessError: the package pyarrow is missing.
+    """
+    with needing("parquet", "pyarrow", "export"):
+        import pyarrow as pa  # noqa: PLC0415  an extra
+        import pyarrow.parquet as pq  # noqa: PLC0415  an extra
+    table = HistoryTable(source)
+    fields = [
+        pa.field(name, pa.float64(), metadata={"unit": quantity.unit, "meaning": quantity.meaning})
+        for quantity in table.quantities
+        for name in quantity.columns
+    ]
+    schema = pa.schema(fields, metadata={key: str(value) for key, value in source.identity.items()})
+    with pq.ParquetWriter(path, schema) as writer:
+
+        def take(block: Block) -> None:
+            arrays = [pa.array(column, from_pandas=True) for column in _columns(block).T]  # NaN is null
+            writer.write_table(pa.Table.from_arrays(arrays, schema=schema))
+
+        return table.read(take, watch)
+
+
+# --- Histories as NetCDF-4 by the CF conventions, for xarray, Panoply and the like
+
+_AXES = {3: "xyz", 4: "wxyz"}
+"""The second dimension of a quantity, by its width."""
+
+
+def write_netcdf(source: Source, path: Path, watch: Watch) -> list[str]:
+    """Write a NetCDF file: a variable a quantity over time, with units and meaning.
+
+    Raises:
+        HarnessError: the package h5netcdf is missing.
+    """
+    with needing("netcdf", "h5netcdf", "export"):
+        import h5netcdf  # noqa: PLC0415  an extra
+    table = HistoryTable(source)
+    with h5netcdf.File(path, "w") as file:
+        file.dimensions = {"time": table.ticks} | {name: len(name) for name in _AXES.values()}
+        file.attrs.update({"Conventions": "CF-1.11", "title": "Torquer flight"} | source.identity)
+        for width, name in _AXES.items():
+            labels = file.create_variable(name, (name,), "S1")
+            labels[:] = np.array([axis[1:] for axis in AXES[width]], dtype="S1")
+        time = file.create_variable("time", ("time",), "f8")
+        time.attrs["units"] = f"seconds since {source.identity['epoch_utc']}"
+        time.attrs["calendar"] = "standard"
+        time.attrs["standard_name"] = "time"
+        for quantity in table.quantities:
+            dimensions = ("time",) if quantity.width == 1 else ("time", _AXES[quantity.width])
+            variable = file.create_variable(quantity.name, dimensions, "f8", fillvalue=np.nan)
+            variable.attrs["units"] = quantity.unit
+            variable.attrs["long_name"] = quantity.meaning
+        written = 0
+
+        def take(block: Block) -> None:
+            nonlocal written
+            here = slice(written, written + len(block["t_s"]))
+            file.variables["time"][here] = block["t_s"]
+            for name, values in block.items():
+                file.variables[name][here] = values
+            written = here.stop
+
+        return table.read(take, watch)
+
+
+# --- The bus log in the formats of Vector's tools, written by python-can
+
+MOST_CHANNELS = 2**16 - 1
+
+
+def write_blf(source: Source, path: Path, watch: Watch) -> list[str]:
+    """Write a binary log, its time stamps to the microsecond."""
+    return _write(can.BLFWriter(path), source, watch)
+
+
+def write_asc(source: Source, path: Path, watch: Watch) -> list[str]:
+    """Write a text log; its time stamps count from the first frame, the date being in its head."""
+    return _write(can.ASCWriter(path), source, watch)
+
+
+def _write(writer: can.BLFWriter | can.ASCWriter, source: Source, watch: Watch) -> list[str]:
+    """Both formats count time from the first frame: what is stamped earlier gets its time, and a note."""
+    log = LogPass(source.log)
+    first_us: int | None = None
+    early = 0
+    with writer:
+        for entry in log:
+            first_us = entry.timestamp_us if first_us is None else first_us
+            early += entry.timestamp_us < first_us
+            stamp_us = max(entry.timestamp_us, first_us)
+            writer.on_message_received(message_of(entry.frame, stamp_us / 1e6, _channel(entry.channel)))
+            watch(stamp_us - first_us)
+    if early:
+        log.notes.append(f"{counted(early, 'frame')} stamped earlier than the first, now with its time")
+    return log.notes
+
+
+def _channel(name: str) -> str | None:
+    """The name of a bus, if it ends with a number that the formats hold, or with none."""
+    number = can.util.channel2int(name)
+    return name if number is None or number < MOST_CHANNELS else None
+
 
 Write = Callable[[Source, Path, Watch], list[str]]
 
@@ -25,11 +161,11 @@ class Format(NamedTuple):
 
 FORMATS = {
     "mcap": Format(mcap.write_mcap, True, (".mcap",)),
-    "blf": Format(can_log.write_blf, True, (".blf",)),
-    "asc": Format(can_log.write_asc, True, (".asc",)),
-    "csv": Format(tables.write_csv, False, (".csv",)),
-    "parquet": Format(tables.write_parquet, False, (".parquet", ".pq")),
-    "netcdf": Format(netcdf.write_netcdf, False, (".nc", ".nc4")),
+    "blf": Format(write_blf, True, (".blf",)),
+    "asc": Format(write_asc, True, (".asc",)),
+    "csv": Format(write_csv, False, (".csv",)),
+    "parquet": Format(write_parquet, False, (".parquet", ".pq")),
+    "netcdf": Format(write_netcdf, False, (".nc", ".nc4")),
 }
 
 

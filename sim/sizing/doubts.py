@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
-from math import hypot, pi
+from math import ceil, hypot, pi
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from fsw.core.step import boot
 from fsw.table.calibration import MagnetometerTable
 from fsw.table.config import flight_config
 from fsw.table.estimator import table_bounds
+from fsw.table.sections import CIRCULAR_KEYS
 from fsw.table.uncertainty import ROUNDING
 from fsw.wire.messages import TcAckResult, TcGain, TcLaw, TcOrbitElement, TcParameter, TcSpin
 from sim.design.from_scenario import body_of
@@ -19,12 +20,50 @@ from sim.flight.record_flight import ticks_of
 from sim.scenario.assemble import plant_config
 from sim.scenario.residual_errors import coil_errors, magnetometer_errors, reading_of
 from sim.scenario.schema import Scenario, flight_table
+from sim.scenario.sections import ScenarioCoils, ScenarioOrbit, SunSensorSection
 from sim.scenario.telecommands import unsent_telecommands
 from sim.sizing.expectation import expect, field_across
-from sim.sizing.ignored_keys import ignored_keys
 from sim.sizing.levels import TOO_WEAK, levels_against, levels_for
 from sim.sizing.torques import surface_torque
-from sim.sizing.unbegun_faults import unbegun_faults
+
+# --- Faults of a scenario that a run is too short for
+
+
+def unbegun_faults(scenario: Scenario, ticks: int) -> list[str]:
+    """A sentence for each fault that does not begin in so many ticks: its first tick is after the last."""
+    tick_hz = scenario.time.tick_hz
+    return [
+        f"fault[{place}], {fault.kind} at {fault.at_s:g} s, will not begin: "
+        f"the last tick is at {(ticks - 1) / tick_hz:g} s"
+        for place, fault in enumerate(scenario.fault)
+        if ceil(fault.at_s * tick_hz) >= ticks
+    ]
+
+
+# --- Keys of a scenario that say something of a part that the satellite does not have
+
+
+def ignored_keys(scenario: Scenario) -> list[str]:
+    """A sentence for each group of keys that differ from their defaults and have no effect."""
+    told = []
+    sun, usual = scenario.sensors.sun, SunSensorSection()
+    named = [key for key in SunSensorSection.model_fields if getattr(sun, key) != getattr(usual, key)]
+    if scenario.sensors.cells is not None and named:
+        keys = ", ".join(f"sensors.sun.{key}" for key in named)
+        told.append(f"{keys}: of no effect, sensors.cells stands in place of the Sun sensor")
+    coils = scenario.coils
+    if coils.driver == "pulsed" and coils.on_fraction != ScenarioCoils.model_fields["on_fraction"].default:
+        told.append(
+            f"coils.on_fraction = {coils.on_fraction:g} is of no effect, the driver is pulsed: "
+            'coils.driver = "continuous" drives for a part of each tick'
+        )
+    orbit, circle = scenario.orbit, ScenarioOrbit.model_fields
+    beside = [key for key in CIRCULAR_KEYS if getattr(orbit, key) != circle[key].default]
+    if orbit.tle is not None and beside:
+        keys = ", ".join(f"orbit.{key}" for key in beside)
+        told.append(f"{keys}: of no effect, the elements of orbit.tle are flown; leave out one or the other")
+    return told
+
 
 DAY_S = 86400.0
 OLD_TLE_DAYS = 366.0

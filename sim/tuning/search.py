@@ -24,13 +24,29 @@ from scipy.stats import qmc
 from fsw.core.laws.table import LAWS
 from fsw.input.schema import Nested, TableError, merge
 from fsw.table.table import lay_over
+from sim.campaign.flight import record_scenario
 from sim.errors import HarnessError
-from sim.scenario.schema import Scenario, load
+from sim.scenario.schema import Scenario, load, orbit_period_s
 from sim.tuning.cost import LOST, Cost, cost_of
 from sim.tuning.flown import FlownMotion
 from sim.tuning.free_gains import FreeGain, as_control, common_gains, flat, own_gains
 from sim.tuning.rigid_flight import fly
-from sim.tuning.whole_flight import fly_whole
+
+# --- A flight of a scenario as it is, as the search of gains judges it
+
+
+def fly_whole(scenario: Scenario, seed: int, orbits: float) -> FlownMotion:
+    """Fly it with filter, boards and bus.
+
+    Raises:
+        TableError: no plant or flight software can have these numbers.
+        HarnessError: the flight cannot be flown.
+    """
+    truth = record_scenario(scenario, seed, orbits).truth
+    return FlownMotion(
+        orbit_period_s(scenario), truth["t_s"], truth["q_body_from_orbit"], truth["omega_body_orbit_radps"]
+    )
+
 
 BUDGET = 24
 """Flights for a law."""

@@ -267,7 +267,7 @@ PLANTED = {
         "import fsw.core.fdir.sensors.pair",
     ),
     "boards: what starts them over the bench": ("hil_stub/node.py", "def f():\n    import hil_stub.bench"),
-    "boards know the wire, and what starts them": ("hil_stub/process/runner.py", "import fsw.core.state"),
+    "boards know the wire, and what starts them": ("hil_stub/process/command.py", "import fsw.core.state"),
     "boards on their own know the wire alone": ("hil_stub/coils/interlock.py", "import fsw.bus.hub"),
     "sim: from the plant over flights": ("sim/record/candump.py", "import sim.replay.log_replay"),
     "sim.commissioning: wiring and calibration over": (

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from fsw import node, runner
+from fsw import node, process
 from fsw.bus.interface import BusClosed
 from fsw.node import FlightNode
 from fsw.wire.messages import CLASSES, FswBoot, MagField, PlantBoot, PlantEnd, Sync, TickDone
@@ -43,7 +43,7 @@ def run(config):
 
     def through(*happenings, parent=None, bench=False):
         bus = Script(*happenings)
-        runner.run(FlightNode(config), bus, parent, bench)
+        process.run(FlightNode(config), bus, parent, bench)
         through.left = bus.happenings
         return bus.sent
 
@@ -83,18 +83,18 @@ class TestEnd:
         assert [message.tick for message in sent if isinstance(message, TickDone)] == [0, 1]
 
     def test_where_the_last_sync_was_lost_silence_confirms_it(self, run, config, monkeypatch):
-        monkeypatch.setattr(runner, "SILENCE_S", -1.0)
+        monkeypatch.setattr(process, "SILENCE_S", -1.0)
         run(sync(config, 0), PlantEnd(3).encode(), NOTHING_CAME, sync(config, 1))
         assert run.left == [sync(config, 1)]
 
     @pytest.mark.parametrize("bench", [False, True])
     def test_a_short_silence_or_a_bench_does_not(self, run, config, monkeypatch, bench):
-        monkeypatch.setattr(runner, "SILENCE_S", -1.0 if bench else 5.0)
+        monkeypatch.setattr(process, "SILENCE_S", -1.0 if bench else 5.0)
         run(sync(config, 0), PlantEnd(3).encode(), NOTHING_CAME, sync(config, 1), bench=bench)
         assert run.left == []
 
     def test_a_doubted_one_is_forgotten_when_the_flight_goes_on(self, run, config, monkeypatch):
-        monkeypatch.setattr(runner, "SILENCE_S", -1.0)
+        monkeypatch.setattr(process, "SILENCE_S", -1.0)
         run(sync(config, 0), PlantEnd(3).encode(), sync(config, 1), NOTHING_CAME, sync(config, 2))
         assert run.left == []
 
@@ -115,7 +115,7 @@ class ClosedForSending(Script):
 @pytest.mark.parametrize("frames", [0, 1], ids=["at its boot", "while it answers"])
 def test_ends_as_well_when_it_is_sending_as_the_bus_goes(frames, config):
     bus = ClosedForSending(*[sync(config, 0), FIELD][:frames])
-    runner.run(FlightNode(config), bus)
+    process.run(FlightNode(config), bus)
     assert kinds(bus.sent) == [FswBoot] * frames
 
 
@@ -130,7 +130,7 @@ def test_ends_when_its_parent_is_gone(run, config):
 
 
 def test_ends_also_when_others_never_stop_talking(run, config, monkeypatch):
-    monkeypatch.setattr(runner, "IDLE_S", -1.0)
+    monkeypatch.setattr(process, "IDLE_S", -1.0)
     run(FIELD, FIELD, sync(config, 0), parent=os.getppid() + 1)
     assert run.left == [FIELD, sync(config, 0)]
 
@@ -141,7 +141,7 @@ def test_without_a_parent_it_waits_for_ever(run, config):
 
 class TestBootAgain:
     def test_a_plant_that_comes_later_is_told_again(self, run, config, monkeypatch):
-        monkeypatch.setattr(runner, "REPEAT_BOOT_AFTER_S", -1.0)
+        monkeypatch.setattr(process, "REPEAT_BOOT_AFTER_S", -1.0)
         assert kinds(run(START, START, sync(config, 0), END))[:3] == [FswBoot] * 3
 
     def test_not_at_once_since_the_first_may_still_be_on_its_way(self, run, config):
@@ -151,7 +151,7 @@ class TestBootAgain:
     def test_a_plant_that_starts_anew_is_told_where_there_was_none_for_a_while(
         self, run, config, monkeypatch
     ):
-        monkeypatch.setattr(runner, "REPEAT_BOOT_AFTER_S", -1.0)
+        monkeypatch.setattr(process, "REPEAT_BOOT_AFTER_S", -1.0)
         monkeypatch.setattr(node, "NO_PLANT_S", -1.0)
         sent = run(sync(config, 700), START, sync(config, 0), sync(config, 1), END)
         assert kinds(sent).count(FswBoot) == 2
@@ -159,5 +159,5 @@ class TestBootAgain:
 
     def test_not_once_the_ticks_run(self, run, config, monkeypatch):
         """The plant says at tick 0 itself that it has booted: one FSW_BOOT a run."""
-        monkeypatch.setattr(runner, "REPEAT_BOOT_AFTER_S", -1.0)
+        monkeypatch.setattr(process, "REPEAT_BOOT_AFTER_S", -1.0)
         assert kinds(run(sync(config, 0), START, sync(config, 1), END)).count(FswBoot) == 1

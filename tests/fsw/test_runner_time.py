@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from fsw import runner
+from fsw import process
 from fsw.bus.interface import BusClosed
 from fsw.node import FlightNode
 from fsw.wire.messages import CLASSES, FswBoot, MagField, PlantBoot, PlantEnd, Sync
@@ -44,8 +44,8 @@ def run(config, monkeypatch):
 
     def through(*happenings, parent=None):
         bus = TimedScript(happenings)
-        monkeypatch.setattr(runner.time, "monotonic", lambda: 1000.0 + bus.now_s)
-        runner.run(FlightNode(config), bus, parent)
+        monkeypatch.setattr(process.time, "monotonic", lambda: 1000.0 + bus.now_s)
+        process.run(FlightNode(config), bus, parent)
         return [when for when, kind in bus.sent if kind is FswBoot], bus.happenings
 
     return through

@@ -9,8 +9,8 @@ from comparison import SATELLITES, compared, main, page, record_path, state_of
 
 from fsw.core.laws.entry import Aim
 from sim.compare.case import Driver
+from sim.compare.command import yardstick
 from sim.compare.score import Score
-from sim.compare.yardstick import yardstick
 from sim.scenario.schema import load
 from sim.tuning.kept import FOLDER
 

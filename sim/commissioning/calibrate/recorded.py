@@ -1,21 +1,107 @@
 """Calibration from a recorded pass: magnetometer first, then motion, body, and Sun cells by the motion."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.commissioning.calibrate.body import BodyFit, declared_axes, fit_body
 from sim.commissioning.calibrate.cells import CellFit, fit_cells
-from sim.commissioning.calibrate.drift import Drift, bias_drift
-from sim.commissioning.calibrate.magnetometer import MagnetometerFit, fit_magnetometer
+from sim.commissioning.calibrate.magnetometer import MagnetometerFit, fit_magnetometer, sensitivity
 from sim.commissioning.recorded.along import Along, sampled
 from sim.commissioning.recorded.calibration import KnownCell, PassCalibration
 from sim.commissioning.telemetry.follow import Noise
 from sim.commissioning.telemetry.judge import Judged, judge
 from sim.commissioning.telemetry.spin import spin_axis
 
+# --- Whether the magnetometer's bias moves: over the pass, with the shadow of the Earth, with temperature
+
 Array = NDArray[np.float64]
+
+BLOCK_S, LEAST_BLOCK = 200.0, 60
+"""Length of the stretches whose biases are compared, and rows in each."""
+LEAST_PART = 0.1
+"""Sun and shadow are compared where each has this part of the rows."""
+LEAST_DEGC = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Drift:
+    """How the bias moves, sensor axes, nT.
+
+    Attributes:
+        middle_s: of each stretch, (k); ``bias_nt``, less the mean of all, and ``sigma_nt``, (k, 3).
+        eclipse_nt: bias in shadow less in the Sun, and its standard deviation, (2, 3); None: not both.
+        per_degc_nt: slope with temperature, and its standard deviation, (2, 3); None: no temperature.
+    """
+
+    middle_s: Array
+    bias_nt: Array
+    sigma_nt: Array
+    eclipse_nt: Array | None
+    per_degc_nt: Array | None
+
+    @property
+    def largest_nt(self) -> float:
+        """The largest component that is known to 3 standard deviations; 0: none."""
+        known = np.abs(self.bias_nt) > 3.0 * self.sigma_nt
+        return float(np.max(np.abs(self.bias_nt) * known, initial=0.0))
+
+
+def bias_drift(around: Along, fit: MagnetometerFit) -> Drift:
+    """The drift that the residuals of a fit show, to first order, with the matrix estimated once more.
+
+    A matrix that was fitted to a bias that moves has taken a part of the motion. Of a pass shorter than
+    ``BLOCK_S`` there is one stretch, which shows no drift.
+    """
+    finite = np.isfinite(around.recorded.mag_nt).all(axis=1)
+    slope = sensitivity(fit.offset_nt, fit.matrix, around.recorded.mag_nt[finite])
+    rows, errors = fit.correlation_rows, -fit.residual_nt
+    t_s, dark = around.t_s[finite], (~around.lit[finite]).astype(float)
+    middle_s, bias_nt, sigma_nt = _by_stretch(t_s, slope, errors, rows)
+    shared = LEAST_PART < dark.mean() < 1.0 - LEAST_PART
+    per_degc = None
+    if around.recorded.temperature_degc is not None:
+        warm = around.recorded.temperature_degc[finite]
+        if np.isfinite(warm).all() and float(np.ptp(warm)) > LEAST_DEGC:
+            per_degc = _with(warm - warm.mean(), slope, errors, rows)
+    return Drift(middle_s, bias_nt, sigma_nt, _with(dark, slope, errors, rows) if shared else None, per_degc)
+
+
+def _by_stretch(t_s: Array, slope: Array, errors: Array, correlated: float) -> tuple[Array, Array, Array]:
+    """Middles of the stretches, and their biases less the mean of all, with standard deviations."""
+    count = max(1, round(float(t_s[-1] - t_s[0]) / BLOCK_S))
+    edges = np.linspace(t_s[0], t_s[-1] + 1.0, count + 1)
+    members = [(t_s >= low) & (t_s < high) for low, high in pairwise(edges)]
+    members = [one for one in members if one.sum() >= LEAST_BLOCK]
+    if len(members) < 2:
+        return np.array([]), np.empty((0, 3)), np.empty((0, 3))
+    by_stretch = [slope[:, :3] * one[:, None] for one in members]
+    solution, sigma = _solved(np.hstack((*by_stretch, slope[:, 3:])), errors, correlated)
+    bias_nt = solution[:-6].reshape(-1, 3)
+    middle_s = np.array([float(t_s[one].mean()) for one in members])
+    return middle_s, bias_nt - bias_nt.mean(axis=0), sigma[:-6].reshape(-1, 3)
+
+
+def _with(weight: Array, slope: Array, errors: Array, correlated: float) -> Array:
+    """How the bias goes with a weight of each row, beside a constant: values and deviations, (2, 3)."""
+    solution, sigma = _solved(np.hstack((slope[:, :3] * weight[:, None], slope)), errors, correlated)
+    return np.array([solution[:3], sigma[:3]])
+
+
+def _solved(columns: Array, values: Array, correlated: float) -> tuple[Array, Array]:
+    """Least squares of the values, with standard deviations; infinite ones where the columns do not tell."""
+    size = np.sqrt(np.mean(columns**2, axis=0))
+    size[size == 0.0] = 1.0
+    found = np.linalg.lstsq(columns / size, values, rcond=None)
+    solution: Array = np.asarray(found[0] / size, dtype=np.float64)
+    variance = float(np.mean((values - columns @ solution) ** 2)) * correlated
+    if found[2] < columns.shape[1]:
+        return solution, np.full(columns.shape[1], np.inf)
+    scaled = columns / size
+    return solution, np.sqrt(variance * np.linalg.inv(scaled.T @ scaled).diagonal()) / size
+
 
 LEAST_ROWS = 15
 """With a field sample, that may tell the nine numbers of the magnetometer."""

@@ -3,16 +3,72 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
+import numpy as np
+
 from sim.audit.auditor import AuditReport
-from sim.audit.findings import AuditLimits
-from sim.drawing.canvas import style
+from sim.audit.findings import COILS, AuditLimits
+from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import Chart
-from sim.drawing.time_chart import DrawnChart
-from sim.report.charts import coils, effort, ground_track, over_time
+from sim.drawing.time_chart import DrawnChart, Level, Panel, Series, TimeChart, draw
+from sim.report.charts import coils, ground_track, over_time
 from sim.report.charts.drawn_flight import DrawnFlight
 from sim.report.charts.lines import Lines
 from sim.scenario.schema import Scenario
+
+# --- The charts of the report that show how much coils and wheel are used, of what they can give
+
+
+def duty(flight: DrawnFlight) -> DrawnChart:
+    """Duty over the orbit before each time, against what pulse length and back-off allow."""
+    limits, t_s = flight.audit.limits, flight.t_s
+    cycle_s = (limits.pulse_us + limits.backoff_us) / 1e6
+    known = t_s >= min(5.0 * cycle_s, flight.length_s / 4.0)
+    duties = [np.where(known, 100.0 * flight.duty(coil, t_s), np.nan) for coil in COILS]
+    series = [
+        Series(f"coil {coil}", duty, colour)
+        for coil, duty, colour in zip(COILS, duties, AXES_COLOURS, strict=True)
+    ]
+    if limits.shared:
+        series.append(Series("all", sum(duties, np.zeros_like(t_s)), INK, 1.3))
+    long_run = 100.0 * limits.pulse_us / (limits.pulse_us + limits.backoff_us)
+    what = "all coils" if limits.shared else "each coil"
+    bound = np.where(known, 100.0 * flight.most_duty(t_s), np.nan)
+    series.append(Series(f"{long_run:.2f} %: limit of {what}", bound, LIMIT, 1.3))
+    most = max([long_run, *(float(np.nanmax(line)) for line in (bound, *duties) if known.any())])
+    panel = Panel(
+        "Duty over the last orbit",
+        "duty [%]",
+        1.8,
+        series,
+        reach=(0.0, 1.15 * most),
+    )
+    return draw(flight.time, TimeChart(t_s, (panel,)))
+
+
+def continuous_duty(flight: DrawnFlight) -> DrawnChart:
+    """Duty of a continuous driver over the orbit before each time, against its part of a tick."""
+    duties, most = 100.0 * flight.line("duty"), 100.0 * flight.audit.limits.most_duty(flight.length_s)
+    series = [
+        *(Series(f"coil {coil}", duties[:, coil], AXES_COLOURS[coil]) for coil in COILS),
+        Series("any coil", duties[:, len(COILS)], INK, 1.3),
+    ]
+    limit = Level(most, f"{most:.4g} %: the part of a tick for which coils are driven", LIMIT)
+    panel = Panel(
+        "Duty over the last orbit", "duty [%]", 1.8, series, levels=(limit,), reach=(0.0, 1.15 * most)
+    )
+    return draw(flight.time, TimeChart(flight.t_s, (panel,)))
+
+
+def wheel(flight: DrawnFlight) -> DrawnChart:
+    """The momentum of the driven wheel relative to the body, between the ends of its range."""
+    most_mnms = 1e3 * (flight.wheel_nms or 0.0)
+    momentum = Series("wheel", 1e3 * flight.line("wheel_nms"), AXES_COLOURS[0])
+    levels = [Level(sign * most_mnms, f"{sign * most_mnms:+.4g} mN m s", LIMIT) for sign in (1.0, -1.0)]
+    reach = (-1.15 * most_mnms, 1.15 * most_mnms)
+    panel = Panel("Momentum of the wheel", "momentum [mN m s]", 1.6, (momentum,), levels=levels, reach=reach)
+    return draw(flight.time, TimeChart(flight.t_s, (panel,)))
+
 
 Drawing = tuple[Callable[[DrawnFlight], DrawnChart], str]
 """What draws a chart, and the words under it."""
@@ -59,9 +115,9 @@ def _effort(flight: DrawnFlight) -> ChartSection:
 
 def _charts(flight: DrawnFlight, drawings: tuple[Drawing, ...]) -> tuple[Chart, ...]:
     charts = []
-    for draw, words in drawings:
-        drawn = draw(flight)
-        charts.append(chart(draw.__name__, drawn.picture, words, drawn.data))
+    for drawing, words in drawings:
+        drawn = drawing(flight)
+        charts.append(chart(drawing.__name__, drawn.picture, words, drawn.data))
     return tuple(charts)
 
 
@@ -101,14 +157,14 @@ _ENVIRONMENT: tuple[Drawing, ...] = (
 )
 _CONTINUOUS: tuple[Drawing, ...] = (
     (
-        effort.continuous_duty,
+        continuous_duty,
         "Fraction of the orbit before each time, or of the flight so far, for which a coil was driven: ticks "
         "in which the plant has a dipole along it, by the part of a tick for which the driver drives.",
     ),
 )
 _WHEEL: tuple[Drawing, ...] = (
     (
-        effort.wheel,
+        wheel,
         "Momentum of the driven wheel along its axis, relative to the body, as the plant has it. Dashed: "
         "where its motor can speed it up no more.",
     ),
@@ -133,7 +189,7 @@ def _coils(limits: AuditLimits) -> tuple[Drawing, ...]:
             f"{limits.backoff_us / 1e6:g} s from the end of a pulse, in which no pulse of {whose} may start.",
         ),
         (
-            effort.duty,
+            duty,
             "Fraction of the orbit before each time, or of the flight so far, for which a coil was driven, "
             "and the most that the limits admit in that time: pulses fit a little more into a short one.",
         ),

@@ -1,23 +1,137 @@
 """Why a requirement is missed: a table of causes, each a pure function of what is known of the flight."""
 
 from collections.abc import Callable, Sequence
-from math import exp, inf, log
+from math import degrees, exp, inf, log
 from typing import NamedTuple
 
 import numpy as np
 
+from fsw.table.estimator import table_bounds
+from fsw.table.uncertainty import UncertaintyTable, limits
+from fsw.table.uncertainty import bounds as ordinary_bounds
 from fsw.wire.messages import Mode
 from sim.design.from_scenario import body_of, pulsing_of
 from sim.design.theory.floquet import NEUTRAL, degree_of_stability, monodromy
 from sim.design.theory.linear import Gains, closed_loop
 from sim.design.theory.pulsed import PulsedLoop
+from sim.report.figures.parameters import true_parameters
 from sim.report.requirements.evidence import FlightEvidence, Missed
-from sim.report.requirements.mismatch import beyond_bounds
-from sim.report.requirements.settling import fell_back, left_again, slow, swings
 from sim.report.requirements.sizing import balance, gradient_level_am2, least_error_deg, pulse_turn_deg
 from sim.report.requirements.words import number, orbits, part
-from sim.scenario.schema import flight_table
+from sim.scenario.schema import Scenario, flight_table
 from sim.sizing.levels import TOO_WEAK
+
+# --- Where the satellite of a scenario differs from its onboard table by more than the bounds of that table
+
+SHOWN = 3
+BEYOND = 1.2
+"""A deviation above this many times its bound is stated, if it is more than ordinary for such a satellite."""
+WITHOUT_SENSORS = ("coil_error", "inertia_error_kgm2")
+"""What matters to a controller with perfect knowledge."""
+
+WORDS = {
+    "mag_bias_t": ("magnetometer bias", "nT", 1e9),
+    "torque_body_nm": ("disturbance torque", "N m", 1.0),
+    "dipole_body_am2": ("residual dipole", "A m^2", 1.0),
+    "coil_error": ("gain or axes of the coils off by", "%", 100.0),
+    "inertia_error_kgm2": ("inertia off by", "kg m^2", 1.0),
+    "mag_turn_rad": ("magnetometer turned by", "deg", degrees(1.0)),
+    "mag_scale": ("scale of the magnetometer off by", "%", 100.0),
+    "sun_turn_rad": ("Sun sensor turned by", "deg", degrees(1.0)),
+    "delay_s": ("age of the samples", "s", 1.0),
+    "cell_gain": ("gain of a Sun cell off by", "%", 100.0),
+    "earth_light": ("Earth's light on the cells off by", "% of the Sun's", 100.0),
+}
+"""A parameter in words, the unit in which it is stated, and how many of these are one of SI."""
+
+
+def beyond_bounds(scenario: Scenario) -> list[str]:
+    """Its parameters beyond their bounds, a clause each, the worst first; at most ``SHOWN``."""
+    table = flight_table(scenario)
+    bounds = limits(table_bounds(table), table.body.inertia)
+    albedo = table.cells.albedo if table.cells else None
+    usual = ordinary_bounds(UncertaintyTable(), table.ordinary, albedo)
+    ordinary = limits(usual, table.body.inertia)
+    at_start = {"lit": np.ones(1), "t_s": np.zeros(1)}
+    found = []
+    for name, values in true_parameters(scenario, table, at_start).items():
+        if scenario.knowledge == "perfect" and name not in WITHOUT_SENSORS:
+            continue
+        times, true, bound = max(
+            (abs(true) / max(BEYOND * bound, least), abs(true), bound)
+            for true, bound, least in zip(values, bounds[name], ordinary[name], strict=True)
+        )
+        if times > 1.0:
+            words, unit, factor = WORDS[name]
+            found.append((times, f"{words} {factor * true:.3g} {unit}, its bound is {factor * bound:.3g}"))
+    return [sentence for _, sentence in sorted(found, reverse=True)[:SHOWN]]
+
+
+# --- Why a flight settled late: causes from its course, in addition to those of ``causes.py``
+
+MOST_TOLD = 3
+FALLS = 0.9
+"""An error falls if it is at most this fraction of itself an orbit earlier."""
+
+
+def fell_back(missed: Missed, evidence: FlightEvidence) -> str:
+    """The controller went back to damp rates, or to SAFE, after it had known the attitude."""
+    told = [
+        f"{mode.name} from {orbits(at)} on for {orbits(length)}" for mode, at, length in evidence.fell_back
+    ]
+    more = f" and {len(told) - MOST_TOLD} times more" if len(told) > MOST_TOLD else ""
+    return f"the controller fell back to {', to '.join(told[:MOST_TOLD])}{more}" if told else ""
+
+
+def left_again(missed: Missed, evidence: FlightEvidence) -> str:
+    """The error had been small, and grew again."""
+    under = [place for place, error in enumerate(evidence.course) if missed.limit and error < missed.limit]
+    if missed.limit is None or not under:
+        return ""
+    worst = max(range(under[0], len(evidence.course)), key=lambda place: evidence.course[place])
+    if evidence.course[worst] < missed.limit:
+        return ""
+    unit = _unit(missed)
+    return (
+        f"it was under {number(missed.limit)} {unit} at {orbits(under[0] / 2.0)} and left it again: "
+        f"{number(evidence.course[worst])} {unit} RMS in the half orbit from {orbits(worst / 2.0)} on"
+    )
+
+
+def slow(missed: Missed, evidence: FlightEvidence) -> str:
+    """It settled, with an error that fell all the way."""
+    if missed.settled is None or missed.limit is None:
+        return ""
+    way = evidence.course[: int(2.0 * missed.settled) + 1]
+    if len(way) < 2 or min(way) <= 0.0:
+        return ""
+    factor = float(np.exp(2.0 * np.polyfit(np.arange(len(way)), np.log(way), 1)[0]))
+    if factor > FALLS:
+        return ""
+    return (
+        f"slow: from {number(way[0])} {_unit(missed)} RMS in the first half orbit the error fell to "
+        f"{part(factor)} of itself an orbit, and so to {number(missed.limit)} at {orbits(missed.settled)}"
+    )
+
+
+def swings(missed: Missed, evidence: FlightEvidence) -> str:
+    """It does not settle, and the error no longer falls."""
+    trend = evidence.trend
+    if missed.settled is not None or missed.limit is None or len(trend) < 3 or min(trend) <= 0.0:
+        return ""
+    slope = float(np.polyfit(np.arange(len(trend)) / 2.0, np.log(trend), 1)[0])
+    if trend[-1] > missed.limit and slope <= log(FALLS):
+        return ""
+    span = f"{number(min(trend))} to {number(max(trend))} {_unit(missed)} RMS"
+    return (
+        f"the error falls no longer: {span} in each of the last {len(trend)} half orbits, "
+        f"and more than {number(missed.limit)} at times"
+    )
+
+
+def _unit(missed: Missed) -> str:
+    return "deg/s" if missed.what == "spin" else "deg"
+
 
 TREND = 3
 """Half orbits from which a trend is determined."""

@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from sim.audit.findings import DrivenPulse
-from sim.audit.pulse_table import PulseTable
+from sim.audit.pulse_judge import PulseTable
 
 THIRD = Fraction(1, 3_000_000)
 MONTH = 30 * 86400 * 3_000_000

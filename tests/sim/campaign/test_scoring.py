@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from sim.campaign.definition.campaign import StatisticsSection
 from sim.campaign.flight import record_scenario
-from sim.campaign.scoring import score
+from sim.campaign.one_run import score
 from sim.report.figures.attitude_arrays import angle_rad, axis1_errors, rotation_vectors
 from sim.scenario.schema import load, orbit_period_s
 

@@ -5,7 +5,7 @@ import pytest
 
 from fsw.core.laws.table import LAWS
 from sim.compare.case import Driver
-from sim.compare.page import compare_page
+from sim.compare.command import compare_page
 from sim.compare.score import History, Result, Score
 from sim.drawing.canvas import TimeAxis
 from sim.report.figures.controlled import Controlled

@@ -2,7 +2,7 @@
 
 import pytest
 
-from sim.compare.yardstick import yardstick
+from sim.compare.command import yardstick
 from sim.scenario.schema import load, parse_settings
 
 

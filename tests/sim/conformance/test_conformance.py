@@ -19,7 +19,7 @@ from hil_stub.coils.events import CoilEventCode
 from hil_stub.sensors.stimulus import constant
 from sim.conformance import checks
 from sim.conformance.board_under_test import BoardLimits, BoardUnderTest
-from sim.conformance.check_runner import CHECKS, run_checks
+from sim.conformance.command import CHECKS, run_checks
 from sim.errors import HarnessError
 
 NAMES = [check.run.__name__ for check in CHECKS]

@@ -14,7 +14,7 @@ from fsw.wire.messages import (
 from hil_stub.bench import Bench, CoilBoard
 from hil_stub.coils.coil_driver import CoilLimits
 from sim.conformance.board_under_test import BoardLimits
-from sim.conformance.check_runner import run_checks
+from sim.conformance.command import run_checks
 
 pytestmark = interpreted_alone()
 

@@ -3,7 +3,7 @@
 import pytest
 
 from sim.design.analysis import picture_maps
-from sim.design.page import design_page
+from sim.design.command import design_page
 
 pytestmark = pytest.mark.long
 

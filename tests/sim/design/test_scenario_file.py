@@ -5,7 +5,7 @@ import tomllib
 
 import pytest
 
-from sim.design.scenario_file import check_writable, write_gains
+from sim.design.command import check_writable, write_gains
 from sim.design.theory.linear import Gains
 from sim.errors import HarnessError
 

@@ -6,7 +6,7 @@ import pytest
 from fsw.bus.can_message import frame_of
 from fsw.wire.frame import Frame
 from sim.errors import HarnessError
-from sim.export.can_log import write_asc, write_blf
+from sim.export.command import write_asc, write_blf
 from sim.export.mcap import write_mcap
 from sim.export.source import open_source
 

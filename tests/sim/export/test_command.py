@@ -7,7 +7,7 @@ import sys
 import pytest
 from click.testing import CliRunner
 
-from sim.export import can_log, command, tables
+from sim.export import command
 from sim.record.candump import read_log
 from torquer.cli.main import main
 
@@ -148,8 +148,8 @@ def test_a_package_that_is_missing_is_named_with_its_extra(
 def test_progress_comes_to_its_end(flight, tmp_path):
     source = command.open_source(flight.folder)
     for write, total in (
-        (can_log.write_asc, command.LogPass(source.log).duration_us()),
-        (tables.write_csv, source.record["ticks"] - 1),
+        (command.write_asc, command.LogPass(source.log).duration_us()),
+        (command.write_csv, source.record["ticks"] - 1),
     ):
         seen = []
         write(source, tmp_path / "out", seen.append)

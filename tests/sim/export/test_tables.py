@@ -6,8 +6,8 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from sim.export.command import write_csv, write_parquet
 from sim.export.source import open_source
-from sim.export.tables import write_csv, write_parquet
 from sim.record.truth import COLUMNS
 
 

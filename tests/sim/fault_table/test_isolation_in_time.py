@@ -11,7 +11,7 @@ from fsw.core.telemetry import Event as Number
 from fsw.wire.messages import Mode
 from hil_stub.coils.events import CoilEventCode
 from sim.fault_rig.record import BoardEvent, FaultFlightRecord, ReportedEvent
-from sim.fault_table import isolation, showing
+from sim.fault_table import isolation
 from sim.fault_table.row import FaultRow, RowFault
 from sim.plant.coil_drive import OFF
 
@@ -43,7 +43,7 @@ def named(tick, sensor=Sensor.MAGNETOMETER):
 
 def test_the_time_to_a_finding_is_in_seconds_from_the_onset_of_the_fault(bounds):
     fault = RowFault("none", {}, inf, "magnetometer", after_s=10.0)
-    assert showing.onset_tick(fault, record()) == ONSET + 40
+    assert isolation.onset_tick(fault, record()) == ONSET + 40
     assert isolation.isolation_s(fault, record(named(139), named(150), named(180))) == 2.5
     assert isolation.doubt_s(fault, record(ReportedEvent(150, Number.SENSORS_DISAGREE, 0))) == 2.5
     assert isolation.isolates_faulty_unit(MAG, record(named(200)), bounds) == (True, "found after 25 s")
@@ -54,7 +54,7 @@ def test_a_fault_shows_from_its_first_second_to_its_last(lit_tick, shows):
     fault = RowFault("sun_swapped", {}, 5.0, "sun sensor", after_s=10.0)
     flown = record(lit=False)
     flown.lit[lit_tick] = True
-    assert showing.shows(fault, flown) is shows
+    assert isolation.shows(fault, flown) is shows
 
 
 class TestGivenUp:

@@ -3,8 +3,7 @@
 import pytest
 
 from sim.scenario.schema import load, shipped
-from sim.sizing.doubts import doubts
-from sim.sizing.ignored_keys import ignored_keys
+from sim.sizing.doubts import doubts, ignored_keys
 
 TLE = load("microsat").orbit.tle
 CONTINUOUS = {"driver": "continuous", "max_dipole_am2": 1.0, "on_fraction": 0.5}

@@ -7,8 +7,7 @@ from sim.faults.section import make_plant
 from sim.flight.record_flight import ticks_of
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import load
-from sim.sizing.doubts import doubts
-from sim.sizing.unbegun_faults import unbegun_faults
+from sim.sizing.doubts import doubts, unbegun_faults
 
 TIMES_S = (0.0, 3.3, 4.0, 4.01, 1e9)
 

@@ -5,7 +5,7 @@ import numpy as np
 from sim.campaign.flight import Order, record_order
 from sim.scenario.schema import load, orbit_period_s
 from sim.tuning.rigid_flight import fly
-from sim.tuning.whole_flight import fly_whole
+from sim.tuning.search import fly_whole
 
 OFF_AXIS = {
     "body": {"inertia_kgm2": [[0.9, 0.02, -0.01], [0.02, 1.7, 0.03], [-0.01, 0.03, 1.8]]},

@@ -2,7 +2,7 @@
 
 import pytest
 
-from sim.watch.dots import picture, project, sparkline
+from sim.watch.terminal import picture, project, sparkline
 
 
 def at(cells, letter):

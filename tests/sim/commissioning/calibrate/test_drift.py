@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from recorded_samples import made_up
 
-from sim.commissioning.calibrate.drift import bias_drift
 from sim.commissioning.calibrate.magnetometer import fit_magnetometer
+from sim.commissioning.calibrate.recorded import bias_drift
 
 
 def drift(folder, drift_nt, extra=None):

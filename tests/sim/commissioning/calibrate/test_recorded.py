@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from recorded_samples import AXES, DATA, FACES, MATRIX, OFFSET_NT, RATIOS, TLE, made_up
 
 from sim.commissioning.calibrate.body import declared_axes, fit_body
-from sim.commissioning.calibrate.calibration_file import as_toml
+from sim.commissioning.calibrate.command import as_toml
 from sim.commissioning.calibrate.page import calibration_page
 from sim.commissioning.calibrate.recorded import calibrate_pass
 from sim.commissioning.recorded.calibration import PassCalibration, read_calibration

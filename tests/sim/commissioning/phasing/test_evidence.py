@@ -6,7 +6,7 @@ import pytest
 from sim.commissioning.calibrate.flown.coil_axes import CoilAxes
 from sim.commissioning.calibrate.flown.coil_field import CoilResponse
 from sim.commissioning.calibrate.flown.wiring import RIGHT, WIRINGS, body_from_outputs, channels_from_body
-from sim.commissioning.phasing.evidence import by_coil_field, by_field_around, by_torque, wirings_of
+from sim.commissioning.phasing.judge import by_coil_field, by_field_around, by_torque, wirings_of
 
 EVEN = 2000.0 * np.eye(3)
 UNEVEN = np.array([[1000.0, 0.0, 0.0], [0.0, 2000.0, 0.0], [0.0, 0.0, 4500.0]])

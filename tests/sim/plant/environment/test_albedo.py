@@ -5,8 +5,8 @@ from math import cos, pi, radians, sin
 import numpy as np
 import pytest
 
-from sim.plant.environment.albedo import earthlight
 from sim.plant.environment.orbit import EARTH_RADIUS_M
+from sim.plant.hardware.sun_sensing import earthlight
 
 E = np.array([2.0, -3.0, 6.0]) / 7.0
 ACROSS = np.cross(E, [0.0, 0.0, 1.0]) / np.linalg.norm(np.cross(E, [0.0, 0.0, 1.0]))

@@ -5,8 +5,8 @@ from math import acos, pi
 import numpy as np
 import pytest
 
-from sim.plant.environment.earth_view import earth_view
 from sim.plant.environment.orbit import EARTH_RADIUS_M as R
+from sim.plant.hardware.sun_sensing import earth_view
 
 
 def over_the_surface(r_m, sun, normals, steps=90):

@@ -6,10 +6,9 @@ from math import cos, exp, radians, sin, sqrt
 import numpy as np
 import pytest
 
-from sim.plant.environment.earth_view import earth_view
 from sim.plant.environment.orbit import EARTH_RADIUS_M
-from sim.plant.hardware import sun_cells
-from sim.plant.hardware.sun_cells import SunCellPhysics
+from sim.plant.hardware import sun_sensing
+from sim.plant.hardware.sun_sensing import SunCellPhysics, earth_view
 from sim.plant.rotation import from_vector, matrix
 from sim.plant.sensor_config import CellConfig, SunCellsConfig
 
@@ -87,7 +86,7 @@ def test_the_earth_s_light_is_that_of_its_view_also_in_the_shade():
 
 @pytest.mark.interpreted
 def test_it_varies_over_the_clouds_as_a_markov_process(monkeypatch):
-    monkeypatch.setattr(sun_cells, "CLOUDS_S", 3.0)
+    monkeypatch.setattr(sun_sensing, "CLOUDS_S", 3.0)
     one = replace(CELLS, cells=CELLS.cells[1:2], albedo=0.3, albedo_spread=0.2)
     bare = measured(replace(one, albedo=0.0), SUN)[0][0]
     brightest = np.array(measured(one, SUN, times=4000))[:, 0] - bare

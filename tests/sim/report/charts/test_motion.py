@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.report.charts.motion import COLUMNS, MOST_SAMPLES, MotionSamples
+from sim.report.charts.lines import COLUMNS, MOST_SAMPLES, MotionSamples
 
 
 def histories(ticks):

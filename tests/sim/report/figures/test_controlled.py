@@ -6,7 +6,7 @@ import pytest
 from sim.record.estimates import EstimateRecorder
 from sim.report.figures.controlled import error_vectors, spin_reference_radps
 from sim.report.figures.performance import perform
-from sim.report.requirements.gather import Gathered
+from sim.report.requirements.judge import Gathered
 from sim.scenario.schema import load
 
 

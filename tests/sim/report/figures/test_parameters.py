@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.parameters import NAMES, NOTHING, OF_CELLS, SIZES
 from sim.report.figures.parameters import parameter_figures
-from sim.report.parameter_table import UNITS, parameter_table
+from sim.report.page import UNITS, parameter_table
 from sim.scenario.schema import load
 
 UNLIKE = {

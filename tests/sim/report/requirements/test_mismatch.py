@@ -2,7 +2,7 @@
 
 import pytest
 
-from sim.report.requirements.mismatch import beyond_bounds
+from sim.report.requirements.causes import beyond_bounds
 from sim.scenario.schema import load
 
 

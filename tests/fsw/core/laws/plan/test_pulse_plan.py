@@ -10,8 +10,8 @@ from fsw.core.laws.lqr import LqrGains, schedule
 from fsw.core.laws.plan.cost_to_go import cost_to_go
 from fsw.core.laws.plan.orbit_ahead import sight
 from fsw.core.laws.plan.pulse_model import NO_PULSE, Pulse, PulseModel, choices, kicks
-from fsw.core.laws.plan.pulse_plan import BARRED, SEQUENCES, Opportunity, _least, first_pulse
 from fsw.core.laws.plan.riccati import regulator_problem
+from fsw.core.laws.pulse_mpc import BARRED, SEQUENCES, Opportunity, _least, first_pulse
 
 INERTIA = ((1.02, 0.03, -0.05), (0.03, 1.85, 0.02), (-0.05, 0.02, 1.95))
 INVERSE = tuple(map(tuple, np.linalg.inv(INERTIA).tolist()))
