@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 from argument_types import count
 
-from sim.design.feedback.neural import MOST_AM2, PD_GAINS, cost, orbit_rms_deg, train, trials
+from sim.design.neural_training import MOST_AM2, PD_GAINS, cost, orbit_rms_deg, train, trials
 from sim.design.theory.bodies import BODIES
 from sim.progress import progress
 from sim.record.whole_file import replace_text
 
-KEPT = Path(__file__).resolve().parent.parent / "sim" / "design" / "feedback" / "neural_found.json"
+KEPT = Path(__file__).resolve().parent.parent / "sim" / "design" / "neural_found.json"
 FLIGHTS, GENERATIONS, FLIGHTS_SEED, SEARCH_SEED = 60, 140, 1, 3
 
 

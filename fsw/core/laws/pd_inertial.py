@@ -6,7 +6,7 @@ omega the absolute rate, body axes, and the target an attitude fixed in ``eci``;
 S, as for ``pd``. In an orbit the field turns twice in the inertial frame, so that on average the coils reach
 each axis. The gravity gradient is a disturbance, largest where the radius is 45 deg from two principal axes.
 
-Gains are those of ``sim/design/feedback/inertial.py``: averaging gives the ratio of k_a to k_w^2, Floquet
+Gains are those of ``sim/design/inertial_gains.py``: averaging gives the ratio of k_a to k_w^2, Floquet
 theory k_w.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, eq. 9, after Ovchinnikov, Roldugin, Penkov 2015 (Acta

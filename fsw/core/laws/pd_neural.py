@@ -11,7 +11,7 @@ h a tick, T the lag, a fraction of an orbit, E0 = 0.02 and Omega0 = E0 w0. The i
 that the weights serve any body whose k_w and k_a are near the best.
 
 Source: Ovchinnikov, Roldugin 2019, section 3.4, after Das, Sinha, Misra 2012 (dynamic neural units choose the
-gains). The review prints no equation; units and training (``sim/design/feedback/neural.py``) are derived.
+gains). The review prints no equation; units and training (``sim/design/neural_training.py``) are derived.
 """
 
 from dataclasses import dataclass

@@ -6,8 +6,8 @@ from math import cos, radians, sin
 import numpy as np
 
 from sim.campaign.claim import Claim, Study
-from sim.design.allocation.thrusters import Demands, demands, given, pairs, propellant
 from sim.design.theory.bodies import BODIES
+from sim.design.thruster_allocation import Demands, demands, given, pairs, propellant
 from sim.effects.fluid_ring import FluidRing
 from sim.effects.lorentz import lorentz_torque, velocity_in_field
 from sim.effects.solar_flaps import SUNLIGHT_PA, SolarFlaps

@@ -13,7 +13,7 @@ from fsw.core.laws.spin import SpinGains
 from fsw.core.laws.sun_critical import CriticalGains
 from fsw.core.laws.sun_panels import PanelGains
 from sim.campaign.claim import Claim, Study
-from sim.design.one_axis.field_tracking import best_tracking
+from sim.design.field_tracking_stability import best_tracking
 from sim.design.theory.bodies import Body
 from sim.plant.config import PlateConfig
 from sim.plant.dynamics.surfaces import drag

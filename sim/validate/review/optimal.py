@@ -14,10 +14,10 @@ from fsw.core.laws.pd_boxed import boxed_dipole
 from fsw.core.laws.plan.riccati import periodic
 from fsw.core.laws.projection import torque_dipole
 from sim.campaign.claim import Claim, ClaimOutcome, Study
-from sim.design.robust.invariant import periodic_cost
-from sim.design.robust.measured import Measured, central, least, norm
-from sim.design.robust.norms import Norms, norms
-from sim.design.robust.pd_gains import best_pd, pd_tabulated
+from sim.design.h_infinity_gains import best_pd, pd_tabulated
+from sim.design.measured_h_infinity import Measured, central, least, norm
+from sim.design.periodic_norms import Norms, norms
+from sim.design.riccati_by_subspace import periodic_cost
 from sim.design.theory.bodies import BODIES, Vec3
 from sim.validate.review.flown import regulators
 

@@ -13,7 +13,7 @@ from fsw.core.laws.plan.box import box_minimum
 from fsw.core.laws.plan.riccati import Array
 from fsw.core.laws.plan.tumbling import Tumbling, costs, descend
 from sim.campaign.claim import Claim, ClaimOutcome, Study
-from sim.design.predictive.explicit import pieces
+from sim.design.explicit_mpc import pieces
 from sim.design.theory.bodies import BODIES
 from sim.validate.review.flown import prediction, slew
 

@@ -13,7 +13,7 @@ from fsw.core.laws.spin_axis import SpinAxisGains, TargetGains, ThreeTermGains
 from fsw.core.laws.stepped_precession import StepGains
 from fsw.core.laws.target_precession import PrecessionGains
 from sim.campaign.claim import Claim, Study
-from sim.design.spin import roll_precession
+from sim.design import roll_precession_gain
 from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2, Array
 from sim.validate.review.figures import FlownClaim, one_figure
 from sim.validate.review.flown import three_term
@@ -30,7 +30,7 @@ RATE_RADPS = float(np.sqrt(MU_M3PS2 / RADIUS_M**3))
 SPIN_RADPS = 0.1
 TILT_RAD = (0.35, 0.26, 0.0)
 GAIN_C = 0.4
-"""Gain of the precession by roll, without unit; see ``sim.design.spin.roll_precession``."""
+"""Gain of the precession by roll, without unit; see ``sim.design.roll_precession_gain``."""
 
 SPINNING = LawFlight(
     "nutation",
@@ -274,12 +274,12 @@ def flown_figure(case: LawFlight, figure: str) -> float:
 
 def floquet_share() -> float:
     """Floquet theory over averaging."""
-    return roll_precession.degree(GAIN_C) / roll_precession.averaged(GAIN_C)[0]
+    return roll_precession_gain.degree(GAIN_C) / roll_precession_gain.averaged(GAIN_C)[0]
 
 
 def roll_decays() -> float:
     """Logarithm of the angle lost in five orbits, of what the slower exponent loses."""
-    k_h = roll_precession.gain_of(GAIN_C, RATE_RADPS, RADIUS_M, radians(INCLINATION_DEG))
+    k_h = roll_precession_gain.gain_of(GAIN_C, RATE_RADPS, RADIUS_M, radians(INCLINATION_DEG))
     case = replace(SPINNING, law="roll_precession", gains=RollGains(3.0, k_h), most_am2=20.0, orbits=5.0)
     angle = angle_deg(fly(case).momentum_eci_nms, NORMAL)
-    return float(np.log(angle[0] / angle[-1]) / (-roll_precession.degree(GAIN_C) * 10.0 * np.pi))
+    return float(np.log(angle[0] / angle[-1]) / (-roll_precession_gain.degree(GAIN_C) * 10.0 * np.pi))

@@ -11,7 +11,7 @@ from sim.campaign.claim import Claim, Study
 from sim.campaign.code_digest import code_digest
 from sim.campaign.flight import FlightResult, Order
 from sim.campaign.study import Figure, Group, campaign
-from sim.design.predictive.time_optimal import NoSlewError
+from sim.design.time_optimal_slew import NoSlewError
 from sim.errors import HarnessError
 from sim.validate import command, flight_rows
 from sim.validate.commissioning.calibrated import Flown, conclude

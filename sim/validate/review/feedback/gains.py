@@ -10,13 +10,13 @@ from fsw.input.schema import Nested
 from sim.campaign.claim import Claim, ClaimOutcome, Study, Threshold
 from sim.campaign.flight import Order
 from sim.campaign.study import Figure, Group, campaign, figure_of
-from sim.design.feedback.averaged_error import search
-from sim.design.feedback.bifurcation import bifurcation
-from sim.design.feedback.held import longest_hold_s, weaker
-from sim.design.feedback.inertial import best_of_all, best_on_line
-from sim.design.feedback.lqr_gains import lqr_gains
-from sim.design.feedback.minimax import minimax, settling_orbits, spread_starts
-from sim.design.feedback.robust import robust_share, worst_degree
+from sim.design.averaged_error import search
+from sim.design.gain_bifurcation import bifurcation
+from sim.design.held_dipole import longest_hold_s, weaker
+from sim.design.inertial_gains import best_of_all, best_on_line
+from sim.design.lqr_gains import lqr_gains
+from sim.design.minimax_gains import minimax, settling_orbits, spread_starts
+from sim.design.robust_gains import robust_share, worst_degree
 from sim.design.theory.bodies import BODIES, Body
 from sim.design.theory.linear import Gains
 from sim.validate.microsat import pointing_figures

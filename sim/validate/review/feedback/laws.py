@@ -10,7 +10,7 @@ import numpy as np
 from fsw.core.laws.field_direction import FieldDirectionGains
 from fsw.core.laws.pd_held import ApartGains, HoldGains
 from sim.campaign.claim import Claim, ClaimOutcome, Study
-from sim.design.feedback.inertial import best_on_line
+from sim.design.inertial_gains import best_on_line
 from sim.plant.config import OrbitConfig
 from sim.plant.environment.field import DirectDipole
 from sim.plant.environment.orbit import Array, CircularOrbit

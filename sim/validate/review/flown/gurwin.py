@@ -9,7 +9,7 @@ import numpy as np
 from fsw.core.laws.lqr import LqrGains, schedule
 from sim.campaign.claim import Study
 from sim.design.theory.bodies import Body, diagonal
-from sim.design.wheel.harmonics import fit, orbit
+from sim.design.torque_harmonics import fit, orbit
 from sim.plant.config import OrbitConfig
 from sim.plant.environment.field import RotatingIgrf
 from sim.plant.environment.orbit import CircularOrbit

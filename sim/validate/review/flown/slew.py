@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from sim.campaign.claim import Claim, ClaimOutcome, Study
-from sim.design.predictive.time_optimal import Slew, best, flown
 from sim.design.theory.bodies import diagonal
+from sim.design.time_optimal_slew import Slew, best, flown
 from sim.validate.review.law_flight import fly
 from sim.validate.review.satellites.fifty_kg import BODY, DIRECTION, PD, flight
 

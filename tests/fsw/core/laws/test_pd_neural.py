@@ -12,7 +12,7 @@ from fsw.core.laws.pd import pd_far
 from fsw.core.laws.pd_neural import NeuralGains, neural, seen
 
 K_W, K_A = 5e6, 1200.0
-KEPT = Path(__file__).resolve().parents[4] / "sim" / "design" / "feedback" / "neural_found.json"
+KEPT = Path(__file__).resolve().parents[4] / "sim" / "design" / "neural_found.json"
 NOTHING = NeuralGains(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1)
 
 

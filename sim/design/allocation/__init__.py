@@ -1,1 +1,0 @@
-"""Torque shared between coils and other actuators."""

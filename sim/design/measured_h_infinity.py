@@ -1,0 +1,175 @@
+"""H-infinity control from the measured field: models of measurement and disturbance in one game.
+
+The steps of ``fsw/core/laws/plan/riccati.py`` with a torque w and an error v of the field in each,
+
+    x+ = F x - G [b x] m + G w,    y = [b x] theta + v,    z = (Q^1/2 x, effort^1/2 m),
+
+w in units of a torque, v in units of an error. The dipole of a step knows y up to the step before. With P and
+M of the game that knows the state (``game``), the estimate xi and its Sigma are
+
+    Sigma+ = F S F^T + G G^T torque^2,    S = (Sigma^-1 + H^T H / error^2 - Q / gamma^2)^-1,
+    xi+ = F xi - G [b x] m + F S (Q xi / gamma^2 + H^T (y - H xi) / error^2),
+    m = M (E - Sigma P / gamma^2)^-1 xi,    H = (0, [b x]),
+
+as long as U = Sigma^-1 - Q / gamma^2 and gamma^2 E - (F U^-1 F^T + G G^T torque^2) P+ are positive: the worst
+is finite though the field of a step tells nothing. Then the sum of |z|^2 stays under gamma^2 times that of
+|w|^2 + |v|^2. A large gamma leaves the Kalman filter with the regulator (LQG).
+
+Source: Kulkarni, Campbell 2004, as in Ovchinnikov, Roldugin 2019, section 3.2, where the method is named;
+the equations: Basar, Bernhard 1995, chapter 6 (delayed measurement).
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from fsw.core.laws.plan.game import game_periodic
+from fsw.core.laws.plan.riccati import Array, NotHeldError, Problem, periodic, pushes_of, skews
+from sim.design.periodic_norms import FREQUENCIES, UnstableLoopError
+
+ORBITS = 60
+"""After which the estimate's matrix has settled."""
+SETTLED = 1e-6
+HALVINGS = 7
+"""Of the interval in which the least gamma lies."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """What is controlled, and by what.
+
+    Attributes:
+        problem: steps and weights.
+        b_orbit_t: field in the middle of each step, orbital axes, T, shape (n, 3).
+        torque_nm: w of one, N m.
+        error_t: v of one, T.
+    """
+
+    problem: Problem
+    b_orbit_t: Array
+    torque_nm: float
+    error_t: float
+
+    def sees(self) -> Array:
+        """H of each step, (n, 3, 6)."""
+        return np.concatenate([np.zeros((len(self.b_orbit_t), 3, 3)), skews(self.b_orbit_t)], axis=2)
+
+
+class Controller(NamedTuple):
+    """xi+ = motion xi + told y, m = gains xi, of each step: (n, 6, 6), (n, 6, 3), (n, 3, 6)."""
+
+    motion: Array
+    told: Array
+    gains: Array
+
+
+def central(case: Measured, gamma: float) -> Controller:
+    """The controller for a bound.
+
+    Args:
+        case: what is controlled.
+        gamma: the bound; infinite: LQG.
+
+    Raises:
+        NotHeldError: gamma is too small, or nothing holds the body.
+    """
+    problem, f = case.problem, case.problem.free[:, :6]
+    pays = (gamma / case.torque_nm) ** 2
+    told_all = problem, case.b_orbit_t
+    gains, costs = periodic(*told_all) if gamma == np.inf else game_periodic(*told_all, pays)
+    pushes, sees, share = pushes_of(problem, case.b_orbit_t), case.sees(), np.diag(problem.cost) / gamma**2
+    sigmas, shrunk, unseen = _estimates(case, share)
+    motion, told, answers = (
+        np.empty_like(sigmas),
+        np.empty((len(pushes), 6, 3)),
+        np.empty((len(pushes), 3, 6)),
+    )
+    for k, push in enumerate(pushes):
+        after = unseen[k] @ costs[(k + 1) % len(pushes), :, :6] / gamma**2
+        if np.abs(np.linalg.eigvals(after)).max() >= 1.0:
+            raise NotHeldError("estimate and control do not go together: gamma is too small")
+        answers[k] = gains[k, :3, :6] @ np.linalg.inv(np.eye(6) - sigmas[k] @ costs[k, :, :6] / gamma**2)
+        told[k] = f @ shrunk[k] @ sees[k].T / case.error_t**2
+        motion[k] = f + push @ answers[k] + f @ shrunk[k] @ share - told[k] @ sees[k]
+    return Controller(motion, told, answers)
+
+
+def _estimates(case: Measured, share: Array) -> tuple[Array, Array, Array]:
+    """Sigma before each step, S in it, Sigma after it without its field, orbit by orbit until they repeat."""
+    f, g = case.problem.free[:, :6], case.torque_nm * case.problem.free[:, 6:]
+    shape = (len(case.b_orbit_t), 6, 6)
+    sigmas, shrunk, unseen = np.empty(shape), np.empty(shape), np.empty(shape)
+    size = np.repeat([1.0 / case.problem.step_s, 1.0], 3)  # rates and angles of one size
+    sizes = np.outer(size, size)
+    sigma = 1e-4 * np.diag(size**2)
+    for _ in range(ORBITS):
+        before = sigma
+        for k, h in enumerate(case.sees()):
+            sigmas[k] = sigma
+            without = np.linalg.inv(sigma / sizes) - share * sizes
+            if np.linalg.eigvalsh(without)[0] <= 0.0:
+                raise NotHeldError("the estimate is lost: gamma is too small")
+            shrunk[k] = np.linalg.inv(without + h.T @ h / case.error_t**2 * sizes) * sizes
+            unseen[k] = f @ (np.linalg.inv(without) * sizes) @ f.T + g @ g.T
+            sigma = f @ shrunk[k] @ f.T + g @ g.T
+            sigma = 0.5 * (sigma + sigma.T)
+        if np.abs(sigma - before).max() <= SETTLED * np.abs(sigma).max():
+            return sigmas, shrunk, unseen
+    raise NotHeldError("the estimate does not repeat: gamma is too small")
+
+
+def least(case: Measured, low: float, high: float) -> tuple[float, Controller]:
+    """About the least gamma for which there is a controller, and that.
+
+    Args:
+        case: what is controlled.
+        low: a gamma that is too small.
+        high: one for which there is a controller.
+
+    Raises:
+        NotHeldError: there is none for ``high``.
+    """
+    found = high, central(case, high)
+    for _ in range(HALVINGS):
+        middle = float(np.sqrt(low * found[0]))
+        try:
+            found = middle, central(case, middle)
+        except NotHeldError:
+            low = middle
+    return found
+
+
+def norm(case: Measured, controller: Controller, frequencies: int = FREQUENCIES) -> float:
+    """The H-infinity norm from (w, v) to z of the closed loop, by lifting as in ``norms``.
+
+    Raises:
+        UnstableLoopError: a motion of the loop does not decay.
+    """
+    problem, pushes, sees = case.problem, pushes_of(case.problem, case.b_orbit_t), case.sees()
+    steps, scale = len(pushes), np.tile(np.repeat([1.0 / problem.step_s, 1.0], 3), 2)
+    state, reach = np.eye(12), np.zeros((12, 6 * steps))
+    told, direct = np.zeros((steps, 9, 12)), np.zeros((steps, 9, 6 * steps))
+    for k in range(steps):
+        step = np.block(
+            [
+                [problem.free[:, :6], pushes[k] @ controller.gains[k]],
+                [controller.told[k] @ sees[k], controller.motion[k]],
+            ]
+        )
+        seen = np.zeros((9, 12))
+        seen[:6, :6] = np.diag(np.sqrt(problem.cost))
+        seen[6:, 6:] = np.sqrt(problem.effort) * controller.gains[k]
+        told[k], direct[k] = seen * scale @ state, seen * scale @ reach
+        step = step * scale / scale[:, None]
+        state, reach = step @ state, step @ reach
+        reach[:6, 6 * k : 6 * k + 3] = case.torque_nm * problem.free[:, 6:] / scale[:6, None]
+        reach[6:, 6 * k + 3 : 6 * k + 6] = case.error_t * controller.told[k] / scale[6:, None]
+    if np.abs(np.linalg.eigvals(state)).max() >= 1.0:
+        raise UnstableLoopError("the loop is not stable")
+    largest = 0.0
+    for angle in np.linspace(0.0, np.pi, frequencies):
+        motion = np.linalg.solve(np.exp(1j * angle) * np.eye(12) - state, reach)
+        response = direct.reshape(9 * steps, -1) + told.reshape(-1, 12) @ motion
+        largest = max(largest, float(np.linalg.norm(response, 2)))
+    return largest

@@ -1,1 +1,0 @@
-"""Gains of the laws that point one axis."""

@@ -1,1 +1,0 @@
-"""Predictive control studied on the ground."""

@@ -1,1 +1,0 @@
-"""Gains of the laws of a spinning satellite."""
