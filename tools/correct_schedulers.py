@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from math import ceil
 
 from sim.testing import Fire, Heard, Limits, ShippedScheduler
-
-Vec3 = tuple[float, float, float]
+from sim.value_types import Vec3
 
 
 class Timers:

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from math import ceil
 
 import numpy as np
-from correct_schedulers import Timers, Vec3
+from correct_schedulers import Timers
 
 from sim.testing import Fire, Heard, Limits
+from sim.value_types import Vec3
 
 
 class _EveryNth(Timers):

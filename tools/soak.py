@@ -15,7 +15,6 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from argument_types import positive
 
@@ -39,6 +38,7 @@ from sim.record.pace import Pace
 from sim.record.whole_file import replace_text, replacing
 from sim.replay.log_replay import replay
 from sim.scenario.schema import flight_table, load
+from sim.value_types import Json
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "soak.md"
@@ -47,8 +47,6 @@ BENCH_HZ = 10
 STEP_BUDGET_S = 1.0 / BENCH_HZ
 WARM_PART, WARM_MOST_S = 0.05, 60.0
 """Fraction of a run, and wall time at most, until memory counts as warm: by then all modules are loaded."""
-
-Json = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,11 +1,9 @@
 """The result of an audit for programs: values of JSON, and verdicts as tests of JUnit."""
 
-from typing import Any
-
 from sim.audit.findings import AuditReport, Violation, ViolationKind
 from sim.junit import JunitCase
+from sim.value_types import Json
 
-Json = dict[str, Any]
 OF_PULSES = frozenset(
     (
         ViolationKind.PULSE,

@@ -2,13 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from sim.bench.bus_load import BITRATE
 from sim.bench.realtime_loop import BenchMeasurements
 from sim.bench.time_histogram import TimeHistogram
-
-Json = dict[str, Any]
+from sim.value_types import Json
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from fsw.bus.open_bus import open_bus
 from fsw.input.near import did_you_mean
 from fsw.wire.frame import Frame
 from fsw.wire.messages import PlantBoot
-from sim.bench.budgets import Budgets, Json, judge, render
+from sim.bench.budgets import Budgets, judge, render
 from sim.bench.memory import MemoryMonitor, scheduling
 from sim.bench.processes import BenchProcess, BenchProcesses, hub_of
 from sim.bench.realtime_loop import RealtimeLoop, is_boot
@@ -32,6 +32,7 @@ from sim.record.whole_file import replace_text
 from sim.scenario.assemble import effects_of, plant_config
 from sim.scenario.schema import Scenario
 from sim.scenario.telecommands import uplink
+from sim.value_types import Json
 
 BOARDS = {"coil": "COIL", "magnetometer": "MAG", "sun": "SUN", "cells": "SUN"}
 """The nodes; a satellite has a Sun sensor or Sun cells."""

@@ -1,7 +1,6 @@
 """hil.html: the numbers of a bench against their budgets."""
 
 from math import isfinite
-from typing import Any
 
 import numpy as np
 
@@ -9,8 +8,7 @@ from sim.drawing.canvas import AXES_COLOURS, INK, MORE_COLOURS, TimeAxis, style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import PageHeader, PageSection, Table, Tile, sections_page
 from sim.drawing.time_chart import Panel, Series, TimeChart, draw, time_data
-
-Json = dict[str, Any]
+from sim.value_types import Json
 
 COLOURS = (*AXES_COLOURS, *MORE_COLOURS, INK)
 

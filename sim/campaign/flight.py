@@ -25,7 +25,6 @@ from sim.flight.virtual_bus import VirtualBus
 from sim.plant.truth_row import TruthRow
 from sim.record.candump import LogEntry
 from sim.record.estimates import EstimateRecorder, Estimates
-from sim.record.run_dir import Json
 from sim.record.run_record import FlightRecord
 from sim.record.truth import COLUMNS, Histories
 from sim.report.figures.performance import perform
@@ -34,6 +33,7 @@ from sim.report.summary import BusTally, summarise
 from sim.scenario.assemble import effects_of, plant_config
 from sim.scenario.schema import Scenario, flight_table, load
 from sim.scenario.telecommands import uplink
+from sim.value_types import Json
 
 Figures = dict[str, float]
 Measure = Callable[[Scenario, Histories, Estimates], Figures]

@@ -14,8 +14,7 @@ from sim.report.figures.estimate_error import converged_tick, estimate_error, ne
 from sim.report.figures.spans import spans
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 from sim.statistics.settling import settled_tick
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 POINTED_DEG = 10.0
 LAST_ORBITS = 3.0

@@ -12,7 +12,6 @@ from enum import StrEnum
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.input.schema import TableError
 from sim.campaign.definition.campaign import Campaign, DrawnRun, StatisticsSection
@@ -31,10 +30,10 @@ from sim.report.figures.attitude_arrays import axis1_errors, errors
 from sim.report.figures.estimate_error import knowledge_errors
 from sim.scenario.schema import flight_table, orbit_period_s
 from sim.statistics.indices import index_histories, profile
+from sim.value_types import Array
 
 # --- What a campaign keeps of the histories of a run: its pointing indices, and its error over time
 
-Array = NDArray[np.float64]
 
 POINTS_AN_ORBIT = 60
 MOST_POINTS = 600

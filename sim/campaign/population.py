@@ -10,14 +10,13 @@ from functools import cache
 from math import sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.input.schema import Nested, merge
 from sim.campaign.flight import Order
 from sim.campaign.honesty import honesty_figures
 from sim.scenario.schema import Scenario, load
+from sim.value_types import Array
 
-Array = NDArray[np.float64]
 Interval = tuple[float, float]
 
 START_DEG, START_DEGPS = 60.0, 0.05

@@ -4,9 +4,7 @@ from collections.abc import Sequence
 from math import log10
 from pathlib import Path
 
-import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
 from fsw.core.laws.table import LAWS
 from sim.compare.case import Driver
@@ -14,8 +12,7 @@ from sim.compare.score import WINDOW_ORBITS, Result
 from sim.drawing.canvas import AXES_COLOURS, INK, MORE_COLOURS, MUTED, log_y, stacked, style, trace
 from sim.record.whole_file import replacing
 from sim.report.figures.controlled import Controlled
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 COLOURS = (*AXES_COLOURS, *MORE_COLOURS, INK, "#7b3fa0", "#8a6d3b", "#8f9a1f")
 DASHES: tuple[object, ...] = (

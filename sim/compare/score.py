@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.core.laws.entry import Aim
 from fsw.input.schema import TableError
@@ -21,8 +20,7 @@ from sim.report.figures.histories import FlightHistories
 from sim.report.figures.spans import spans
 from sim.scenario.schema import Scenario, orbit_period_s
 from sim.statistics.settling import settled_tick
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 POINTS_AN_ORBIT = 60
 MOST_POINTS = 1200

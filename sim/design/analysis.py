@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sim.design.theory.bodies import Body
 from sim.design.theory.floquet import NEUTRAL, ROUGH_STEPS, monodromy, multipliers, settling_orbits
-from sim.design.theory.linear import Array, Gains, closed_loop, resting_torque
+from sim.design.theory.linear import Gains, closed_loop, resting_torque
 from sim.design.theory.periodic_lqr import NotConvergedError, best_effort
 from sim.design.theory.pulsed import PulsedLoop, Pulsing
 from sim.design.theory.robustness import InertiaMaps, Margins, inertia_maps, margins
@@ -25,6 +25,7 @@ from sim.design.theory.search import (
     gain_map,
     search,
 )
+from sim.value_types import Array
 
 Watch = Callable[[int], None]
 ANALYSIS_STEPS = 2 * SEARCH_STEPS + 4

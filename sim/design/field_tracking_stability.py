@@ -19,7 +19,8 @@ import numpy as np
 
 from sim.design.theory.bodies import Body
 from sim.design.theory.floquet import ROUGH_STEPS, degree_of_stability, monodromy
-from sim.design.theory.linear import Array, Gains, System, closed_loop, dipole_field, skew
+from sim.design.theory.linear import Gains, System, closed_loop, dipole_field, skew
+from sim.value_types import Array
 
 RATES, STIFFNESSES = np.geomspace(0.03, 10.0, 14), np.geomspace(0.03, 10.0, 14)
 """Gains that are searched, in units of the body's mean moment of inertia: k_w B0^2 / w0, k_a B0^2 / w0^2."""

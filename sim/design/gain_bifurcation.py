@@ -19,7 +19,8 @@ import numpy as np
 
 from sim.design.theory.bodies import Body
 from sim.design.theory.floquet import NEUTRAL, degree_of_stability, monodromy, multipliers
-from sim.design.theory.linear import Array, Gains, closed_loop
+from sim.design.theory.linear import Gains, closed_loop
+from sim.value_types import Array
 
 MOST_FACTOR = 100.0
 """Factor up to which the gain is raised."""

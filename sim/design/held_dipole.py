@@ -16,7 +16,8 @@ import numpy as np
 
 from sim.design.theory.bodies import Body
 from sim.design.theory.floquet import NEUTRAL, degree_of_stability, product, transitions
-from sim.design.theory.linear import Array, Gains, dipole_field, feedback_scales, free_motion, skew
+from sim.design.theory.linear import Gains, dipole_field, feedback_scales, free_motion, skew
+from sim.value_types import Array
 
 MOST_HOLDS, LEAST_HOLDS = 40, 3
 """Intervals an orbit between which the longest stable one is sought."""

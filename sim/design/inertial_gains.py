@@ -23,7 +23,8 @@ from scipy.optimize import minimize, minimize_scalar
 
 from sim.design.theory.bodies import Body
 from sim.design.theory.floquet import degree_of_stability, monodromy
-from sim.design.theory.linear import Array, Gains, System, dipole_field, feedback_scales, skew
+from sim.design.theory.linear import Gains, System, dipole_field, feedback_scales, skew
+from sim.value_types import Array
 
 POINTS = 720
 """Points of the orbit over which the field is averaged."""

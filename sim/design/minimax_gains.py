@@ -17,8 +17,9 @@ from scipy.optimize import minimize
 from sim.design.inertial_gains import inertial_field, near_gains
 from sim.design.theory import side_by_side
 from sim.design.theory.bodies import Body
-from sim.design.theory.linear import Array, Gains
+from sim.design.theory.linear import Gains
 from sim.design.theory.side_by_side import angle_deg, in_body, quaternion_rate
+from sim.value_types import Array
 
 STEP_S = 40.0
 """Of the integration."""

@@ -22,8 +22,9 @@ from scipy.optimize import Bounds, differential_evolution
 from fsw.core.laws.pd_neural import RANGE, SMALL
 from sim.design.theory import side_by_side
 from sim.design.theory.bodies import Body
-from sim.design.theory.linear import Array, Gains, dipole_field
+from sim.design.theory.linear import Gains, dipole_field
 from sim.design.theory.side_by_side import angle_deg, in_body, quaternion_rate
+from sim.value_types import Array
 
 STEP_S = 30.0
 """Of law and integration."""

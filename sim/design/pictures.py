@@ -10,11 +10,12 @@ from matplotlib.figure import Figure
 
 from sim.design.analysis import Analysis, PictureMaps
 from sim.design.theory.bodies import Body
-from sim.design.theory.linear import Array, Gains
+from sim.design.theory.linear import Gains
 from sim.design.theory.robustness import PAIRS, InertiaMaps
 from sim.design.theory.search import GainMap
 from sim.drawing.canvas import AXES_COLOURS, LIMIT, style
 from sim.record.whole_file import replacing
+from sim.value_types import Array
 
 AXIS_NAMES = ("1, radius", "2, along-track", "3, normal")
 COLOURS = "RdBu_r"

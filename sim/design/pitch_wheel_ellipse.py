@@ -25,7 +25,8 @@ from fsw.core.laws.six_gain import SixGainGains, six_gain_dipole
 from fsw.core.laws.wheel_integral import BOTH_ANGLES
 from sim.design.theory.bodies import Body
 from sim.design.theory.floquet import monodromy
-from sim.design.theory.linear import Array, System
+from sim.design.theory.linear import System
+from sim.value_types import Array
 
 STEPS = 384
 """Steps an orbit, which follow the nutation."""

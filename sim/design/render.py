@@ -8,8 +8,8 @@ from sim.design.theory.floquet import NEUTRAL, settling_orbits
 from sim.design.theory.linear import Gains, Number
 from sim.design.theory.search import MARGIN, Candidate
 from sim.scenario.schema import Scenario
+from sim.value_types import Json
 
-Json = dict[str, Any]
 Range = tuple[float | None, float | None]
 
 NOISE = 1e-12

@@ -18,7 +18,8 @@ import numpy as np
 
 from sim.design.theory.bodies import DIPOLE_TM3
 from sim.design.theory.floquet import degree_of_stability, monodromy
-from sim.design.theory.linear import Array, System
+from sim.design.theory.linear import System
+from sim.value_types import Array
 
 
 def motion(c: float) -> System:

@@ -24,7 +24,8 @@ import numpy as np
 from scipy.optimize import linprog
 
 from sim.design.theory.bodies import Body
-from sim.design.theory.linear import Array, dipole_field
+from sim.design.theory.linear import dipole_field
+from sim.value_types import Array
 
 UNIT_RADPS = 1e-3
 """With which a rate counts as much as a radian."""

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fsw.core.laws.mpc_simple_field import harmonics
-from sim.design.theory.linear import Array
+from sim.value_types import Array
 
 FUNCTIONS = 5
 """All of them."""

@@ -14,11 +14,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
-from numpy.typing import NDArray
 
 from sim.drawing.envelope import BINS, Envelope
+from sim.value_types import Array
 
-Array = NDArray[np.float64]
 Span = tuple[float, float]
 
 INK, MUTED, LIMIT = "#1b2733", "#5b6b7b", "#b3261e"

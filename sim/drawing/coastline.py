@@ -4,9 +4,8 @@ import json
 from importlib import resources
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 
 def coastlines() -> list[Array]:

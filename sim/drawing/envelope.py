@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 BINS = 700
 """Bins along a time axis; a longer history is drawn as the envelope of each."""

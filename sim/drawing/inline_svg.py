@@ -2,7 +2,6 @@
 
 from io import StringIO
 from itertools import groupby
-from typing import Any
 from xml.etree import ElementTree
 
 import matplotlib
@@ -12,8 +11,7 @@ from matplotlib.figure import Figure
 from sim.drawing.canvas import SETTINGS
 from sim.drawing.page_parts import Chart
 from sim.drawing.palette import themed
-
-Json = dict[str, Any]
+from sim.value_types import Json
 
 _NUMBER = frozenset("0123456789.-e")
 _UNUSED = frozenset(("metadata", "style"))

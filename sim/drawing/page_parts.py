@@ -2,13 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from markupsafe import Markup
 
 from sim.drawing.pages import page
-
-Json = dict[str, Any]
+from sim.value_types import Json
 
 
 class Table(NamedTuple):

@@ -4,15 +4,13 @@ from base64 import b64encode
 from collections.abc import Sequence
 from hashlib import sha256
 from importlib import resources
-from typing import Any
 
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from jinja2.utils import htmlsafe_json_dumps
 from markupsafe import Markup
 
 from sim.drawing import palette
-
-Json = dict[str, Any]
+from sim.value_types import Json
 
 OWN = "sim.drawing"
 THEME = "script/theme.js"

@@ -3,17 +3,14 @@
 from base64 import b64encode
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from sim.drawing.canvas import MUTED, Span, TimeAxis, legend, log_y, stacked, trace
-
-Array = NDArray[np.float64]
-Json = dict[str, Any]
+from sim.value_types import Array, Json
 
 DOTS_AN_INCH = 96
 """Pixels of a page in an inch of a picture."""

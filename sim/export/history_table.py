@@ -18,8 +18,7 @@ from sim.replay.log_replay import ReplayResult, replay
 from sim.report.figures.histories import FlightHistories
 from sim.report.history_blocks import HistoryBlocks
 from sim.scenario.schema import flight_table
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 AXES = {1: ("",), 3: ("_x", "_y", "_z"), 4: ("_w", "_x", "_y", "_z")}
 """Endings of the columns of a quantity, by its width; of a quaternion the scalar is w."""

@@ -24,8 +24,8 @@ from sim.export.source import LogPass, Source
 from sim.progress import Watch
 from sim.record.candump import LogEntry
 from sim.record.truth import BLOCK_ROWS, COLUMNS, TruthReader
+from sim.value_types import Json
 
-Json = dict[str, Any]
 Row = dict[str, list[float]]
 """The plant's histories at a tick: the components of each, by name."""
 

@@ -5,7 +5,6 @@ from collections.abc import Collection, Sequence
 from dataclasses import asdict
 from itertools import groupby
 from math import inf
-from typing import Any
 
 from sim.console import counted
 from sim.drawing.pages import page
@@ -14,8 +13,7 @@ from sim.fault_table.checks import checks_of
 from sim.fault_table.row import CaseResult, CheckVerdict, FaultRow, RowFault, RowResult
 from sim.faults.kinds import KINDS
 from sim.junit import JunitCase
-
-Json = dict[str, Any]
+from sim.value_types import Json
 
 _COLUMNS = ("row", "injected", "expected", "cases", "measured", "verdict")
 _REPEATABLE = ("pulses", "refused", "rejected", "worst error deg", "recovered s", "named s")

@@ -9,12 +9,13 @@ import numpy as np
 
 from fsw.core.orbit.tle import tle_elements
 from fsw.table.inertia import check_inertia
-from sim.design.theory.bodies import EARTH_RADIUS_KM, MU_M3PS2, Body, Vec3, diagonal
+from sim.design.theory.bodies import EARTH_RADIUS_KM, MU_M3PS2, Body, diagonal
 from sim.design.theory.floquet import ROUGH_STEPS
 from sim.design.theory.linear import Gains
 from sim.design.theory.search import continuous, natural_gains
 from sim.errors import HarnessError
 from sim.sizing.levels import Levels, levels_for, two_digits
+from sim.value_types import Vec3
 
 PULSE_S = 3.0
 RANGES = {

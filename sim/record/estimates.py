@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.state import FlightState
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,6 +26,7 @@ from sim.record.whole_file import replace_file
 from sim.scenario.law_named import with_law_withheld
 from sim.scenario.schema import Scenario, flight_table, load
 from sim.scenario.written import scenario_toml
+from sim.value_types import Json
 
 RUN, SCENARIO, BUS_LOG, TRUTH, SUMMARY, REPORT = (
     "run.json",
@@ -42,8 +43,6 @@ COMPRESSED_LOG = BUS_LOG + gzip_text.SUFFIX
 FILES = (RUN, SCENARIO, BUS_LOG, COMPRESSED_LOG, BUS_LOG + SUFFIX, TRUTH, SUMMARY, REPORT)
 RESULTS = (RUN, SUMMARY, REPORT)
 """Files written when a flight is over, and again by ``torquer report``."""
-
-Json = dict[str, Any]
 
 
 def new_folder(scenario: Scenario) -> Path:

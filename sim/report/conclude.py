@@ -14,7 +14,6 @@ from sim.record.candump import LogEntry, More, read_log
 from sim.record.destination import check_folder
 from sim.record.estimates import Estimates
 from sim.record.log_index import check_against_index
-from sim.record.run_dir import Json
 from sim.record.truth import GrowingTruth, Histories, RowsMissingError, TruthReader
 from sim.replay.log_replay import ReplayResult, replay
 from sim.report.charts.lines import Lines
@@ -26,6 +25,7 @@ from sim.report.summary import BusTally, summarise
 from sim.report.verdict import Verdict, failures
 from sim.scenario.law_named import with_law_named
 from sim.scenario.schema import Scenario, flight_table
+from sim.value_types import Json
 
 Watch = Callable[[int], None]
 

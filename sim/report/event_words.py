@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from enum import IntEnum
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from fsw.core.events import Event
 from fsw.core.fdir.faults import CoilFault, SensorFault
@@ -13,8 +13,8 @@ from sim.audit.findings import seconds_text
 from sim.drawing.page_parts import Table
 from sim.flight.isolations import UNITS
 from sim.scenario.schema import Scenario, orbit_period_s
+from sim.value_types import Json
 
-Json = dict[str, Any]
 Words = tuple[Callable[[int], str], str]
 """What happened, by the argument; what it means."""
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from sim.errors import HarnessError
 from sim.flight.sil import exit_text, start_node
 from sim.record import run_dir
-from sim.record.run_dir import Json
+from sim.value_types import Json
 
 Watch = Callable[[int], None]
 Conclude = Callable[[Watch], Json]

@@ -1,7 +1,5 @@
 """What the report says first: whether the requirements are met and why not, badges, the few main figures."""
 
-from typing import Any
-
 from fsw.wire.messages import Mode
 from sim.audit.auditor import AuditReport
 from sim.drawing.page_parts import Table, Tile
@@ -10,8 +8,8 @@ from sim.record.run_record import RunRecord
 from sim.report.requirements.judge import Outcome
 from sim.report.summary_text import last_orbit
 from sim.report.tables import has, value
+from sim.value_types import Json
 
-Json = dict[str, Any]
 Badge = tuple[str, str]
 """A class of style, and the words."""
 

@@ -16,10 +16,10 @@ from sim.report import headline, tables
 from sim.report.charts.lines import Lines
 from sim.report.event_words import event_table
 from sim.scenario.schema import Scenario
+from sim.value_types import Json
 
 # --- The table of the report that shows what the filter estimates besides attitude and rate
 
-Json = dict[str, Any]
 
 UNITS = {
     "mag_bias_t": ("nT", 1e9),

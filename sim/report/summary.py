@@ -1,7 +1,6 @@
 """summary.json: the performance of a flight, judged against the plant's truth."""
 
 from dataclasses import dataclass, field
-from typing import Any
 
 from fsw.wire.messages import CLASSES, NAMES, SENDERS, CoilRefused, FswEvent, intact
 from sim.audit.auditor import AuditReport
@@ -11,8 +10,7 @@ from sim.record.candump import LogEntry
 from sim.record.run_record import FlightRecord
 from sim.report.figures.performance import Performance
 from sim.scenario.schema import Scenario
-
-Json = dict[str, Any]
+from sim.value_types import Json
 
 MAX_EVENTS = 200
 """Events that are kept in full, the first ones."""

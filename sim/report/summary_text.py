@@ -1,13 +1,11 @@
 """The summary of a flight as a few lines of text; that of an older version gives what it holds."""
 
 from collections.abc import Iterator
-from typing import Any
 
 from sim.report.event_words import events_left_out
 from sim.report.requirements.judge import Outcome
 from sim.statistics.settling import HELD_S
-
-Json = dict[str, Any]
+from sim.value_types import Json
 
 _HEADS = {Outcome.MET: "met", Outcome.FAILED: "FAILED", Outcome.NOT_JUDGED: "not judged"}
 

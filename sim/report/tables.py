@@ -15,8 +15,8 @@ from sim.record.run_record import RunRecord
 from sim.report.summary_text import last_orbit
 from sim.scenario.schema import Scenario, orbit_period_s
 from sim.scenario.written import values_of
+from sim.value_types import Json
 
-Json = dict[str, Any]
 Pairs = list[tuple[str, str]]
 """Names and values."""
 

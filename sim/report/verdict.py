@@ -7,10 +7,10 @@ from sim.audit.findings import AuditReport, Violation
 from sim.flight.second_senders import describe_senders
 from sim.record import run_dir
 from sim.record.log_index import IndexCheck
-from sim.record.run_dir import Json
 from sim.record.run_record import RunRecord
 from sim.replay.log_replay import ReplayResult
 from sim.report.requirements.judge import Outcome
+from sim.value_types import Json
 
 
 class Verdict(StrEnum):

@@ -21,9 +21,9 @@ from sim.scenario.coil_limits import coil_limits
 from sim.scenario.own_effects import own_effects
 from sim.scenario.schema import Scenario
 from sim.scenario.sections import CellsSection, ScenarioWheel
+from sim.value_types import Vec3
 
 NT = 1e-9
-Vec3 = tuple[float, float, float]
 
 
 def plant_config(scenario: Scenario, seed: int) -> PlantConfig:

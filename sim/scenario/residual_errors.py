@@ -8,16 +8,13 @@ x], in its antisymmetric part; no parameter describes its symmetric part off the
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.table.calibration import CalibrationTable, coil_axes, outputs_of
 from sim.plant.config import CoilConfig
 from sim.plant.hardware.sensors import MagnetometerPhysics
 from sim.plant.rotation import ZERO, Vec3, from_vector, matrix
 from sim.plant.sensor_config import MagnetometerConfig, SunSensorConfig
-
-Array = NDArray[np.float64]
-
+from sim.value_types import Array
 
 UNIT_T = 1e-4
 UNIT_FIELDS_T = ((UNIT_T, 0.0, 0.0), (0.0, UNIT_T, 0.0), (0.0, 0.0, UNIT_T))

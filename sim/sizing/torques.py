@@ -5,7 +5,7 @@ import numpy as np
 from fsw.core.orbit.tle import tle_elements
 from sim.design.from_scenario import body_of
 from sim.design.theory.feedforward import NODES
-from sim.design.theory.linear import Array, dipole_field, resting_torque
+from sim.design.theory.linear import dipole_field, resting_torque
 from sim.plant.config import OrbitConfig
 from sim.plant.dynamics import surfaces
 from sim.plant.environment.atmosphere import altitude_m, density_kgpm3, flow_mps
@@ -13,6 +13,7 @@ from sim.plant.environment.orbit import CircularOrbit
 from sim.plant.environment.sun import AU_M, illumination, sun_eci_m
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario, orbit_period_s
+from sim.value_types import Array
 
 LIGHT_MPS = 299792458.0
 

@@ -3,11 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.statistics.order_statistics import percentile
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 STEPS = 60
 

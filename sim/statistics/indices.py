@@ -15,12 +15,10 @@ from enum import StrEnum
 from math import inf, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.statistics.order_statistics import least_part_bounded, quantile, upper_bound
 from sim.statistics.windows import mean_and_relative
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 INDICES = ("ape", "mpe", "rpe", "ake")
 POINTS = 256

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 from math import ceil, isfinite, log
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 
 @dataclass(frozen=True, slots=True)

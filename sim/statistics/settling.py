@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from math import ceil
 
 import numpy as np
-from numpy.typing import NDArray
 
-Flags = NDArray[np.bool_]
+from sim.value_types import Flags
 
 HELD_S = 600.0
 """Time for which it must have held, to the end of the flight."""

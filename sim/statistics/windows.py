@@ -6,9 +6,8 @@ the mean of the first window that it is in. A history that is shorter than a win
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 
 class Windows:

@@ -16,6 +16,7 @@ from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilBoot, CoilFire, CoilStatus, Sync
 from sim.record.candump import LogEntry
+from sim.value_types import Vec3
 
 EPOCH_S = 1_427_513_417
 PATTERN_TICKS = 8
@@ -24,8 +25,6 @@ MOST_LEVEL = 3
 MOST_LOCKOUT_MS = 163_830
 MOST_REMAINING_MS = 4095
 """The largest lockout and rest of a pulse that COIL_STATUS can carry."""
-
-Vec3 = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)

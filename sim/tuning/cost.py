@@ -14,14 +14,13 @@ from math import log2
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.core.laws.entry import Aim
 from sim.scenario.schema import Scenario, flight_table
 from sim.statistics.settling import Settling, held_ticks
 from sim.tuning.flown import FlownMotion
+from sim.value_types import Array
 
-Array = NDArray[np.float64]
 BY_RATE = frozenset({Aim.RATE, Aim.SPIN, Aim.SUN})
 """Laws of these aims do not point: the rate tells them apart."""
 SETTLED_DEG, SETTLED_DEGPS = 5.0, 0.05

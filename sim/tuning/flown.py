@@ -5,11 +5,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.core.algebra.quaternion import Quaternion, rotate
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 
 @dataclass(frozen=True)

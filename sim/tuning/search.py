@@ -17,7 +17,6 @@ from dataclasses import dataclass, field
 from math import log
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.stats import qmc
 
@@ -31,6 +30,7 @@ from sim.tuning.cost import LOST, Cost, cost_of
 from sim.tuning.flown import FlownMotion
 from sim.tuning.free_gains import FreeGain, as_control, common_gains, flat, own_gains
 from sim.tuning.rigid_flight import fly
+from sim.value_types import Array
 
 # --- A flight of a scenario as it is, as the search of gains judges it
 
@@ -64,7 +64,6 @@ USED = 1e-9
 """A gain whose change alters the cost by less is not used by the law."""
 DIRECT: Nested = {"knowledge": "perfect", "field": {"model": "direct_dipole"}}
 
-Array = NDArray[np.float64]
 WholeFlight = Callable[[Scenario, int, float], FlownMotion]
 """Flies a scenario as it is, with filter, boards and bus, with a seed, for so many orbits."""
 

@@ -15,6 +15,7 @@ from sim.report.figures.attitude_arrays import angle_rad
 from sim.report.figures.estimate_error import estimate_error
 from sim.report.figures.spans import spans
 from sim.scenario.schema import Scenario, flight_table
+from sim.value_types import Array
 
 SCENARIO = "cubesat-cells"
 SOURCE = "Cells as panel currents of SUCHAI-3 show them: up to a third of full sunlight comes from the Earth"
@@ -29,8 +30,6 @@ WRONG_DEG, SOON_S = 10.0, 60.0
 NAMED_PART, SOON_PART, SOON_PART_ONE = 0.8, 0.8, 0.6
 EARTHLIGHT, FIELD_DEG = 1.0 / 3.0, 5.0
 """A reading further than this from what an attitude leads to speaks against it."""
-
-Array = NDArray[np.float64]
 
 
 def studies(most: int | None = None) -> list[Study]:

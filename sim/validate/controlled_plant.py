@@ -31,7 +31,7 @@ from sim.plant.rotation import (
     normalise,
     transform,
 )
-from sim.validate.reference.comparison import Array
+from sim.value_types import Array
 
 STEPS = 720
 """Integration steps an orbit."""

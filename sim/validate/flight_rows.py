@@ -16,7 +16,7 @@ from sim.campaign.claim import Study, Task
 from sim.campaign.code_digest import code_digest
 from sim.campaign.flight import FlightResult, Measure, Order, fly_order
 from sim.errors import HarnessError
-from sim.record.run_dir import Json
+from sim.value_types import Json
 
 BEGINNING = b'{"order": "'
 """Of each line."""

@@ -19,7 +19,7 @@ from sim.report.figures.attitude_arrays import angle_rad, relative
 from sim.report.figures.estimate_error import nees
 from sim.scenario.schema import Scenario, load, orbit_period_s
 from sim.statistics.settling import settled_tick
-from sim.validate.reference.comparison import Array
+from sim.value_types import Array
 
 SCENARIO = "microsat"
 SOURCE = "50 kg satellite with PoSAT-1's actuation limits; laws of Ovchinnikov, Roldugin, Ivanov, Penkov 2015"

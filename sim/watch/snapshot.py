@@ -2,13 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict
-from typing import Any
 
 from fsw.wire.messages import NAMES
+from sim.value_types import Json
 from sim.watch.seen import FlightView
 from sim.watch.terminal import OTHERS, time_text
-
-Json = dict[str, Any]
 
 STATE_SCHEMA: Json = {
     "type": "object",

@@ -21,14 +21,13 @@ from sim.console import plain
 from sim.progress import shown
 from sim.scenario.settings import nested
 from sim.statistics.proportion import Proportion
+from sim.value_types import Json
 from torquer.api.arguments import Settings, checked, optional_path, path_text
 from torquer.api.errors import one_sentence
 from torquer.api.flight import fly
 from torquer.api.run import Run
 
 # --- The statistics of a campaign as values of JSON
-
-Json = dict[str, Any]
 
 
 def as_json(campaign: Campaign, analysis: CampaignAnalysis) -> Json:

@@ -12,8 +12,9 @@ from pydantic import Field, Strict
 from fsw.input.schema import Section
 from sim.design.command import GainDesign
 from sim.design.command import design as design_gains
-from sim.design.render import NOISE, Json, as_json, as_text
+from sim.design.render import NOISE, as_json, as_text
 from sim.progress import shown
+from sim.value_types import Json
 from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
 from torquer.api.errors import one_sentence
 

@@ -4,13 +4,11 @@ from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import AfterValidator
 from typing_extensions import override
 
 from fsw.input.schema import Section
 
-Array = NDArray[np.float64]
 Shape = tuple[int, ...]
 Values = list[Any]
 """A value for each key: numbers as arrays, those of a choice as in the file."""

@@ -11,7 +11,8 @@ import numpy as np
 from pydantic import Field, Strict, model_validator
 from typing_extensions import override
 
-from sim.campaign.definition.dispersion import Array, Dispersion, Numbers, OneKey, Shape, Values
+from sim.campaign.definition.dispersion import Dispersion, Numbers, OneKey, Shape, Values
+from sim.value_types import Array
 
 LEAST_PART = 1e-6
 """Fraction of a normal distribution that must lie between its limits."""

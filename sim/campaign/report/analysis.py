@@ -15,8 +15,7 @@ from sim.statistics.indices import INDICES, POINTS, IndexPercentile, Interpretat
 from sim.statistics.order_statistics import Percentile, percentile
 from sim.statistics.proportion import Proportion, clopper_pearson
 from sim.statistics.sensitivity import RankCorrelation, spearman
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 MAIN_FIGURES = ("pointing_deg_rms_last_orbit", "pointing_deg_max_last_orbit", "ake_deg_rms", "converged_at_s")
 """Shown of every campaign, after the figures that have a requirement."""

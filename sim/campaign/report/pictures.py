@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
 from sim.campaign.definition.campaign import IndexLimits, StatisticsSection
 from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics, falls
@@ -16,8 +15,7 @@ from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, MORE_COLOURS, MUTED, WI
 from sim.statistics.convergence import convergence
 from sim.statistics.order_statistics import Percentile
 from sim.statistics.proportion import clopper_pearson
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 PANEL_IN = 2.3
 BAND, BAR = "#b9d4e8", "#9dbfd8"

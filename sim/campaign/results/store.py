@@ -14,7 +14,6 @@ from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.campaign.code_digest import code_digest
 from sim.campaign.definition.campaign import Campaign
@@ -23,6 +22,7 @@ from sim.campaign.results.consistency import find_contradiction, quoted
 from sim.campaign.results.row import RunRow, Status
 from sim.errors import HarnessError
 from sim.record.run_dir import fingerprint
+from sim.value_types import Array
 
 RESULTS, LOCK = "results.sqlite", "campaign.lock"
 CODE = "code_digest"
@@ -41,7 +41,6 @@ CREATE TABLE attempts (run INTEGER NOT NULL, at_utc TEXT NOT NULL, worker TEXT N
 """
 _BESIDE = ("-wal", "-shm", "-journal")
 """Ends of the names of files that SQLite keeps beside a database."""
-Array = NDArray[np.float64]
 
 
 class ResultsLostError(HarnessError):

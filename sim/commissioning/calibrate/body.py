@@ -13,8 +13,7 @@ from sim.commissioning.recorded.along import Along, sampled
 from sim.commissioning.recorded.calibration import PassCalibration
 from sim.commissioning.telemetry.follow import Noise, filter_config, follow
 from sim.commissioning.telemetry.spin import Spin, spin_axis
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 MOMENT_PART, LEAST_SIGMA = 0.01, 0.001
 """Prior of a moment: this part of how far it is from the greatest, and at least so much of that."""

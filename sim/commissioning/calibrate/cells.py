@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from sim.commissioning.recorded.along import Along
 from sim.commissioning.telemetry.follow import Followed, directions_body
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 LIT_PART = 0.4
 """Of the brightest rows: below, light of the Earth and shadows count as much as the Sun."""

@@ -18,10 +18,10 @@ from sim.commissioning.telemetry.follow import Noise
 from sim.console import answer, say
 from sim.errors import HarnessError
 from sim.result_files import check_results, write_result
+from sim.value_types import Array
 
 # --- The file that carries a calibration: values and bounds as TOML, deviations and verdicts as comments
 
-Array = NDArray[np.float64]
 
 LARGEST_BIAS_NT, LARGEST_SCALE_PERCENT = 3000.0, 10.0
 """Bounds that an onboard table admits."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.linalg import polar
 from scipy.optimize import least_squares
 
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 UT_PER_NT = 1e-3
 BIAS_SIGMA_UT, MATRIX_SIGMA = 200.0, 0.1

@@ -1,7 +1,6 @@
 """The page of a calibration: what is told, what is not, and the residuals as pictures."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.commissioning.calibrate.cells import CellFit
 from sim.commissioning.calibrate.magnetometer import NAMES, MagnetometerFit
@@ -11,8 +10,7 @@ from sim.drawing.canvas import AXES_COLOURS, TimeAxis, style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import Chart, PageHeader, PageSection, Table, Tile, sections_page
 from sim.drawing.time_chart import Level, Panel, Series, TimeChart, draw, time_data
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 _TOLD = (
     "A number is told where one standard deviation of it moves the field by at most 1500 nT. Neighbouring "

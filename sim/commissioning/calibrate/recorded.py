@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.commissioning.calibrate.body import BodyFit, declared_axes, fit_body
 from sim.commissioning.calibrate.cells import CellFit, fit_cells
@@ -14,10 +13,10 @@ from sim.commissioning.recorded.calibration import KnownCell, PassCalibration
 from sim.commissioning.telemetry.follow import Noise
 from sim.commissioning.telemetry.judge import Judged, judge
 from sim.commissioning.telemetry.spin import spin_axis
+from sim.value_types import Array
 
 # --- Whether the magnetometer's bias moves: over the pass, with the shadow of the Earth, with temperature
 
-Array = NDArray[np.float64]
 
 BLOCK_S, LEAST_BLOCK = 200.0, 60
 """Length of the stretches whose biases are compared, and rows in each."""

@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 from fsw.input.text_file import read_text
 from sim.commissioning.phasing.bench_steps import Edge, Share, Step, fall_as_rise, step_of
 from sim.errors import HarnessError
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 TIME, CHANNEL, COMMAND = "log_time_s", "channel", "cmd"
 FIELD = ("mag_x_nt", "mag_y_nt", "mag_z_nt")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 WEAK_SIGMAS = 20.0
 """Below so many standard deviations a single sample does not show the phase of a step."""

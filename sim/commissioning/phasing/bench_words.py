@@ -2,14 +2,12 @@
 
 from math import isnan
 from statistics import median
-from typing import Any
 
 import numpy as np
 
 from sim.commissioning.phasing.bench_log import SIGMAS, BenchResponse
 from sim.commissioning.phasing.bench_steps import WEAK_SIGMAS, Step
-
-Json = dict[str, Any]
+from sim.value_types import Json
 
 LINEAR_PART = 0.15
 """How far a response may be off proportion to its command, in parts of the largest."""

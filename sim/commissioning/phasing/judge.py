@@ -18,7 +18,6 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.table.estimator import field_noise_nt, sun_noise_rad
 from fsw.table.table import FlightTable
@@ -29,8 +28,7 @@ from sim.commissioning.calibrate.flown.joint_fit import FieldFit, FreeSamples
 from sim.commissioning.calibrate.flown.samples import Samples, in_time, whole
 from sim.commissioning.calibrate.flown.sensor_axes import sensor_axes
 from sim.commissioning.calibrate.flown.wiring import WIRINGS, Wiring, body_from_outputs, channels_from_body
-
-Array = NDArray[np.float64]
+from sim.value_types import Array, Flags
 
 LEAST_GAIN, LARGEST_GAIN = 0.4, 2.0
 """Of a coil that works."""
@@ -125,8 +123,6 @@ def by_field_around(reading_nt: Array, b_body_nt: Array, offset_nt: float) -> li
         if bool((np.abs(reading_nt - channels_from_body(wiring) @ b_body_nt) < offset_nt).all())
     ]
 
-
-Flags = NDArray[np.bool_]
 
 NEAR_TICKS = 3
 """So near to a pulse a sample may show it, where its delay is not known."""

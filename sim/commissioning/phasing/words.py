@@ -20,8 +20,8 @@ from sim.commissioning.calibrate.flown.wiring import (
     in_words,
 )
 from sim.commissioning.phasing.judge import Phasing
+from sim.value_types import Json
 
-Json = dict[str, Any]
 Pair = tuple[Wiring, Wiring]
 
 MOST_LISTED = 12

@@ -14,8 +14,8 @@ from sim.commissioning.recorded.recorded_pass import RecordedPass
 from sim.commissioning.recorded.strays import stray_currents, stray_strengths, stray_values
 from sim.console import warn
 from sim.errors import HarnessError
+from sim.value_types import Array
 
-Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 

@@ -4,13 +4,11 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, Strict, field_validator
 from scipy.spatial.transform import Rotation
 
 from fsw.input.schema import Positive, Section, Square, Triple, read_toml, validated
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 LEAST_GAIN, MOST_GAIN = 1e-3, 1e3
 """Of a matrix, in any direction."""

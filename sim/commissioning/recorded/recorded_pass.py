@@ -15,8 +15,8 @@ from fsw.input.text_file import read_text
 from sim.commissioning.recorded.columns import TIME, Places, places
 from sim.commissioning.recorded.strays import most_left_out
 from sim.errors import HarnessError
+from sim.value_types import Array
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 MOST_BYTES = 100_000_000

@@ -11,7 +11,8 @@ one half, Huber 1981, section 7.2).
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from sim.value_types import Array
+
 Mask = NDArray[np.bool_]
 
 MOST_PART = 0.1

@@ -21,8 +21,7 @@ from sim.commissioning.recorded.calibration import PassCalibration
 from sim.commissioning.telemetry.spin import Spin
 from sim.errors import HarnessError
 from sim.progress import progress
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 T_PER_NT = 1e-9
 LONGEST_GAP_S = 600.0

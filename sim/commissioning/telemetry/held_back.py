@@ -10,8 +10,7 @@ from sim.commissioning.recorded.along import Along, sample_hz
 from sim.commissioning.recorded.calibration import KnownCell, PassCalibration
 from sim.commissioning.telemetry.follow import Followed, directions_body, without_sample
 from sim.progress import progress
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 HORIZONS_S = (10, 30, 60, 120)
 """Times without a sample after which the prediction is judged."""

@@ -4,15 +4,13 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.commissioning.recorded.along import Along, sample_hz, sampled, without
 from sim.commissioning.recorded.calibration import PassCalibration
 from sim.commissioning.telemetry.follow import Followed, Noise, filter_config, follow
 from sim.commissioning.telemetry.held_back import Azimuths, coasts_deg, sun_azimuths
 from sim.commissioning.telemetry.spin import spin_axis, spins, stray_directions
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 START_S = 400.0
 """Field of so long a time starts the filter; a shorter pass is started by all it has."""

@@ -3,7 +3,6 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.commissioning.recorded.calibration import PassCalibration
 from sim.commissioning.recorded.columns import AXES
@@ -13,8 +12,7 @@ from sim.drawing.canvas import AXES_COLOURS, MORE_COLOURS, TimeAxis, style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import Chart, PageHeader, PageSection, Table, Tile, sections_page
 from sim.drawing.time_chart import Level, Panel, Series, TimeChart, draw, time_data
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 _METHOD = (
     "The flight filter with the magnetometer alone, from a start that the field gives. Innovations are those "

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from sim.commissioning.recorded.strays import MOST_ROUNDS, stray_sizes, stray_values
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 COARSE_S = 60.0
 """Part of the pass from which the rate is found first."""

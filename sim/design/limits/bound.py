@@ -14,7 +14,8 @@ import numpy as np
 from fsw.core.algebra.vector import Vec3, add
 from fsw.core.config import FlightConfig
 from fsw.core.laws.plan.riccati import free_step, resting_torque, skews
-from sim.design.limits.linear_flight import COUNTED, Array, Passed, orbit_rate_radps
+from sim.design.limits.linear_flight import COUNTED, Passed, orbit_rate_radps
+from sim.value_types import Array
 
 HELD_S = 60.0
 PARTS = 2

@@ -17,7 +17,6 @@ from math import degrees, inf, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.core.actuation import pulses
 from fsw.core.actuation.actuator import CoilView, actuate, wait_ticks
@@ -34,8 +33,8 @@ from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, referen
 from fsw.table.config import flight_config
 from fsw.wire.messages import CoilFire, Mode
 from sim.scenario.schema import Scenario, flight_table
+from sim.value_types import Array
 
-Array = NDArray[np.float64]
 ORBITS, COUNTED = 6.0, 0.5
 """Flown, and the last part of them that counts."""
 LOST_DEG = 20.0

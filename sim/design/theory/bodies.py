@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from math import sqrt
 
-Vec3 = tuple[float, float, float]
+from sim.value_types import Vec3
+
 Mat3 = tuple[Vec3, Vec3, Vec3]
 """Rows."""
 

@@ -17,7 +17,8 @@ import numpy as np
 from scipy.linalg import expm
 
 from sim.design.theory.bodies import Body
-from sim.design.theory.linear import Array, dipole_field, free_motion, skew
+from sim.design.theory.linear import dipole_field, free_motion, skew
+from sim.value_types import Array
 
 STEPS = 360
 """Of the integral, an orbit: the integrand is smooth and nearly periodic."""

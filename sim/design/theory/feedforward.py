@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.design.theory.bodies import Body
-from sim.design.theory.linear import Array, dipole_field, free_motion, skew
+from sim.design.theory.linear import dipole_field, free_motion, skew
+from sim.value_types import Array
 
 NODES = 32
 """Nodes an orbit: the field has two harmonics, the response a few more."""

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.polynomial import Polynomial, legendre
 from numpy.typing import NDArray
 
-from sim.design.theory.linear import Array, System
+from sim.design.theory.linear import System
+from sim.value_types import Array
 
 STEPS = 64
 """Steps an orbit: degree of stability to 1e-10."""

@@ -22,11 +22,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from sim.design.theory.bodies import Body
+from sim.value_types import Array
 
-Array = NDArray[np.float64]
 Number = float | Array
 System = Callable[[Array], Array]
 """The matrix A(u) of x' = A x: from u of shape (k,) to (..., k, n, n)."""

@@ -23,7 +23,8 @@ import numpy as np
 
 from sim.design.theory.bodies import Body
 from sim.design.theory.floquet import degree_of_stability, monodromy, transitions
-from sim.design.theory.linear import Array, System, dipole_field, free_motion, skew
+from sim.design.theory.linear import System, dipole_field, free_motion, skew
+from sim.value_types import Array
 
 NODES = 128
 """Nodes an orbit."""

@@ -26,7 +26,8 @@ import numpy as np
 
 from sim.design.theory.bodies import Body
 from sim.design.theory.floquet import degree_of_stability, product
-from sim.design.theory.linear import Array, Gains, dipole_field, feedback_scales, free_motion, projection
+from sim.design.theory.linear import Gains, dipole_field, feedback_scales, free_motion, projection
+from sim.value_types import Array
 
 PARALLEL = 1e-6
 """A coil whose torque is below this fraction of the largest is parallel to the field, and pays nothing."""

@@ -17,8 +17,9 @@ from scipy.spatial.transform import Rotation
 
 from sim.design.theory.bodies import Body
 from sim.design.theory.floquet import NEUTRAL, ROUGH_STEPS, degree_of_stability, monodromy
-from sim.design.theory.linear import Array, Gains, closed_loop
+from sim.design.theory.linear import Gains, closed_loop
 from sim.design.theory.search import Degree
+from sim.value_types import Array
 
 PAIRS = tuple(combinations(range(3), 2))
 """Pairs of body axes, by number from 0."""

@@ -16,7 +16,8 @@ import numpy as np
 
 from sim.design.theory.bodies import Body
 from sim.design.theory.floquet import NEUTRAL, STEPS, degree_of_stability, monodromy
-from sim.design.theory.linear import Array, Gains, closed_loop
+from sim.design.theory.linear import Gains, closed_loop
+from sim.value_types import Array
 
 Degree = Callable[[Gains], Array]
 """Degrees of stability, of the shape of the gains."""

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sim.design.theory.linear import Array
+from sim.value_types import Array
 
 
 def in_body(q: Array, v: Array) -> Array:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.wire.messages import Mode
 from sim.audit.auditor import AuditReport
@@ -13,8 +12,7 @@ from sim.audit.findings import COILS, DrivenPulse
 from sim.drawing.canvas import Span, TimeAxis
 from sim.report.charts.lines import Lines
 from sim.scenario.schema import Scenario, orbit_period_s
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 
 def whole_flight(length_s: float, orbit_s: float, eclipses: tuple[Span, ...]) -> TimeAxis:

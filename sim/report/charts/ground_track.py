@@ -3,7 +3,6 @@
 import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from sim.audit.findings import COILS
 from sim.drawing.canvas import AXES_COLOURS, INK, WIDTH_IN, legend
@@ -13,8 +12,7 @@ from sim.plant.environment.earth import gmst82_rad, turn_about_pole
 from sim.report.charts.drawn_flight import DrawnFlight
 from sim.report.charts.pulse_lanes import shown
 from sim.report.figures.histories import DARK
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 LAND, COAST = "#e8e6df", "#8a97a5"
 

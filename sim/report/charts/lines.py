@@ -11,10 +11,10 @@ from sim.report.figures.coil_effort import driven_coils
 from sim.report.figures.histories import FlightHistories
 from sim.report.figures.spans import spans
 from sim.scenario.schema import Scenario, orbit_period_s
+from sim.value_types import Array
 
 # --- Attitude, field, Sun and position of a flight as samples for a moving picture, gathered block by block
 
-Array = NDArray[np.float64]
 
 MOST_SAMPLES = 3000
 COLUMNS = {"q_body_from_orbit": 4, "b_body_t": 3, "sun_body": 3, "r_eci_m": 3, "lit": 1}

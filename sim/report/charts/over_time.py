@@ -3,10 +3,11 @@
 import numpy as np
 
 from fsw.wire.messages import Mode
-from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, MORE_COLOURS, MUTED, Array, Span, shade, stacked
-from sim.drawing.time_chart import DrawnChart, Json, Level, Panel, Series, TimeChart, draw
+from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, MORE_COLOURS, MUTED, Span, shade, stacked
+from sim.drawing.time_chart import DrawnChart, Level, Panel, Series, TimeChart, draw
 from sim.report.charts.drawn_flight import DrawnFlight
 from sim.report.figures.controlled import SETTLED_DEG
+from sim.value_types import Array, Json
 
 MODE_COLOURS = {
     Mode.SAFE: "#b3261e",

@@ -1,10 +1,8 @@
 """What the script of the report draws: charts against time, attitude, track, events."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.audit.auditor import AuditReport
 from sim.drawing.coastline import coastlines
@@ -15,9 +13,7 @@ from sim.report.charts.lines import Lines
 from sim.report.charts.sections import ChartSection
 from sim.report.event_words import in_words
 from sim.scenario.schema import Scenario
-
-Array = NDArray[np.float64]
-Json = dict[str, Any]
+from sim.value_types import Array, Json
 
 LEAST_SIDE = 0.3
 """Shortest side of the body as it is drawn, relative to its longest."""

@@ -1,13 +1,11 @@
 """The pulses of a flight as data of the page: a lane per coil."""
 
 from collections.abc import Sequence
-from typing import Any
 
 from sim.audit.findings import COILS, DrivenPulse
 from sim.drawing.canvas import AXES_COLOURS
 from sim.report.charts.drawn_flight import DrawnFlight
-
-Json = dict[str, Any]
+from sim.value_types import Json
 
 MOST_PULSES = 6000
 """Of a coil; of more, only the strongest in each of this many parts of the flight is shown."""

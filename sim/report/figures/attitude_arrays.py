@@ -1,9 +1,8 @@
 """Attitude algebra on histories: arrays of quaternions, shape (n, 4), scalar first, v_body = C(q) v_ref."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 
 def relative(q_from: Array, q_to: Array) -> Array:

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from sim.plant.hardware.coils import body_from_coils
 from sim.scenario.assemble import coil_config
 from sim.scenario.schema import Scenario
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 RESIDUAL = 1e-5
 """Fraction of full scale below which a coil counts as not driven: less than the least dipole on the wire."""

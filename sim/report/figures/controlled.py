@@ -2,10 +2,9 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.core.laws.entry import Aim
 from fsw.core.laws.interface import MAX_SPIN_RADPS
@@ -18,9 +17,7 @@ from sim.report.figures.mean import Mean
 from sim.scenario.schema import Scenario, flight_table
 from sim.scenario.telecommands import SendSpin, first_tick
 from sim.statistics.settling import Settling
-
-Array = NDArray[np.float64]
-Json = dict[str, Any]
+from sim.value_types import Array, Json
 
 SETTLED_DEG = 5.0
 

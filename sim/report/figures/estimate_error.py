@@ -7,8 +7,7 @@ from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures.attitude_arrays import normal_in_body, relative, rotation_vectors
 from sim.report.figures.spans import spans
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 CONVERGED_DEG = 2.0
 CONVERGED_FOR_S = 600.0

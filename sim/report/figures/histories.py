@@ -9,8 +9,7 @@ from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_body
 from sim.report.figures.estimate_error import estimate_error
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 DARK = 0.5
 """A smaller visible fraction of the Sun counts as eclipse."""

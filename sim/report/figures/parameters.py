@@ -1,7 +1,5 @@
 """What the filter estimates besides attitude and rate, with the bounds of its table and the truth."""
 
-from typing import Any
-
 from fsw.core.estimation.mekf import Estimate, healthy
 from fsw.core.estimation.parameters import MOST_CELLS, layout
 from fsw.table.cells import CellTable
@@ -16,8 +14,8 @@ from sim.record.truth import Histories
 from sim.scenario.assemble import plant_config
 from sim.scenario.residual_errors import coil_errors, magnetometer_errors, sun_turn_rad
 from sim.scenario.schema import Scenario, flight_table
+from sim.value_types import Json
 
-Json = dict[str, Any]
 Values = tuple[float, ...]
 
 

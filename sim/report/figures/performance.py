@@ -2,10 +2,8 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.core.estimation.mekf import Estimate
 from fsw.wire.messages import Mode
@@ -26,10 +24,7 @@ from sim.report.figures.spans import spans
 from sim.report.requirements.judge import Judgement
 from sim.scenario.schema import Scenario, orbit_period_s
 from sim.statistics.settling import Settling, held_ticks
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-Json = dict[str, Any]
+from sim.value_types import Array, Json
 
 BLOCK_TICKS = 4096
 """Sums are taken over blocks of this many ticks, however a flight is handed over: so they are bit-exact."""

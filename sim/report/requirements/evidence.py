@@ -17,8 +17,7 @@ from sim.report.figures.estimate_error import knowledge_errors, within_3sigma
 from sim.report.figures.mean import Mean
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 from sim.statistics.indices import magnitudes
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 HALF_ORBITS = 6
 """At the end of the flight, from which the trend of the error is determined."""

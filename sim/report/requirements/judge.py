@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,12 +22,12 @@ from sim.scenario.schema import Scenario, orbit_period_s
 from sim.statistics.indices import magnitudes
 from sim.statistics.settling import HELD_S, Settling, held_ticks
 from sim.statistics.windows import Windows
+from sim.value_types import Array, Json
 
 # --- Gathers one index over the window of a requirement, block by block, in constant memory
 
 # --- The number that is limited, of the values of an index over a window
 
-Array = NDArray[np.float64]
 
 LEAST, MOST, STEP = 1e-7, 1e4, 1.005
 """Range and ratio of the steps in which a percentile is found; it is rounded up to the next."""
@@ -184,9 +183,6 @@ def _pointed(scenario: Scenario) -> str:
     """What a requirement refers to where it does not say so."""
     what = controlled(scenario).what
     return "attitude" if what == "rate" else what
-
-
-Json = dict[str, Any]
 
 
 class Outcome(StrEnum):

@@ -12,8 +12,7 @@ from sim.design.theory.feedforward import least_error
 from sim.scenario.schema import Scenario
 from sim.sizing.expectation import apart, expect
 from sim.sizing.levels import MOST_LOAD, levels_against, two_digits
-
-Vec3 = tuple[float, float, float]
+from sim.value_types import Vec3
 
 
 def mean_field_t(body: Body) -> float:

@@ -8,7 +8,6 @@ from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.input.schema import Nested, merge
 from fsw.table.table import FlightTable
@@ -25,8 +24,7 @@ from sim.scenario.assemble import plant_config
 from sim.scenario.residual_errors import reading_of
 from sim.scenario.schema import Scenario, flight_table, load
 from sim.validate.commissioning.wirings import SCENARIO, satellite
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 SATELLITES = 30
 ORBIT_TICKS = 6040

@@ -29,8 +29,7 @@ from sim.flight.virtual import fly_virtual
 from sim.record import run_dir
 from sim.record.pace import Pace
 from sim.scenario.schema import flight_table, load
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 SCENARIO = "microsat"
 SOURCE = "Every signed permutation of the axes of sensor and coils, alone and together"

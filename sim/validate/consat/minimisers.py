@@ -14,7 +14,7 @@ from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2
 from sim.plant.rotation import matrix, normalise
 from sim.validate.consat.posat1 import FULL_SCALE_AM2, SOURCE
 from sim.validate.consat.prediction import rows, vec3
-from sim.validate.reference.comparison import Array
+from sim.value_types import Array
 
 STATES, TASKS = 400, 4
 PULSE_S = 3.0

@@ -18,7 +18,7 @@ from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2
 from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import ZERO, Mat3, Quaternion, Vec3, matrix, normalise, transform
 from sim.validate.consat.posat1 import SOURCE
-from sim.validate.reference.comparison import Array
+from sim.value_types import Array
 
 STATES = 200
 RADIUS_M = EARTH_RADIUS_M + 800e3

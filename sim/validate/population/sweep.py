@@ -4,14 +4,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.input.schema import Nested, merge
 from sim.campaign.flight import Order
 from sim.campaign.honesty import honesty_figures
 from sim.campaign.population import POPULATIONS, is_rigid, nominal_scenario, satellite
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 KIND, ORBITS = "50kg", 8.0
 LIMITS = POPULATIONS[KIND].tolerances

@@ -14,9 +14,10 @@ from sim.plant.dynamics.torques import BodyTorque
 from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import ZERO, Mat3, Vec3, matrix, normalise
 from sim.report.figures.attitude_arrays import angle_rad, relative
-from sim.validate.reference.comparison import Array, ReferenceComparison, largest
+from sim.validate.reference.comparison import ReferenceComparison, largest
 from sim.validate.reference.reference_table import ReferenceTable, names_of
 from sim.validate.reference.two_body import two_body
+from sim.value_types import Array
 
 ATTITUDE_RAD = 1e-7
 RATE_RADPS = 1e-9

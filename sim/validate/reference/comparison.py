@@ -7,8 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Threshold
 from sim.validate.reference.reference_table import ReferenceTable
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 
 @dataclass(frozen=True, slots=True)

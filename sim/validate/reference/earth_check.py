@@ -9,8 +9,9 @@ from fsw.core.orbit import sun as onboard_sun
 from sim.plant.environment import earth as plant_earth
 from sim.plant.environment.orbit import DAY_S, UNIX_EPOCH_JD
 from sim.plant.environment.sun import sun_eci_m
-from sim.validate.reference.comparison import Array, ReferenceComparison, angle_rad, largest
+from sim.validate.reference.comparison import ReferenceComparison, angle_rad, largest
 from sim.validate.reference.reference_table import ReferenceTable, names_of
+from sim.value_types import Array
 
 ROTATION_RAD = 1e-9
 """Both are the same closed formula; a double holds the time to 2e-11 rad."""

@@ -6,8 +6,9 @@ import numpy as np
 
 from fsw.core.orbit.sun import lit
 from sim.plant.environment.sun import illumination
-from sim.validate.reference.comparison import Array, ReferenceComparison, mismatch
+from sim.validate.reference.comparison import ReferenceComparison, mismatch
 from sim.validate.reference.reference_table import ReferenceTable, names_of
+from sim.value_types import Array
 
 SAME_MODEL = 1e-7
 """The planar two-circle formula; arccos near full shadow costs half the digits."""

@@ -9,8 +9,9 @@ from fsw.core.orbit.igrf_coefficients import EPOCHS_UNIX_S, MAX_DEGREE
 from sim.campaign.claim import Threshold
 from sim.errors import HarnessError
 from sim.plant.environment.igrf import Igrf
-from sim.validate.reference.comparison import Array, ReferenceComparison, largest
+from sim.validate.reference.comparison import ReferenceComparison, largest
 from sim.validate.reference.reference_table import ReferenceTable, names_of
+from sim.value_types import Array
 
 SAME_EPOCHS_NT = 1e-3
 """Rounding of other software near the poles; the formulas agree to 1e-10 nT."""

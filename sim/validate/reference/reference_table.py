@@ -7,12 +7,10 @@ from math import isfinite
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.input.text_file import read_text
 from sim.errors import HarnessError
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 MOST_BYTES = 16_000_000
 

@@ -13,8 +13,9 @@ from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.estimation.start.triad import triad
 from sim.errors import HarnessError
 from sim.report.figures.attitude_arrays import angle_rad, relative
-from sim.validate.reference.comparison import Array, ReferenceComparison
+from sim.validate.reference.comparison import ReferenceComparison
 from sim.validate.reference.reference_table import ReferenceTable, names_of
+from sim.value_types import Array
 
 ATTITUDE_RAD = 1e-9
 ROUNDING_RAD = 1e-12

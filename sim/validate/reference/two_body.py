@@ -1,9 +1,8 @@
 """Keplerian motion in closed form, for histories that were computed with it."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 _ROUNDS = 50
 

@@ -18,8 +18,9 @@ from sim.design.h_infinity_gains import best_pd, pd_tabulated
 from sim.design.measured_h_infinity import Measured, central, least, norm
 from sim.design.periodic_norms import Norms, norms
 from sim.design.riccati_by_subspace import periodic_cost
-from sim.design.theory.bodies import BODIES, Vec3
+from sim.design.theory.bodies import BODIES
 from sim.validate.review.flown import regulators
+from sim.value_types import Vec3
 
 BODY, WHEEL_NMS = BODIES[2], (0.0, 0.0, 0.05)
 REVIEW = "Ovchinnikov, Roldugin 2019, sections 2.2 and 3.2"

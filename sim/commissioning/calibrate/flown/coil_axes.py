@@ -32,8 +32,7 @@ from fsw.table.table import FlightTable
 from fsw.table.uncertainty import priors
 from sim.commissioning.calibrate.flown.expected import Expected
 from sim.commissioning.calibrate.flown.samples import Samples, whole
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 ANY_COIL = 1.2
 """Standard deviation of a component of G: every coil within 1.5 of any axis is near."""

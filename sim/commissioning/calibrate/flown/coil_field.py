@@ -16,9 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.commissioning.calibrate.flown.samples import Samples, whole
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
+from sim.value_types import Array, Numbers
 
 AROUND_S = 12
 """Time before and after a pulse that shows the field without it."""

@@ -5,7 +5,6 @@ from datetime import UTC, datetime
 from math import radians
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.table.table import FlightTable
 from sim.errors import HarnessError
@@ -13,8 +12,8 @@ from sim.plant.config import FieldConfig, OrbitConfig
 from sim.plant.environment.field import make_field
 from sim.plant.environment.orbit import make_orbit
 from sim.plant.environment.sun import sun_eci_m
+from sim.value_types import Array
 
-Array = NDArray[np.float64]
 NODE_S = 10.0
 
 

@@ -24,8 +24,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from sim.commissioning.calibrate.flown.samples import whole
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 MOST_STEPS = 40
 """Of a fit; one to samples that it can explain takes 5 to 16, one to a Sun that is none does not end."""

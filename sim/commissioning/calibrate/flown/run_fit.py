@@ -21,9 +21,7 @@ from sim.commissioning.calibrate.flown.samples import Samples, in_time, whole
 from sim.commissioning.calibrate.flown.sensor_axes import sensor_axes, without_outliers
 from sim.commissioning.calibrate.flown.wiring import Wiring, channels_from_body
 from sim.errors import HarnessError
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from sim.value_types import Array, Flags
 
 NEAR_TICKS = 3
 SMOOTHED = 5

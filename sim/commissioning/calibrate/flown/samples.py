@@ -11,9 +11,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilStatus, MagField, SunVector, Sync, intact
 from sim.errors import HarnessError
 from sim.record.candump import LogTruncatedError, read_log
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
+from sim.value_types import Array, Numbers
 
 SURE_GAP_S, LONGEST_GAP_S = 3600.0, 86400.0
 """Time without a SYNC that is believed whatever the time stamps say, since a recording of a flight without a

@@ -13,8 +13,6 @@ from sim.commissioning.calibrate.flown.joint_fit import FieldFit, FitPrior, Free
 from sim.commissioning.calibrate.flown.samples import whole
 from sim.commissioning.calibrate.flown.wiring import WIRINGS, Wiring, channels_from_body
 
-Array = NDArray[np.float64]
-
 MATRIX_SIGMA = 0.05
 """Of a component of M about a wiring: scale, non-orthogonality, turn."""
 OFFSET_SIGMA_NT = 60000.0

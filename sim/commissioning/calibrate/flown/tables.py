@@ -4,7 +4,6 @@ from math import ceil, degrees, hypot
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.table.estimator import table_bounds
 from fsw.table.table import FlightTable
@@ -18,9 +17,7 @@ from sim.commissioning.calibrate.flown.verdicts import (
 )
 from sim.commissioning.calibrate.flown.wiring import RIGHT
 from sim.errors import HarnessError
-
-Json = dict[str, Any]
-Array = NDArray[np.float64]
+from sim.value_types import Array, Json
 
 LEAST_BIAS_NT, LEAST_SCALE_PERCENT, LEAST_TURN_DEG = 100.0, 0.05, 0.02
 """What moves in the days after a calibration."""

@@ -3,13 +3,11 @@
 from math import degrees
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.table.calibration import outputs_of
 from sim.commissioning.calibrate.flown.run_fit import RunCalibration
 from sim.commissioning.calibrate.flown.wiring import channels_from_body
-
-Array = NDArray[np.float64]
+from sim.value_types import Array
 
 TOLD_OFFSET_NT = 2000.0
 """Three standard deviations of an offset that is told: what the bias of a table may be at most is 3000."""

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from itertools import permutations, product
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from sim.value_types import Array
+
 Wiring = tuple[int, int, int]
 """By channel or output, the number of the body axis it belongs to, negative for its opposite."""
 RIGHT: Wiring = (1, 2, 3)

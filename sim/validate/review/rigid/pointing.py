@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fsw.core.laws.lqr import LqrGains
 from fsw.input.schema import Nested
@@ -12,8 +11,8 @@ from sim.campaign.claim import Study
 from sim.tuning.flown import RigidFlight
 from sim.validate.review.rigid.trial import NEAR, RigidTrial, Trial, TrialFigure, gains, over
 from sim.validate.review.satellites.fifty_kg import BODY, PD
+from sim.value_types import Array
 
-Array = NDArray[np.float64]
 Flights = Sequence[RigidFlight]
 
 TORQUE: Nested = {"disturbance": {"torque_nm": [1e-7, 1e-7, 1e-7]}}
