@@ -15,20 +15,25 @@ from sim.validate.reference import reference
 from sim.validate.review import (
     damping,
     driven_wheel,
-    feedback,
+    feedback_gains,
+    feedback_laws,
+    feedback_linear,
+    feedback_neural,
+    fixed_wheel,
     one_axis,
     optimal,
+    pointing,
     predictive,
     sliding,
     spin,
     wheel,
 )
-from sim.validate.review.rigid import fixed_wheel, pointing
 from sim.validate.running.judging_code import judging_digest
 
 MODULES: tuple[ModuleType, ...] = (
     *(computed, prediction, minimisers, posat1, microsat, shipped, optimal_pulses, cells),
-    *(damping, spin, wheel, one_axis, feedback, sliding, optimal, predictive, fixed_wheel, pointing),
+    *(damping, spin, wheel, one_axis, feedback_laws, feedback_gains, feedback_linear, feedback_neural),
+    *(sliding, optimal, predictive, fixed_wheel, pointing),
     *(driven_wheel, claims, wirings, calibrated),
 )
 """Those that make studies, beside those of the reference files."""

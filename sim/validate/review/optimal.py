@@ -19,7 +19,7 @@ from sim.design.measured_h_infinity import Measured, central, least, norm
 from sim.design.periodic_norms import Norms, norms
 from sim.design.riccati_by_subspace import periodic_cost
 from sim.design.theory.bodies import BODIES
-from sim.validate.review.flown import regulators
+from sim.validate.review import regulators
 from sim.value_types import Vec3
 
 BODY, WHEEL_NMS = BODIES[2], (0.0, 0.0, 0.05)

@@ -15,7 +15,7 @@ from fsw.core.laws.plan.tumbling import Tumbling, costs, descend
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.design.explicit_mpc import pieces
 from sim.design.theory.bodies import BODIES
-from sim.validate.review.flown import prediction, slew
+from sim.validate.review import field_prediction, time_optimal_slew
 
 BODY = BODIES[2]
 REVIEW = "Ovchinnikov, Roldugin 2019, section 3.3"
@@ -25,7 +25,7 @@ TUMBLING_DEGPS, HORIZON_S, STEPS = 5.0, 60.0, 12
 
 def studies() -> list[Study]:
     """All of this section."""
-    return [limits(), explicit(), stopping(), *prediction.studies(), *slew.studies()]
+    return [limits(), explicit(), stopping(), *field_prediction.studies(), *time_optimal_slew.studies()]
 
 
 def limits() -> Study:

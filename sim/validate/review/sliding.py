@@ -4,9 +4,9 @@ from functools import partial
 
 from fsw.core.laws.sliding_realisable import RealisableGains
 from sim.campaign.claim import Claim, Study
+from sim.validate.review.fifty_kg import SPHERE, flight, last_orbit_deg
 from sim.validate.review.figures import judged
 from sim.validate.review.law_flight import LawFlight, fly
-from sim.validate.review.satellites.fifty_kg import SPHERE, flight, last_orbit_deg
 
 SECTION = "Ovchinnikov, Roldugin 2019, section 3.1"
 STEEP = {"reach": 3.0, "slope": 1.0}

@@ -15,8 +15,8 @@ from fsw.core.laws.target_precession import PrecessionGains
 from sim.campaign.claim import Claim, Study
 from sim.design import roll_precession_gain
 from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2, Array
+from sim.validate.review import three_term
 from sim.validate.review.figures import FlownClaim, one_figure
-from sim.validate.review.flown import three_term
 from sim.validate.review.law_flight import LawFlight, fly
 from sim.validate.review.law_history import LawHistory, angle_deg
 

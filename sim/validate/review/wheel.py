@@ -18,8 +18,8 @@ from sim.design.theory.floquet import monodromy, multipliers
 from sim.design.theory.linear import Gains, closed_loop
 from sim.plant.environment.orbit import Array
 from sim.plant.rotation import Vec3
+from sim.validate.review import gurwin
 from sim.validate.review.figures import FigureClaim
-from sim.validate.review.flown import gurwin
 from sim.validate.review.law_flight import ConstantTorque, LawFlight, fly
 from sim.validate.review.law_history import LawHistory
 

@@ -18,10 +18,9 @@ from sim.validate.consat import minimisers, posat1, prediction
 from sim.validate.population.claims import quiet_and_honest
 from sim.validate.reference import elements_check, reference
 from sim.validate.reference.reference_table import DATA
-from sim.validate.review import damping, driven_wheel, effects, law_flight, wheel
-from sim.validate.review.feedback import gains
+from sim.validate.review import damping, driven_wheel, effects, law_flight, regulators, wheel
+from sim.validate.review import feedback_gains as gains
 from sim.validate.review.figures import one_figure
-from sim.validate.review.flown import regulators
 from sim.validate.running.guard import guarded
 
 VALIDATE = Path(__file__).parents[3] / "sim" / "validate"

@@ -6,8 +6,7 @@ from fsw.core.algebra.vector import ZERO
 from fsw.core.laws import spin as thomson
 from fsw.core.laws import spin_axis, target_precession
 from sim.campaign.claim import ClaimVerdict
-from sim.validate.review import spin
-from sim.validate.review.flown import three_term
+from sim.validate.review import spin, three_term
 
 pytestmark = pytest.mark.long
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from fsw.core.laws.spin_axis import ThreeTermGains
 from sim.campaign.claim import Claim, Study
+from sim.validate.review.fifty_kg import BODY
 from sim.validate.review.figures import one_figure
 from sim.validate.review.law_flight import LawFlight, fly
-from sim.validate.review.satellites.fifty_kg import BODY
 
 SPIN_RADPS = 0.1
 NORMAL = (

@@ -7,8 +7,8 @@ import numpy as np
 from fsw.core.laws.pd_neural import NeuralGains
 from sim.campaign.claim import Claim, Study
 from sim.design.neural_training import MOST_AM2, PD_GAINS, cost, orbit_rms_deg, trials
+from sim.validate.review.fifty_kg import BODY
 from sim.validate.review.figures import one_figure
-from sim.validate.review.satellites.fifty_kg import BODY
 
 SEEDS, FLIGHTS = (101, 102, 103), 24
 """Not those of the training."""

@@ -20,8 +20,8 @@ from sim.design.robust_gains import robust_share, worst_degree
 from sim.design.theory.bodies import BODIES, Body
 from sim.design.theory.linear import Gains
 from sim.validate.microsat import pointing_figures
+from sim.validate.review.fifty_kg import BODY, PD, flight, last_orbit_deg
 from sim.validate.review.figures import judged
-from sim.validate.review.satellites.fifty_kg import BODY, PD, flight, last_orbit_deg
 
 SECTION = "Ovchinnikov, Roldugin 2019, section 3.1"
 BEST = Gains(**PD)

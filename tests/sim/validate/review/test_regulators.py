@@ -7,7 +7,7 @@ import pytest
 
 from fsw.core.laws import lqr_disturbed
 from sim.plant.rotation import ZERO
-from sim.validate.review.flown import regulators
+from sim.validate.review import regulators
 
 
 def claims_of(study, found):

@@ -4,7 +4,7 @@ import pytest
 
 from fsw.core.laws import pd
 from sim.campaign.claim import ClaimVerdict
-from sim.validate.review.rigid.pointing import feedback_trials, other_trials
+from sim.validate.review.pointing import feedback_trials, other_trials
 
 
 def outcome(name):

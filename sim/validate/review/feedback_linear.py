@@ -12,7 +12,7 @@ from sim.design.theory.linear import Gains
 from sim.design.theory.pulsed import PulsedLoop, Pulsing
 from sim.design.theory.robustness import margins
 from sim.design.theory.search import continuous
-from sim.validate.review.satellites.fifty_kg import BODY, PD
+from sim.validate.review.fifty_kg import BODY, PD
 
 REVIEW = "Ovchinnikov, Roldugin 2019"
 BOOM = next(body for body in BODIES if body.name == "boom")

@@ -10,8 +10,8 @@ import numpy as np
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.design.theory.bodies import diagonal
 from sim.design.time_optimal_slew import Slew, best, flown
+from sim.validate.review.fifty_kg import BODY, DIRECTION, PD, flight
 from sim.validate.review.law_flight import fly
-from sim.validate.review.satellites.fifty_kg import BODY, DIRECTION, PD, flight
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section 3.2"
 ANGLE_DEG = 60.0

@@ -14,7 +14,7 @@ from sim.design.theory.bodies import BODIES
 from sim.tuning.flown import RigidFlight
 from sim.validate.review.figures import judged
 from sim.validate.review.law_flight import LawFlight, fly
-from sim.validate.review.rigid.trial import NEAR, RigidTrial, Trial, TrialFigure, over
+from sim.validate.review.rigid_trial import NEAR, RigidTrial, Trial, TrialFigure, over
 
 BODY = BODIES[2]
 REVIEW = "Ovchinnikov, Roldugin 2019, section 3.3"

@@ -15,11 +15,11 @@ from fsw.core.laws.plan.riccati import Schedule
 from fsw.input.schema import Nested
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.plant.rotation import ZERO, Mat3, Vec3, cross, transform
+from sim.validate.review.fifty_kg import BODY
 from sim.validate.review.figures import judged
 from sim.validate.review.law_flight import Extra, LawFlight, fly
 from sim.validate.review.law_history import LawHistory
-from sim.validate.review.rigid.trial import RigidTrial, Trial, TrialFigure
-from sim.validate.review.satellites.fifty_kg import BODY
+from sim.validate.review.rigid_trial import RigidTrial, Trial, TrialFigure
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section 3.2"
 SUN: Vec3 = (0.6, 0.48, 0.64)

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from sim.validate.review.flown import gurwin
+from sim.validate.review import gurwin
+from sim.validate.review.fifty_kg import last_orbit_deg
 from sim.validate.review.law_flight import fly
-from sim.validate.review.satellites.fifty_kg import last_orbit_deg
 
 
 def test_without_its_wheel_the_satellite_does_not_recover():

@@ -7,7 +7,7 @@ import numpy as np
 from fsw.input.schema import Nested
 from sim.campaign.claim import Study
 from sim.tuning.flown import RigidFlight
-from sim.validate.review.rigid.trial import NEAR, RigidTrial, Trial, TrialFigure, gains, over
+from sim.validate.review.rigid_trial import NEAR, RigidTrial, Trial, TrialFigure, gains, over
 
 NORMAL = (0.0, -sin(radians(98.6)), cos(radians(98.6)))
 """Of the orbit, eci."""

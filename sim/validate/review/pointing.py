@@ -9,8 +9,8 @@ from fsw.core.laws.lqr import LqrGains
 from fsw.input.schema import Nested
 from sim.campaign.claim import Study
 from sim.tuning.flown import RigidFlight
-from sim.validate.review.rigid.trial import NEAR, RigidTrial, Trial, TrialFigure, gains, over
-from sim.validate.review.satellites.fifty_kg import BODY, PD
+from sim.validate.review.fifty_kg import BODY, PD
+from sim.validate.review.rigid_trial import NEAR, RigidTrial, Trial, TrialFigure, gains, over
 from sim.value_types import Array
 
 Flights = Sequence[RigidFlight]

@@ -13,9 +13,9 @@ from sim.design.torque_harmonics import fit, orbit
 from sim.plant.config import OrbitConfig
 from sim.plant.environment.field import RotatingIgrf
 from sim.plant.environment.orbit import CircularOrbit
+from sim.validate.review.fifty_kg import last_orbit_deg
 from sim.validate.review.figures import FigureClaim
 from sim.validate.review.law_flight import DEGREE, EPOCH_UNIX_S, LawFlight
-from sim.validate.review.satellites.fifty_kg import last_orbit_deg
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section 2.2"
 BODY = Body("Gurwin", diagonal((1.9, 1.95, 2.0)), 800.0, 98.6, (0.0, 0.0, 0.05))

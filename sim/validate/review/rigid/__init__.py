@@ -1,1 +1,0 @@
-"""Claims that flights of a rigid body in the direct dipole show."""

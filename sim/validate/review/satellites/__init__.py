@@ -1,1 +1,0 @@
-"""Satellites that the claims fly."""
