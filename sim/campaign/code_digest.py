@@ -26,6 +26,7 @@ FLIGHT_CODE = (
     "sim/report",
     "sim/scenario",
     "sim/statistics",
+    "sim/value_types.py",
 )
 """Folders and files that a flight and its figures depend on."""
 NOT_FLOWN = (
@@ -42,8 +43,6 @@ NOT_FLOWN = (
 )
 """Within those, what no flight imports: what orders flights, stores their results and shows them."""
 WORDS = (
-    "sim/report/requirements/causes.py",
-    "sim/report/requirements/causes.py",
     "sim/report/requirements/causes.py",
     "sim/report/requirements/sizing.py",
 )
