@@ -36,11 +36,11 @@ class MonitorInput(Value):
 
     FIELDS = (
         "attitude",
-        "owed_impulse_body_nms",
+        "pending_impulse_body_nms",
         "field_age_ticks",
         "status_age_ticks",
         "unexpected_drive",
-        "orbit_known",
+        "orbit_available",
         "second_sender",
         "stale_after_ticks",
     )
@@ -49,20 +49,20 @@ class MonitorInput(Value):
     def __init__(
         self,
         attitude: Attitude,
-        owed_impulse_body_nms: Vec3,
+        pending_impulse_body_nms: Vec3,
         field_age_ticks: int,
         status_age_ticks: int,
         unexpected_drive: bool,
-        orbit_known: bool,
+        orbit_available: bool,
         second_sender: bool,
         stale_after_ticks: int,
     ) -> None:
         self.attitude = attitude
-        self.owed_impulse_body_nms = owed_impulse_body_nms
+        self.pending_impulse_body_nms = pending_impulse_body_nms
         self.field_age_ticks = field_age_ticks
         self.status_age_ticks = status_age_ticks
         self.unexpected_drive = unexpected_drive
-        self.orbit_known = orbit_known
+        self.orbit_available = orbit_available
         self.second_sender = second_sender
         self.stale_after_ticks = stale_after_ticks
 
@@ -84,7 +84,7 @@ def first_violation(watched: MonitorInput) -> Monitor | None:
     violated: Monitor | None = None
     q0, q1, q2, q3 = attitude.q_body_from_orbit
     w1, w2, w3 = attitude.omega_body_orbit_radps
-    owed1, owed2, owed3 = watched.owed_impulse_body_nms
+    owed1, owed2, owed3 = watched.pending_impulse_body_nms
     if not is_finite(w1 + w2 + w3 + q0 + q1 + q2 + q3):
         violated = Monitor.ATTITUDE_FINITE
     elif not abs(q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3 - 1.0) < UNIT_TOLERANCE:
@@ -97,7 +97,7 @@ def first_violation(watched: MonitorInput) -> Monitor | None:
         violated = Monitor.COIL_STATUS_FRESH
     elif watched.unexpected_drive:
         violated = Monitor.COIL_AS_COMMANDED
-    elif not watched.orbit_known:
+    elif not watched.orbit_available:
         violated = Monitor.ORBIT_KNOWN
     elif watched.second_sender:
         violated = Monitor.NO_SECOND_SENDER

@@ -112,7 +112,7 @@ def _write_flight_state(out: BytesWriter, value: FlightState) -> None:
 def _write_pulse_state(out: BytesWriter, value: PulseState) -> None:
     _write_int_3(out, value.ready_tick)
     write_i64_le(out, value.busy_until)
-    _write_float_3(out, value.owed_impulse_body_nms)
+    _write_float_3(out, value.pending_impulse_body_nms)
     _write_float_3(out, value.held_am2)
 
 

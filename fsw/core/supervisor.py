@@ -19,11 +19,11 @@ def supervise(state: FlightState, config: FlightConfig) -> Monitor | None:
     """
     watched = MonitorInput(
         attitude=state.attitude,
-        owed_impulse_body_nms=state.pulses.owed_impulse_body_nms,
+        pending_impulse_body_nms=state.pulses.pending_impulse_body_nms,
         field_age_ticks=state.tick - state.field_tick,
         status_age_ticks=state.tick - state.status_tick,
         unexpected_drive=state.health.coils.stuck,
-        orbit_known=state.ephemeris is not None,
+        orbit_available=state.ephemeris is not None,
         second_sender=state.second_sender.detected,
         stale_after_ticks=config.stale_after_ticks,
     )

@@ -197,7 +197,7 @@ class ControlTable(Section):
 
     @field_validator("law")
     @classmethod
-    def _law_is_known(cls, law: str, info: ValidationInfo) -> str:
+    def _law_exists(cls, law: str, info: ValidationInfo) -> str:
         named = info.data.get("law_sha256") is not None
         if law not in LAWS and not named:
             names = ", ".join(map(repr, LAWS))
@@ -212,7 +212,7 @@ class ControlTable(Section):
         return law
 
     @model_validator(mode="after")
-    def _gains_are_known(self) -> Self:
+    def _gains_exist(self) -> Self:
         for law, given in self.gains.items():
             if self.own and law == self.law_name:
                 continue  # its source knows them

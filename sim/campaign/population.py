@@ -12,8 +12,8 @@ from math import sqrt
 import numpy as np
 
 from fsw.input.schema import Nested, merge
+from sim.campaign.consistency import consistency_figures
 from sim.campaign.flight import Order
-from sim.campaign.honesty import honesty_figures
 from sim.scenario.schema import Scenario, load
 from sim.value_types import Array
 
@@ -132,11 +132,11 @@ def population_order(
     rate_degps: Interval | None = None,
     overrides: Nested | None = None,
 ) -> Order:
-    """The flight of a satellite, with ``overrides`` laid over it, measured by ``honesty_figures``."""
+    """The flight of a satellite, with ``overrides`` laid over it, measured by ``consistency_figures``."""
     drawn = satellite(kind, seed, twice=twice, rate_degps=rate_degps)
     changed = merge(drawn, overrides or {})
     name = f"satellite {seed} of {kind}"
-    return Order(POPULATIONS[kind].scenario, changed, seed, orbits, honesty_figures, name)
+    return Order(POPULATIONS[kind].scenario, changed, seed, orbits, consistency_figures, name)
 
 
 @cache

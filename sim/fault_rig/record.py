@@ -152,7 +152,7 @@ def finite(state: FlightState) -> bool:
     numbers = (
         *state.attitude.q_body_from_orbit,
         *state.attitude.omega_body_orbit_radps,
-        *state.pulses.owed_impulse_body_nms,
+        *state.pulses.pending_impulse_body_nms,
         *state.sample.b_body_t,
         *state.coil.driven_am2,
     )

@@ -9,7 +9,6 @@ from sim.audit.limits import limits_in
 from sim.fault_rig import currents
 from sim.fault_rig.currents import CurrentLimits
 from sim.fault_rig.record import FaultFlightRecord
-from sim.fault_table.honesty import never_wrong_for_long
 from sim.fault_table.isolation import (
     SECOND_SENDER,
     board_identifies_unit,
@@ -24,6 +23,7 @@ from sim.fault_table.isolation import (
     uses_unit_again,
 )
 from sim.fault_table.row import Bounds, Check, CheckOutcome, CheckVerdict, FaultRow
+from sim.fault_table.wrong_estimates import never_wrong_for_long
 from sim.faults.kinds import KINDS
 from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario, orbit_period_s

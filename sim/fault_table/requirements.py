@@ -16,7 +16,7 @@ from fsw.core.gate.second_sender import SIGNS
 from fsw.core.gate.sync_watch import LEAP_S
 from fsw.core.monitors import UNIT_TOLERANCE, Monitor
 from fsw.core.orbit.earth import RADIUS_M
-from sim.fault_table.honesty import ALONE_DEG, WRONG_DEG, WRONG_S
+from sim.fault_table.wrong_estimates import ALONE_DEG, WRONG_DEG, WRONG_S
 
 
 class Requirement(NamedTuple):

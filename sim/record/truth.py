@@ -176,11 +176,11 @@ class TruthReader:
 
     def __init__(self, path: Path, being_written: bool = False) -> None:
         self._path = path
-        with self._damage_told():
+        with self._report_damage():
             check_regular(path)
             self._file = h5py.File(path, "r", locking=False if being_written else None)
         try:
-            with self._damage_told():
+            with self._report_damage():
                 self._names = _names(self._file, path.stat().st_size)
                 self.attributes: dict[str, object] = dict(self._file.attrs)
                 """What identifies the flight; none in a file of an older version."""
@@ -192,7 +192,7 @@ class TruthReader:
 
     def rows(self, first: int, past: int) -> Histories:
         """Some rows of every dataset, by name."""
-        with self._damage_told():
+        with self._report_damage():
             histories = {name: self._file[name][first:past] for name in self._names}
         for name, history in histories.items():
             if (np.abs(history) > LARGEST).any():
@@ -209,7 +209,7 @@ class TruthReader:
         return total
 
     @contextmanager
-    def _damage_told(self) -> Iterator[None]:
+    def _report_damage(self) -> Iterator[None]:
         try:
             yield
         except _DAMAGE as error:

@@ -1,7 +1,7 @@
 """``python -m sim.report.conclude_process RUN``: the process that replays a run while it is being flown.
 
 Its standard input receives ``OVER`` once the flight is over, or ends if the process that flies has ended.
-From then on it writes to its standard output how many ticks it has replayed, a line every ``TOLD_S``.
+From then on it writes to its standard output how many ticks it has replayed, a line every ``REPORT_S``.
 """
 
 import os
@@ -21,7 +21,7 @@ from sim.report.conclude import conclude_flight
 from sim.report.follow import OVER
 
 POLL_S = 0.02
-TOLD_S = 0.2
+REPORT_S = 0.2
 """How often the progress is written."""
 
 
@@ -31,7 +31,7 @@ class _Flight:
     def __init__(self) -> None:
         self._over = Event()
         self._last_look = False
-        self._told_s = 0.0
+        self._reported_s = 0.0
         Thread(target=self._await_end, daemon=True).start()
 
     def _await_end(self) -> None:
@@ -51,8 +51,8 @@ class _Flight:
     def tell(self, tick: int) -> None:
         """Write the tick, if it is waited for."""
         now_s = time.monotonic()
-        if self._over.is_set() and now_s - self._told_s > TOLD_S:
-            self._told_s = now_s
+        if self._over.is_set() and now_s - self._reported_s > REPORT_S:
+            self._reported_s = now_s
             click.echo(tick)
 
 

@@ -5,8 +5,8 @@ from numpy.typing import NDArray
 
 from fsw.input.schema import Nested
 from sim.campaign.claim import Study
+from sim.campaign.consistency import consistency_figures
 from sim.campaign.flight import Figures, FlightResult, Measure, Order
-from sim.campaign.honesty import honesty_figures
 from sim.campaign.study import Figure, Group, Pick, campaign, figure_of, summary_value
 from sim.design.theory.side_by_side import in_body
 from sim.record.estimates import Estimates
@@ -121,7 +121,7 @@ def within(limit_s: float, name: str) -> Pick:
 
 
 def contradicted_figures(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
-    """``honesty_figures``, and the longest times valid with a large error that sensors speak against.
+    """``consistency_figures``, and the longest times valid with a large error that sensors speak against.
 
     ``contradicted_s``: the field or two cells, since one alone may be dead; ``contradicted_by_one_s``: the
     field or one cell.
@@ -136,7 +136,7 @@ def contradicted_figures(scenario: Scenario, truth: Histories, estimates: Estima
         )
 
     return {
-        **honesty_figures(scenario, truth, estimates),
+        **consistency_figures(scenario, truth, estimates),
         "contradicted_s": longest_s(field | (cells > 1)),
         "contradicted_by_one_s": longest_s(field | (cells > 0)),
     }
@@ -225,7 +225,7 @@ def crossed() -> Nested:
 
 
 def _order(
-    seed: int, changed: Nested, measure: Measure = honesty_figures, orbits: float | None = None
+    seed: int, changed: Nested, measure: Measure = consistency_figures, orbits: float | None = None
 ) -> Order:
     return Order(SCENARIO, changed, seed, orbits, measure, f"{SCENARIO}, seed {seed}")
 

@@ -15,13 +15,13 @@ from sim.junit import prepare_junit, write_junit
 from sim.progress import note, progress
 from sim.result_files import Files, check_results
 from sim.validate.flight_data import claims
-from sim.validate.flight_rows import FlightRows, keep_flight, with_known
+from sim.validate.flight_rows import FlightRows, keep_flight, with_kept_flights
 from sim.validate.outcomes import read_record
 from sim.validate.page import as_json, line, loose, suites, tally
 from sim.validate.reference import reference
 from sim.validate.registry import all_studies, choose_studies, find_repository, judging_digests
 from sim.validate.running.guard import claims_of, guarded
-from sim.validate.running.kept_results import keep_result, with_known_results
+from sim.validate.running.kept_results import keep_result, with_kept_results
 from sim.validate.running.recorded import recorded_studies
 from sim.validate.running.results import ResultFiles
 
@@ -86,7 +86,7 @@ def validate(
     prepare_junit(junit)
     rows = FlightRows(keep) if keep is not None else None
     if rows is not None:
-        studies = with_known_results(with_known(studies, rows), rows)
+        studies = with_kept_results(with_kept_flights(studies, rows), rows)
     passed = (HarnessError,) if folder is not None or flight_data is not None else ()  # the user's own files
     studies = [guarded(study, passed) for study in studies]
     bar = sys.stderr.isatty()  # then the outcomes are printed after the progress bar

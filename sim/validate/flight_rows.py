@@ -103,7 +103,7 @@ class FlightRows:
         self._rows[row["order"]] = row
 
 
-def with_known(studies: Sequence[Study], rows: FlightRows) -> list[Study]:
+def with_kept_flights(studies: Sequence[Study], rows: FlightRows) -> list[Study]:
     """The studies, where the flight of a task is known with that flight in place of the task."""
     return [
         replace(study, tasks=tuple(_known(task, rows) or task for task in study.tasks)) for study in studies

@@ -13,8 +13,8 @@ import numpy as np
 
 from fsw.input.schema import Nested
 from sim.campaign.claim import Study
+from sim.campaign.consistency import consistency_figures
 from sim.campaign.flight import Order
-from sim.campaign.honesty import honesty_figures
 from sim.campaign.study import Figure, Group, campaign, figure_of, summary_value
 from sim.validate.microsat import direction
 
@@ -136,4 +136,4 @@ def _order(case: Case, seed: int, real: bool) -> Order:
                 "residual_dipole_am2": DECLARED * case.real.dipole_am2,
             }
         }
-    return Order(case.scenario, overrides, seed, case.orbits, honesty_figures)
+    return Order(case.scenario, overrides, seed, case.orbits, consistency_figures)

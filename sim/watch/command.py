@@ -9,7 +9,7 @@ from sim.progress import note
 from sim.record.pace import Pace
 from sim.scenario.schema import Scenario, load
 from sim.watch.directions import nothing_around, onboard_around
-from sim.watch.seen import FlightView
+from sim.watch.flight_view import FlightView
 from sim.watch.source import BusSource, FrameSource, LogSource, batches
 
 
@@ -18,7 +18,7 @@ class Watched:
     """A source and what its frames have shown."""
 
     source: FrameSource
-    seen: FlightView
+    view: FlightView
 
 
 def watch(what: str, pace: Pace, scenario: str | None) -> Watched:
@@ -61,7 +61,7 @@ def show_on_terminal(watched: Watched) -> None:
     """
     from sim.watch.terminal import show  # noqa: PLC0415  rich loads when something is drawn
 
-    show(watched.seen, batches(watched.source, watched.seen), watched.source.name)
+    show(watched.view, batches(watched.source, watched.view), watched.source.name)
     _check_whole(watched.source)
 
 
@@ -73,7 +73,7 @@ def serve_page(watched: Watched, port: int) -> None:
     """
     from sim.watch.web import LiveView, serve  # noqa: PLC0415  an extra
 
-    serve(LiveView(watched.source, watched.seen), port, lambda address: note(f"{address} until Ctrl-C"))
+    serve(LiveView(watched.source, watched.view), port, lambda address: note(f"{address} until Ctrl-C"))
     _check_whole(watched.source)
 
 
@@ -87,8 +87,8 @@ def serve_foxglove(watched: Watched, port: int) -> None:
 
     with foxglove_server(port) as publisher:
         note(f"Foxglove: open a connection to ws://127.0.0.1:{publisher.port}")
-        for _ in batches(watched.source, watched.seen):
-            publisher.publish(watched.seen)
+        for _ in batches(watched.source, watched.view):
+            publisher.publish(watched.view)
     _check_whole(watched.source)
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from fsw.core.algebra.quaternion import IDENTITY
 from sim.errors import HarnessError, needing
+from sim.watch.flight_view import FlightView
 from sim.watch.happening import Weight
-from sim.watch.seen import FlightView
 from sim.watch.snapshot import STATE_SCHEMA, state
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def foxglove_server(port: int) -> Iterator["Publisher"]:
 
 
 class Publisher:
-    """Sends what is seen to whoever is connected, on /tf, /scene, /state and /events.
+    """Sends what the view shows to whoever is connected, on /tf, /scene, /state and /events.
 
     Args:
         context: of foxglove.
@@ -73,7 +73,7 @@ class Publisher:
         self._state = Channel("/state", schema=STATE_SCHEMA, context=context)
         self._told = 0
 
-    def publish(self, seen: FlightView) -> None:
+    def publish(self, view: FlightView) -> None:
         """Everything of this moment, and what has happened since the last one; from the first SYNC on.
 
         Of what happened before, the last is told, and how many are left out.
@@ -82,10 +82,10 @@ class Publisher:
 
         from sim.drawing.foxglove_scene import ESTIMATE, ORBIT, arrow, attitude, stamp_of
 
-        if seen.unix_s is None:
+        if view.unix_s is None:
             return
-        now_ns = seen.unix_s * 10**9
-        self._transforms.log(attitude(ESTIMATE, seen.attitude or IDENTITY, now_ns), log_time=now_ns)
+        now_ns = view.unix_s * 10**9
+        self._transforms.log(attitude(ESTIMATE, view.attitude or IDENTITY, now_ns), log_time=now_ns)
         arrows = [
             SceneEntity(
                 id=name,
@@ -93,14 +93,14 @@ class Publisher:
                 timestamp=stamp_of(now_ns),
                 arrows=[arrow(vector, Color(**COLOURS.get(name, GREY), a=1.0))],
             )
-            for name, vector in seen.arrows().items()
+            for name, vector in view.arrows().items()
         ]
         self._scene.log(SceneUpdate(entities=arrows), log_time=now_ns)
-        self._state.log(state(seen), log_time=now_ns)
+        self._state.log(state(view), log_time=now_ns)
         levels = {Weight.WARNING: LogLevel.Warning, Weight.ERROR: LogLevel.Error}
-        for one in seen.happenings:
+        for one in view.happenings:
             if one.number > self._told:
-                then_ns = (one.unix_s or seen.unix_s) * 10**9
+                then_ns = (one.unix_s or view.unix_s) * 10**9
                 level = levels.get(one.weight, LogLevel.Info)
                 left_out = one.number - self._told - 1
                 words = f"{one.words}; {left_out} before it are left out" if left_out else one.words

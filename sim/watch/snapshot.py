@@ -1,11 +1,11 @@
-"""What is seen at one moment, as values of JSON: for the page and for Foxglove."""
+"""What the view shows at one moment, as values of JSON: for the page and for Foxglove."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
 
 from fsw.wire.messages import NAMES
 from sim.value_types import Json
-from sim.watch.seen import FlightView
+from sim.watch.flight_view import FlightView
 from sim.watch.terminal import OTHERS, time_text
 
 STATE_SCHEMA: Json = {
@@ -32,42 +32,42 @@ STATE_SCHEMA: Json = {
 """JSON schema of ``state``, by which Foxglove offers the series."""
 
 
-def state(seen: FlightView) -> Json:
+def state(view: FlightView) -> Json:
     """The numbers of this moment, flat."""
-    sample = seen.sample()
+    sample = view.sample()
     series: Mapping[str, object] = {} if sample is None else asdict(sample)
-    coils = seen.coils
+    coils = view.coils
     return {
-        "tick": seen.tick,
-        "mode": None if seen.mode is None else seen.mode.name,
-        "valid": seen.attitude is not None,
+        "tick": view.tick,
+        "mode": None if view.mode is None else view.mode.name,
+        "valid": view.attitude is not None,
         **{name: series.get(name) for name in _SERIES},
         **{f"level_{coil}": level for coil, level in enumerate(coils.levels)},
         "current_ma": coils.current_ma,
         "pulses": coils.pulses,
         "refused": coils.refused,
-        "bus_load": seen.load.part,
+        "bus_load": view.load.part,
     }
 
 
 _SERIES = ("turn_deg", "sigma3_deg", "rate_degps", "field_off_deg", "sun_off_deg")
 
 
-def snapshot(seen: FlightView, after: int, sampled: int) -> Json:
+def snapshot(view: FlightView, after: int, sampled: int) -> Json:
     """All that the page draws; of what happened and of the series only what is new.
 
     Args:
-        seen: what the frames have shown.
+        view: what the frames have shown.
         after: number of the last happening that the page has.
         sampled: number of the last sample that it has.
     """
-    coils, quality = seen.coils, seen.quality
-    new = min(len(seen.samples), seen.sampled - sampled)
+    coils, quality = view.coils, view.quality
+    new = min(len(view.samples), view.sampled - sampled)
     return {
-        "state": state(seen),
-        "time": time_text(seen.unix_s).strip(),
-        "ended": seen.ended,
-        "arrows": seen.arrows(),
+        "state": state(view),
+        "time": time_text(view.unix_s).strip(),
+        "ended": view.ended,
+        "arrows": view.arrows(),
         "lockout_ms": coils.lockout_ms,
         "fractions": coils.fractions,
         "used": None
@@ -75,23 +75,23 @@ def snapshot(seen: FlightView, after: int, sampled: int) -> Json:
         else {
             name: bool(getattr(quality, name)) for name in ("mag_used", "mag_blanked", "sun_used", "eclipse")
         },
-        "frames_per_s": seen.load.frames_per_s,
-        "frames": _frames(seen),
-        "broken": seen.broken,
-        "sampled": seen.sampled,
+        "frames_per_s": view.load.frames_per_s,
+        "frames": _frames(view),
+        "broken": view.broken,
+        "sampled": view.sampled,
         "samples": [
             [sample.unix_s, *(getattr(sample, name) for name in _SERIES)]
-            for sample in list(seen.samples)[len(seen.samples) - new :]
+            for sample in list(view.samples)[len(view.samples) - new :]
         ],
-        "happened": seen.happened,
+        "happened": view.happened,
         "happenings": [
             (one.number, time_text(one.unix_s)[11:].strip(), one.tick, one.weight.value, one.words)
-            for one in seen.happenings
+            for one in view.happenings
             if one.number > after
         ],
     }
 
 
-def _frames(seen: FlightView) -> list[tuple[str, int]]:
-    named = [(NAMES.get(can_id, f"0x{can_id:03X}"), count) for can_id, count in seen.frames.most_common()]
-    return [*named, (OTHERS, seen.other_frames)] if seen.other_frames else named
+def _frames(view: FlightView) -> list[tuple[str, int]]:
+    named = [(NAMES.get(can_id, f"0x{can_id:03X}"), count) for can_id, count in view.frames.most_common()]
+    return [*named, (OTHERS, view.other_frames)] if view.other_frames else named

@@ -14,7 +14,7 @@ from sim.record import run_dir
 from sim.record.candump import LogTruncatedError, read_log
 from sim.record.pace import Pace
 from sim.scenario.schema import Scenario
-from sim.watch.seen import MOST_HAPPENINGS, FlightView
+from sim.watch.flight_view import MOST_HAPPENINGS, FlightView
 
 BATCH_S = 0.1
 """Frames are handed on in batches of this time at most [s]."""

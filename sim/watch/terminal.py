@@ -17,13 +17,13 @@ from rich.text import Text
 from fsw.core.algebra.vector import Vec3, norm
 from fsw.input.error_text import line_text
 from fsw.wire.messages import NAMES
+from sim.watch.flight_view import FlightView, SecondSample
 from sim.watch.happening import Occurrence, Weight
-from sim.watch.seen import FlightView, SecondSample
 
 # --- A picture of directions in characters of a terminal: each character has two by four dots (Braille)
 
 AZIMUTH_DEG, ELEVATION_DEG = -50.0, 25.0
-"""From where the orbit axes are seen: turned about the radius, then tilted towards the viewer."""
+"""From where the orbit axes are view: turned about the radius, then tilted towards the viewer."""
 _BRAILLE = 0x2800
 _DOTS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))
 """Bit of a dot by its row and column in a character."""
@@ -119,31 +119,31 @@ OTHERS = "other identifiers"
 """Frames of unknown identifiers that are not counted each by itself."""
 
 
-def show(seen: FlightView, batches: Iterator[None], source: str) -> None:
-    """Draw what is seen on standard output until there is no more.
+def show(view: FlightView, batches: Iterator[None], source: str) -> None:
+    """Draw what is view on standard output until there is no more.
 
     Args:
-        seen: what the frames have shown.
+        view: what the frames have shown.
         batches: advances to the next frames.
         source: name of bus or log.
     """
     console, source = Console(), line_text(source)
     if not console.is_terminal:
-        _print_happenings(seen, batches)
+        _print_happenings(view, batches)
         return
     drawn_s = 0.0
     with Live(console=console, screen=True, auto_refresh=False) as live:
         for _ in batches:
             if monotonic() - drawn_s >= 1.0 / REFRESH_HZ:
-                live.update(screen(seen, source, *console.size), refresh=True)
+                live.update(screen(view, source, *console.size), refresh=True)
                 drawn_s = monotonic()
-    console.print(screen(seen, source, console.width, LAST_ROWS), height=LAST_ROWS)
+    console.print(screen(view, source, console.width, LAST_ROWS), height=LAST_ROWS)
 
 
-def _print_happenings(seen: FlightView, batches: Iterator[None]) -> None:
+def _print_happenings(view: FlightView, batches: Iterator[None]) -> None:
     told = 0
     for _ in batches:
-        for happening in seen.happenings:
+        for happening in view.happenings:
             if happening.number > told:
                 print(line_text(line(happening)), flush=True)
                 told = happening.number
@@ -167,68 +167,68 @@ def time_text(unix_s: int | None) -> str:
     return " " * 19 if unix_s is None else f"{datetime.fromtimestamp(unix_s, UTC):%Y-%m-%d %H:%M:%S}"
 
 
-def screen(seen: FlightView, source: str, width: int, height: int) -> RenderableType:
+def screen(view: FlightView, source: str, width: int, height: int) -> RenderableType:
     """All panels, for a terminal of this size."""
     middle = min(max(NUMBERS, (height - HEAD) // 2), max(1, height - HEAD - 1))
     foot, wide = max(1, height - HEAD - middle), width >= WIDE
     layout = Layout()
     layout.split_column(
-        Layout(_head(seen, source), size=HEAD), Layout(name="middle", size=middle), Layout(name="foot")
+        Layout(_head(view, source), size=HEAD), Layout(name="middle", size=middle), Layout(name="foot")
     )
     layout["middle"].split_row(Layout(name="attitude"), Layout(name="numbers"))
     columns, rows = max(10, width // 2 - 4), max(4, middle - 2)
-    layout["attitude"].update(Panel(_attitude(seen, columns, rows), title="attitude", subtitle=_frame(seen)))
+    layout["attitude"].update(Panel(_attitude(view, columns, rows), title="attitude", subtitle=_frame(view)))
     layout["numbers"].split_column(
-        Layout(Panel(_coils(seen, wide), title="coils"), size=6),
-        Layout(Panel(_estimate(seen, wide), title="estimate")),
+        Layout(Panel(_coils(view, wide), title="coils"), size=6),
+        Layout(Panel(_estimate(view, wide), title="estimate")),
     )
     layout["foot"].split_row(
-        Layout(Panel(_happenings(seen, max(1, foot - 2)), title="events and pulses"), ratio=2),
-        Layout(Panel(_load(seen), title="bus")),
+        Layout(Panel(_happenings(view, max(1, foot - 2)), title="events and pulses"), ratio=2),
+        Layout(Panel(_load(view), title="bus")),
     )
     return layout
 
 
-def _head(seen: FlightView, source: str) -> Panel:
-    mode = "no mode yet" if seen.mode is None else seen.mode.name
-    valid = Text("attitude valid", "green") if seen.attitude else Text("attitude not valid", "bold red")
-    state = "over" if seen.ended else ("" if seen.tick is not None else "waiting for SYNC")
+def _head(view: FlightView, source: str) -> Panel:
+    mode = "no mode yet" if view.mode is None else view.mode.name
+    valid = Text("attitude valid", "green") if view.attitude else Text("attitude not valid", "bold red")
+    state = "over" if view.ended else ("" if view.tick is not None else "waiting for SYNC")
     parts = (
         source,
-        time_text(seen.unix_s).strip(),
-        f"tick {seen.tick}" if seen.tick is not None else "",
+        time_text(view.unix_s).strip(),
+        f"tick {view.tick}" if view.tick is not None else "",
         mode,
     )
     words = Text("   ".join(part for part in (*parts, state) if part) + "   ", "bold")
     return Panel(words + valid)
 
 
-def _frame(seen: FlightView) -> str:
-    return "up: radius, N: nadir, A: ahead" if seen.attitude else "body axes: no valid attitude"
+def _frame(view: FlightView) -> str:
+    return "up: radius, N: nadir, A: ahead" if view.attitude else "body axes: no valid attitude"
 
 
-def _attitude(seen: FlightView, columns: int, rows: int) -> Text:
+def _attitude(view: FlightView, columns: int, rows: int) -> Text:
     text = Text()
-    for row in picture(seen.arrows(), columns, rows):
+    for row in picture(view.arrows(), columns, rows):
         for cell in row:
             text.append(cell.text, ARROWS.get(cell.name, "bright_black"))
         text.append("\n")
     return text
 
 
-def _coils(seen: FlightView, wide: bool) -> Table:
+def _coils(view: FlightView, wide: bool) -> Table:
     table = Table.grid(padding=(0, 2 if wide else 1), expand=True)
     for coil in range(3):
-        level, lockout = seen.coils.levels[coil], seen.coils.lockout_ms[coil]
-        if seen.coils.fractions is not None:
-            state: RenderableType = f"{100.0 * seen.coils.fractions[coil]:+.0f} % of full"
+        level, lockout = view.coils.levels[coil], view.coils.lockout_ms[coil]
+        if view.coils.fractions is not None:
+            state: RenderableType = f"{100.0 * view.coils.fractions[coil]:+.0f} % of full"
         else:
-            driven = f"{'level ' if wide else ''}{level:+d}, {seen.coils.current_ma} mA"
+            driven = f"{'level ' if wide else ''}{level:+d}, {view.coils.current_ma} mA"
             state = Text(driven, "bold cyan") if level else "off"
         locked = Bar(100_000, 0, lockout or 0, width=12) if lockout and wide else Text("")
         left = "" if lockout is None else (f"{lockout / 1000:.0f} s locked" if lockout else "free")
         table.add_row(f"coil {coil}", state, locked, left)
-    table.add_row(f"{seen.coils.pulses} pulses", f"{seen.coils.refused} refused", "", "")
+    table.add_row(f"{view.coils.pulses} pulses", f"{view.coils.refused} refused", "", "")
     return table
 
 
@@ -236,9 +236,9 @@ def _number(value: float | None, unit: str, digits: int = 2) -> str:
     return "-" if value is None else f"{value:.{digits}f} {unit}"
 
 
-def _estimate(seen: FlightView, wide: bool) -> Table:
+def _estimate(view: FlightView, wide: bool) -> Table:
     table = Table.grid(padding=(0, 2), expand=True)
-    samples = list(seen.samples)
+    samples = list(view.samples)
     latest = samples[-1] if samples else None
     rows: tuple[tuple[str, str, str], ...] = (
         ("off the orbit axes", "turn_deg", "deg"),
@@ -251,9 +251,9 @@ def _estimate(seen: FlightView, wide: bool) -> Table:
         value = getattr(latest, name) if latest else None
         course = sparkline(_every(samples, name), 30) if wide else ""
         table.add_row(title, _number(value, unit, 3), course)
-    field = seen.field
+    field = view.field
     strength = None if field is None else norm((field.b_x, field.b_y, field.b_z)) * 1e-3
-    table.add_row("field", _number(strength, "uT", 1), _used(seen) if wide else "")
+    table.add_row("field", _number(strength, "uT", 1), _used(view) if wide else "")
     return table
 
 
@@ -262,8 +262,8 @@ def _every(samples: list[SecondSample], name: str) -> list[float | None]:
     return [getattr(sample, name) for sample in samples[-1200::40]]
 
 
-def _used(seen: FlightView) -> str:
-    quality = seen.quality
+def _used(view: FlightView) -> str:
+    quality = view.quality
     if quality is None:
         return ""
     field = "blanked" if quality.mag_blanked else ("used" if quality.mag_used else "not used")
@@ -271,20 +271,20 @@ def _used(seen: FlightView) -> str:
     return f"magnetometer {field}, Sun sensor {sun}"
 
 
-def _happenings(seen: FlightView, most: int) -> Text:
+def _happenings(view: FlightView, most: int) -> Text:
     text = Text(no_wrap=True, overflow="ellipsis")
-    for happening in list(seen.happenings)[-most:]:
+    for happening in list(view.happenings)[-most:]:
         text.append(short_line(happening) + "\n", STYLES[happening.weight])
     return text
 
 
-def _load(seen: FlightView) -> Table:
+def _load(view: FlightView) -> Table:
     table = Table.grid(padding=(0, 2), expand=True)
-    table.add_row("125 kbit/s used", f"{100.0 * seen.load.part:.1f} %")
-    table.add_row("frames", f"{seen.load.frames_per_s:.0f} /s")
-    table.add_row("broken frames", str(seen.broken))
-    for can_id, count in seen.frames.most_common(HEAVIEST):
+    table.add_row("125 kbit/s used", f"{100.0 * view.load.part:.1f} %")
+    table.add_row("frames", f"{view.load.frames_per_s:.0f} /s")
+    table.add_row("broken frames", str(view.broken))
+    for can_id, count in view.frames.most_common(HEAVIEST):
         table.add_row(NAMES.get(can_id, f"0x{can_id:03X}"), str(count))
-    if seen.other_frames:
-        table.add_row(OTHERS, str(seen.other_frames))
+    if view.other_frames:
+        table.add_row(OTHERS, str(view.other_frames))
     return table

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from sim.drawing.pages import live_page
 from sim.errors import HarnessError, needing
-from sim.watch.seen import FlightView
+from sim.watch.flight_view import FlightView
 from sim.watch.snapshot import snapshot
 from sim.watch.source import FrameSource, take_batch
 
@@ -30,16 +30,16 @@ WEBSOCKETS: Literal["websockets-sansio"] = "websockets-sansio"
 
 
 class LiveView:
-    """What is seen, filled by one thread and read by another.
+    """What is view, filled by one thread and read by another.
 
     Args:
         source: of the frames.
-        seen: what they show.
+        view: what they show.
     """
 
-    def __init__(self, source: FrameSource, seen: FlightView) -> None:
+    def __init__(self, source: FrameSource, view: FlightView) -> None:
         self.source = source
-        self._seen = seen
+        self._seen = view
         self._lock = threading.Lock()
         self.failure: BaseException | None = None
 
@@ -118,10 +118,10 @@ def listening(port: int) -> "Iterator[socket.socket]":
 
 
 def serve(view: LiveView, port: int, announce: Callable[[str], None]) -> None:
-    """Serve the page until Ctrl-C; what has been seen stays when the source has ended.
+    """Serve the page until Ctrl-C; what has been view stays when the source has ended.
 
     Args:
-        view: what is seen.
+        view: what is view.
         port: of TCP; 0: any that is free.
         announce: called with the address of the page.
 

@@ -45,7 +45,7 @@ COILS = ActuatorConfig(CONFIG, dipoles=None)
 
 def ready(owed=OWED_FOR[0]):
     """All own timers ran out long ago."""
-    return replace(pulses.boot(0, CONFIG), ready_tick=(0, 0, 0), owed_impulse_body_nms=owed)
+    return replace(pulses.boot(0, CONFIG), ready_tick=(0, 0, 0), pending_impulse_body_nms=owed)
 
 
 def status(coil, lockout_ms=0, level=0, seq=0):

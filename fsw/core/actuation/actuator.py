@@ -164,7 +164,7 @@ def actuate(
         faults: by coil; one with a fault is not fired.
     """
     if demand is None:
-        state.owed_impulse_body_nms = state.held_am2 = ZERO
+        state.pending_impulse_body_nms = state.held_am2 = ZERO
         return None
     if config.dipoles is not None:
         request = dipoles.request(state, demand, b_body_t, tick, config.dipoles, config.pulses)
@@ -173,7 +173,7 @@ def actuate(
         dipoles.remember(view.requested, request, tick, config.dipoles)
         return request
     if any([_refuses(refused, view, measurements.coil, tick) for refused in measurements.refused]):
-        state.owed_impulse_body_nms = add(state.owed_impulse_body_nms, view.paid_body_nms)
+        state.pending_impulse_body_nms = add(state.pending_impulse_body_nms, view.paid_body_nms)
         view.fired, view.paid_body_nms = NO_PULSE, ZERO
     return _pulse(state, view, demand, b_body_t, measurements.coil is not None, tick, config.pulses, faults)
 
@@ -208,7 +208,7 @@ def _pulse(
     if owing:
         pulses.owe(state, cross(demand.m_body_am2, b_body_t), b_body_t, config)
     else:
-        state.owed_impulse_body_nms = ZERO
+        state.pending_impulse_body_nms = ZERO
     pulse = _chosen(state, demand, b_body_t, tick, config, faults)
     if pulse is None or not status_fresh or view.lockout_ms[pulse.coil] != 0:
         return None

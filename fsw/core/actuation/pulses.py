@@ -67,7 +67,7 @@ class PulseState:
 
     ready_tick: tuple[int, int, int]
     busy_until: int
-    owed_impulse_body_nms: Vec3 = ZERO
+    pending_impulse_body_nms: Vec3 = ZERO
     held_am2: Vec3 = ZERO
 
 
@@ -111,10 +111,10 @@ def owe(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseCo
     Without that bound a strong demand would go on being paid long after its cause is gone.
     """
     keep, h = 1.0 - config.tick_s / config.leak_s, config.tick_s
-    r1, r2, r3 = state.owed_impulse_body_nms
+    r1, r2, r3 = state.pending_impulse_body_nms
     t1, t2, t3 = torque_body_nm
     owed = (keep * r1 + h * t1, keep * r2 + h * t2, keep * r3 + h * t3)
-    state.owed_impulse_body_nms = _within_a_pulse(owed, b_body_t, config)
+    state.pending_impulse_body_nms = _within_a_pulse(owed, b_body_t, config)
 
 
 def due(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseConfig) -> Vec3:
@@ -123,7 +123,7 @@ def due(state: PulseState, torque_body_nm: Vec3, b_body_t: Vec3, config: PulseCo
     The present demand is taken to last that long. The bound is that of ``owe``.
     """
     half_s = 0.5 * config.tick_s * (config.pulse_ticks + config.backoff_ticks)
-    expected = add(state.owed_impulse_body_nms, scale(half_s, torque_body_nm))
+    expected = add(state.pending_impulse_body_nms, scale(half_s, torque_body_nm))
     return _within_a_pulse(expected, b_body_t, config)
 
 
@@ -201,7 +201,7 @@ def fire(state: PulseState, pulse: Pulse, paid_body_nms: Vec3, tick: int, config
         again if config.shared or pulse.coil == 2 else c,
     )
     state.busy_until = end
-    state.owed_impulse_body_nms = sub(state.owed_impulse_body_nms, paid_body_nms)
+    state.pending_impulse_body_nms = sub(state.pending_impulse_body_nms, paid_body_nms)
 
 
 def impulse(pulse: Pulse, b_body_t: Vec3, config: PulseConfig) -> Vec3:

@@ -9,7 +9,7 @@ AFTER, BEFORE = [1, 2, 0], [2, 0, 1]
 """The axes after and before each one."""
 
 
-def seen_in_body(scalar: Components, vector: Components, directions: Components) -> Components:
+def directions_in_body(scalar: Components, vector: Components, directions: Components) -> Components:
     """Directions, (k, 3, 1), seen in the body at each attitude, (k, 3, n)."""
     along = (directions * vector).sum(axis=1)[:, None]
     square = scalar * scalar - (vector * vector).sum(axis=0)

@@ -37,7 +37,7 @@ from fsw.wire.value import Value
 
 MAX_ELAPSED_S = 60.0
 """After a longer silence the filter restarts instead of predicting."""
-CELLS_ANEW = 2.0
+CELLS_RESTART = 2.0
 """Factor on the standard deviations of attitude and rate when the parameters start anew, with cells."""
 
 
@@ -268,7 +268,7 @@ def _settle(state: EstimatorState, estimate: Estimate, seen: bool, config: MekfC
     again = mekf.start(estimate.q_body_from_eci, estimate.omega_body_radps, config)
     if config.cells is not None:  # with the attitude as uncertain as at a start, the filter would diverge
         covariance = again.covariance.copy()
-        covariance[0:6, 0:6] = CELLS_ANEW**2 * estimate.covariance[0:6, 0:6]
+        covariance[0:6, 0:6] = CELLS_RESTART**2 * estimate.covariance[0:6, 0:6]
         again.covariance = covariance
     give_parameters(again, state.first, state.loaded, config)
     state.estimate, state.turning = again, after

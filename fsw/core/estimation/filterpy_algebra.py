@@ -9,7 +9,7 @@ import numpy as np
 from filterpy.kalman import KalmanFilter
 from numpy.typing import NDArray
 
-from fsw.core.estimation.components import crossed, multiplied, seen_in_body
+from fsw.core.estimation.components import crossed, directions_in_body, multiplied
 
 Matrix = NDArray[np.float64]
 Numbers = tuple[float | tuple[float, ...], ...]
@@ -172,7 +172,7 @@ def move_bodies(
 
     def rates(x: Matrix) -> Matrix:
         scalar, vector, omega = x[0], x[1:4], x[4:7]
-        e1, b = seen_in_body(scalar, vector, seen)
+        e1, b = directions_in_body(scalar, vector, seen)
         turned = (inertia * np.stack((e1, omega))[:, None]).sum(axis=2)
         first = np.stack((gravity * e1, -omega, dipoles_am2))
         second = np.stack((turned[0], turned[1] + wheel, b))

@@ -14,7 +14,7 @@ def field_prediction(
     q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, b_eci_t: Vec3, config: MekfConfig
 ) -> Prediction:
     """The magnetometer: z = (1 + s) o R(turn) C(t - delay) b + bias, R the misalignment; T, body axes."""
-    b, age_s = _field_seen(q_body_from_eci, omega, parameters, b_eci_t), parameters.delay_s[0]
+    b, age_s = _field_at_sample(q_body_from_eci, omega, parameters, b_eci_t), parameters.delay_s[0]
     rows = sensitivity(config.field_sensitivity, b, omega, (age_s,), config.field_places)
     return _field_shown(b, parameters), rows
 
@@ -33,7 +33,7 @@ def sun_prediction(
     q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, s_eci: Vec3, config: MekfConfig
 ) -> Prediction:
     """The Sun sensor: z = R(turn) C(t - delay) s, R the misalignment; body axes."""
-    s, age_s = _sun_seen(q_body_from_eci, omega, parameters, s_eci), parameters.delay_s[1]
+    s, age_s = _sun_at_sample(q_body_from_eci, omega, parameters, s_eci), parameters.delay_s[1]
     return s, sensitivity(config.sun_sensitivity, s, omega, (age_s,), config.sun_places)
 
 
@@ -46,13 +46,13 @@ def both_prediction(
     config: MekfConfig,
 ) -> tuple[Vec3, Vec3, Matrix]:
     """Magnetometer and Sun sensor; the sensitivity of both is (6, n)."""
-    b = _field_seen(q_body_from_eci, omega, parameters, b_eci_t)
-    s = _sun_seen(q_body_from_eci, omega, parameters, s_eci)
+    b = _field_at_sample(q_body_from_eci, omega, parameters, b_eci_t)
+    s = _sun_at_sample(q_body_from_eci, omega, parameters, s_eci)
     rows = sensitivity(config.both_sensitivity, (b, s), omega, parameters.delay_s, config.both_places)
     return _field_shown(b, parameters), s, rows
 
 
-def _field_seen(q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, b_eci_t: Vec3) -> Vec3:
+def _field_at_sample(q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, b_eci_t: Vec3) -> Vec3:
     """The field in the axes of the magnetometer when the sample was taken."""
     b = _late(rotate(q_body_from_eci, b_eci_t), omega, parameters.delay_s[0])
     return _turned(b, parameters.mag_turn_rad)
@@ -62,7 +62,7 @@ def _field_shown(b: Vec3, parameters: Parameters) -> Vec3:
     return add(_scaled(b, parameters.mag_scale), parameters.mag_bias_t)
 
 
-def _sun_seen(q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, s_eci: Vec3) -> Vec3:
+def _sun_at_sample(q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, s_eci: Vec3) -> Vec3:
     """The Sun in the axes of its sensor when the sample was taken."""
     s = _late(rotate(q_body_from_eci, s_eci), omega, parameters.delay_s[1])
     return _turned(s, parameters.sun_turn_rad)

@@ -18,7 +18,7 @@ LIT_PART = 0.4
 BRIGHTEST_PERCENT, BEYOND = 99.0, 1.5
 LEAST_ROWS = 12
 ROUNDS = 8
-TOLD_DEG, TOLD_PART = 10.0, 0.1
+DETERMINED_DEG, DETERMINED_PART = 10.0, 0.1
 """A cell is told where face and full scale are known to this."""
 
 
@@ -36,7 +36,10 @@ class CellFit(NamedTuple):
     @property
     def told(self) -> bool:
         """Whether the data tell it."""
-        return self.face_sigma_deg <= TOLD_DEG and self.full_scale_sigma <= TOLD_PART * self.full_scale
+        return (
+            self.face_sigma_deg <= DETERMINED_DEG
+            and self.full_scale_sigma <= DETERMINED_PART * self.full_scale
+        )
 
     @property
     def decimals(self) -> int:

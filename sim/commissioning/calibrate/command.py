@@ -37,9 +37,10 @@ def as_toml(found: RecordedCalibration, ratios: Array) -> str:
         "",
         "[calibration.magnetometer]",
         f"# field in body axes = matrix (raw - offset); |B| is left off by {fit.rms_nt:.0f} nT RMS",
-        f"offset_nt = {_numbers(fit.offset_nt, 1)}  # +- {_plain(fit.sigma[:3], 0)}{_untold(fit.told[:3])}",
+        f"offset_nt = {_numbers(fit.offset_nt, 1)}"
+        f"  # +- {_plain(fit.sigma[:3], 0)}{_inconclusive(fit.told[:3])}",
         f"matrix = [{', '.join(_numbers(row, 6) for row in fit.matrix)}]",
-        f"# xx, yy, zz, xy, xz, yz +- {_plain(fit.sigma[3:], 4)}{_untold(fit.told[3:])}",
+        f"# xx, yy, zz, xy, xz, yz +- {_plain(fit.sigma[3:], 4)}{_inconclusive(fit.told[3:])}",
         "# a common turn of the axes is not told: it changes no |B|",
     ]
     for cell in found.cells:
@@ -87,7 +88,7 @@ def _bound(key: str, value: float, most: float) -> str:
     return f"{key} = {min(value, most):.3g}{said}"
 
 
-def _untold(told: Sequence[bool] | NDArray[np.bool_]) -> str:
+def _inconclusive(told: Sequence[bool] | NDArray[np.bool_]) -> str:
     if all(told):
         return ""
     return "; not told: numbers " + ", ".join(str(place) for place, one in enumerate(told, 1) if not one)

@@ -23,7 +23,7 @@ BIAS_SIGMA_UT, MATRIX_SIGMA = 200.0, 0.1
 """Priors: of a bias component about the best one of an undistorted sensor, of each number of M about 1."""
 LEAST = 1e-12
 """In place of the size of a field that is zero, which has no direction."""
-TOLD_NT = 1500.0
+DETERMINED_NT = 1500.0
 """A number is told where one standard deviation of it moves the field by at most this: 3 deg in 30 uT."""
 NAMES = ("b_x", "b_y", "b_z", "m_xx", "m_yy", "m_zz", "m_xy", "m_xz", "m_yz")
 TURN_NAMES = ("turn_x", "turn_y", "turn_z")
@@ -187,7 +187,7 @@ def _as_positive(
         offset_nt=x[:3] / UT_PER_NT,
         matrix=matrix,
         sigma=sigma,
-        told=moved_nt <= TOLD_NT,
+        told=moved_nt <= DETERMINED_NT,
         residual_nt=residual_nt,
         weakest_axis=weakest,
         weakest_nt=float(np.sqrt(values[-1])) / UT_PER_NT,

@@ -13,7 +13,9 @@ LINEAR_PART = 0.15
 """How far a response may be off proportion to its command, in parts of the largest."""
 
 
-NOT_TOLD = "No axis is told: the log has neither the field around nor how coils and magnetometers are turned."
+INCONCLUSIVE = (
+    "No axis is told: the log has neither the field around nor how coils and magnetometers are turned."
+)
 
 
 def lines(responses: list[BenchResponse]) -> list[str]:
@@ -23,7 +25,7 @@ def lines(responses: list[BenchResponse]) -> list[str]:
         text.append(f"{one.name}: {_idle(one)}")
         text += [_step_line(step) for step in one.steps]
         text += [f"  {sentence}" for sentence in findings(one)]
-    return [*text, NOT_TOLD]
+    return [*text, INCONCLUSIVE]
 
 
 def _idle(one: BenchResponse) -> str:

@@ -161,7 +161,7 @@ def _judged(around: Along, known: PassCalibration, noise: Noise, start_s: float)
         contends = CLEARLY * error <= min(errors)
         coasts = coasts_deg(around, known, one, settled) if contends else {}
         motions.append(AllowedMotion(one, settled, sun_azimuths(around, known, one, axis), coasts))
-    ordered, verdict = told_apart(motions)
+    ordered, verdict = rank_motions(motions)
     return Judged(around, axis, tuple(ordered), verdict)
 
 
@@ -190,7 +190,7 @@ def turning_axis(known: PassCalibration, field_nt: Array) -> Array:
     return known.spin_axis if moments[2] - moments[1] > DISTINCT else spin_axis(field_nt)
 
 
-def told_apart(motions: list[AllowedMotion]) -> tuple[list[AllowedMotion], MotionVerdict]:
+def rank_motions(motions: list[AllowedMotion]) -> tuple[list[AllowedMotion], MotionVerdict]:
     """The motions in the order of belief, and what is to be said of the first.
 
     The field decides where it clearly does; then the cells, of the first half of the pass alone, so that

@@ -87,8 +87,8 @@ class PulsedLoop:
         owed = -weights * np.exp((places - period) / leak)
         normal = projection(starts[:, None] + places, body)
         of_x, of_p = (np.array(parts) for parts in zip(*reached, strict=True))
-        self._owed_x = _demanded(normal, owed, of_x)
-        self._owed_p = _demanded(normal, owed, of_p)
+        self._pending_x = _demanded(normal, owed, of_x)
+        self._pending_p = _demanded(normal, owed, of_p)
         half = np.array([-0.5 * period])
         self._ahead = _demanded(projection(starts[:, None], body), half, np.eye(size)[None])
 
@@ -101,14 +101,14 @@ class PulsedLoop:
         n, scales = len(self._free), feedback_scales(self.body, gains)
         unpaid = np.zeros((*scales.shape[:-1], self.periods, n + 3, n + 3))
         unpaid[..., :n, :n] = self._free
-        unpaid[..., n:, :n] = np.tensordot(scales, self._owed_x, axes=1)
+        unpaid[..., n:, :n] = np.tensordot(scales, self._pending_x, axes=1)
         unpaid[..., n:, n:] = self._kept * np.eye(3)
         due = np.zeros((*unpaid.shape[:-2], 3, n + 3))
         due[..., :n] = np.tensordot(scales, self._ahead, axes=1)
         due[..., n:] = np.eye(3)
         by_pulse = np.zeros((*unpaid.shape[:-2], n + 3, 3))
         by_pulse[..., :n, :] = self._pushed
-        by_pulse[..., n:, :] = np.tensordot(scales, self._owed_p, axes=1) - self._kept * np.eye(3)
+        by_pulse[..., n:, :] = np.tensordot(scales, self._pending_p, axes=1) - self._kept * np.eye(3)
         return product(unpaid + by_pulse @ self._paid @ due)
 
 

@@ -7,7 +7,7 @@ from math import inf
 from fsw.input.near import did_you_mean
 from sim.errors import HarnessError
 from sim.fault_table.row import FaultRow, RowFault, Unseen, When
-from sim.fault_table.rows.sly import SLY_ROWS
+from sim.fault_table.rows.hidden import SLY_ROWS
 
 # --- Rows of the fault table with forged SYNC, PLANT_END and TICK_DONE, and the checks of each
 

@@ -53,7 +53,7 @@ class _Angle:
 
 
 @dataclass(slots=True)
-class _Honesty:
+class _Consistency:
     """Of the estimate from a tick on: its errors, and whether its covariance accounts for them."""
 
     sunlit: Mean = field(default_factory=Mean)
@@ -101,7 +101,7 @@ class _Convergence:
     length: int
     first: int | None = None
     found: bool = False
-    honesty: _Honesty = field(default_factory=_Honesty)
+    honesty: _Consistency = field(default_factory=_Consistency)
 
     def take(self, truth: Histories, estimates: Estimates, begin: int) -> None:
         error_deg = np.degrees(angle_rad(estimate_error(truth, estimates)))
@@ -117,16 +117,16 @@ class _Convergence:
         """The row from which this block counts; None if it does not."""
         small = spans(error_deg < CONVERGED_DEG)
         if self.first is not None and not (small and small[0][0] == 0):
-            self.first, self.honesty = None, _Honesty()
+            self.first, self.honesty = None, _Consistency()
         for row, past in small:
             goes_on = self.first is not None and row == 0
             first = self.first if goes_on and self.first is not None else begin + row
             self.found = begin + past - first >= self.length
             if self.found or past == len(error_deg):
                 if not goes_on:
-                    self.first, self.honesty = first, _Honesty()
+                    self.first, self.honesty = first, _Consistency()
                 return 0 if goes_on else row
-            self.first, self.honesty = None, _Honesty()
+            self.first, self.honesty = None, _Consistency()
         return None
 
 

@@ -69,7 +69,7 @@ def beyond_bounds(scenario: Scenario) -> list[str]:
 
 # --- Why a flight settled late: causes from its course, in addition to those of ``causes.py``
 
-MOST_TOLD = 3
+MOST_NAMED = 3
 FALLS = 0.9
 """An error falls if it is at most this fraction of itself an orbit earlier."""
 
@@ -79,8 +79,8 @@ def fell_back(missed: Missed, evidence: FlightEvidence) -> str:
     told = [
         f"{mode.name} from {orbits(at)} on for {orbits(length)}" for mode, at, length in evidence.fell_back
     ]
-    more = f" and {len(told) - MOST_TOLD} times more" if len(told) > MOST_TOLD else ""
-    return f"the controller fell back to {', to '.join(told[:MOST_TOLD])}{more}" if told else ""
+    more = f" and {len(told) - MOST_NAMED} times more" if len(told) > MOST_NAMED else ""
+    return f"the controller fell back to {', to '.join(told[:MOST_NAMED])}{more}" if told else ""
 
 
 def left_again(missed: Missed, evidence: FlightEvidence) -> str:

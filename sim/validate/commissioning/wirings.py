@@ -34,7 +34,7 @@ from sim.value_types import Array
 SCENARIO = "microsat"
 SOURCE = "Every signed permutation of the axes of sensor and coils, alone and together"
 TOLD = "Part of the pairs that one round of pulses tells; of the others, all that may be are named"
-LEAST_TOLD = 0.75
+LEAST_DETERMINED = 0.75
 SAME_NT = 1.0
 
 
@@ -138,7 +138,7 @@ def conclude(tallies: Sequence[Any]) -> list[ClaimOutcome]:
     where = f"magnetometer {wrong[0][0]}, coils {wrong[0][1]}" if wrong else f"of {count}"
     untold = [one.coils for one in tallies if one.told < one.told + one.among]
     none_wrong = Claim("phasing.wrong", "Pairs of wirings that are told wrong", SOURCE, "1", high=0.0)
-    told = Claim("phasing.told", TOLD, SOURCE, "1", low=LEAST_TOLD)
+    told = Claim("phasing.told", TOLD, SOURCE, "1", low=LEAST_DETERMINED)
     part = sum(one.told for one in tallies) / count
     return [
         none_wrong.judge(float(len(wrong)), where),

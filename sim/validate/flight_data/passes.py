@@ -15,7 +15,7 @@ from sim.commissioning.recorded.calibration import PassCalibration
 from sim.commissioning.recorded.element_sets import nearest_elements
 from sim.commissioning.recorded.recorded_pass import read_pass
 from sim.commissioning.telemetry.follow import Noise
-from sim.commissioning.telemetry.judge import figures, judge, told_apart
+from sim.commissioning.telemetry.judge import figures, judge, rank_motions
 from sim.errors import HarnessError
 
 ELEMENTS, CALIBRATED_BY = "tle.txt", "s3_20231211T151930Z"
@@ -99,7 +99,7 @@ def believed(path: Path, known: PassCalibration) -> Believed:
     count, wrong = 0, []
     for inertia, start_s in product((known.inertia, np.eye(3)), SHORT_STARTS_S):
         whole = judge(around, known._replace(inertia=inertia), Noise(), start_s)
-        offered = [(whole.best, whole.verdict), *((one, told_apart([one])[1]) for one in whole.motions[1:])]
+        offered = [(whole.best, whole.verdict), *((one, rank_motions([one])[1]) for one in whole.motions[1:])]
         for motion, verdict in offered:
             count += 1
             rate = float(motion.followed.rate_degps[motion.settled :, 1].mean())

@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from sim.campaign.consistency import LAST_ORBITS, POINTED_DEG
 from sim.campaign.flight import FlightResult, Order
-from sim.campaign.honesty import LAST_ORBITS, POINTED_DEG
 from sim.campaign.population import population_order
 from sim.campaign.study import Figure, FlightStudy, Group, campaign, figure_of
 

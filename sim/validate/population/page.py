@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import inf
 
 from sim.campaign.claim import ClaimOutcome
+from sim.campaign.consistency import POINTED_DEG
 from sim.campaign.flight import FlightResult
-from sim.campaign.honesty import POINTED_DEG
 from sim.campaign.population import POPULATIONS, Tolerances, nominal_scenario
 from sim.validate.page import claims_table, platform_line, tally
 from sim.validate.population.pictures import Flights, SizeSpread, worst_inside

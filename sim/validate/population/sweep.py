@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fsw.input.schema import Nested, merge
+from sim.campaign.consistency import consistency_figures
 from sim.campaign.flight import Order
-from sim.campaign.honesty import honesty_figures
 from sim.campaign.population import POPULATIONS, is_rigid, nominal_scenario, satellite
 from sim.value_types import Array
 
@@ -49,7 +49,7 @@ def sweep_order(quantity: Quantity, size: float, seed: int) -> Order:
     drawn = satellite(KIND, seed)
     overrides = merge(drawn, quantity.laid_over(seed, drawn, size))
     name = f"satellite {seed} of {KIND}, {quantity.name} {size:.3g}"
-    return Order(POPULATIONS[KIND].scenario, overrides, seed, ORBITS, honesty_figures, name)
+    return Order(POPULATIONS[KIND].scenario, overrides, seed, ORBITS, consistency_figures, name)
 
 
 def sweep_orders(sizes: int, seeds: Sequence[int]) -> list[Order]:

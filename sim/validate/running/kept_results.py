@@ -31,7 +31,7 @@ KINDS = (
 )
 
 
-def with_known_results(studies: Sequence[Study], rows: FlightRows) -> list[Study]:
+def with_kept_results(studies: Sequence[Study], rows: FlightRows) -> list[Study]:
     """The studies, where the result of a task is known with that result in place of the task."""
     return [
         replace(study, tasks=tuple(_known(task, rows) or task for task in study.tasks)) for study in studies

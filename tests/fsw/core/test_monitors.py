@@ -11,11 +11,11 @@ Q = (0.5, -0.5, 0.5, 0.5)
 OMEGA = (0.01, -0.02, 0.03)
 WELL = MonitorInput(
     attitude=Attitude(Q, OMEGA, 0.01, 1e-4, True),
-    owed_impulse_body_nms=(1e-4, -2e-4, 3e-4),
+    pending_impulse_body_nms=(1e-4, -2e-4, 3e-4),
     field_age_ticks=59,
     status_age_ticks=59,
     unexpected_drive=False,
-    orbit_known=True,
+    orbit_available=True,
     second_sender=False,
     stale_after_ticks=60,
 )
@@ -30,7 +30,7 @@ def with_rate(*omega):
 
 
 def owing(*impulse):
-    return WELL.replace(owed_impulse_body_nms=impulse)
+    return WELL.replace(pending_impulse_body_nms=impulse)
 
 
 @pytest.mark.parametrize(
@@ -66,7 +66,7 @@ TRIPS = [
     (Monitor.FIELD_FRESH, WELL.replace(field_age_ticks=60)),
     (Monitor.COIL_STATUS_FRESH, WELL.replace(status_age_ticks=60)),
     (Monitor.COIL_AS_COMMANDED, WELL.replace(unexpected_drive=True)),
-    (Monitor.ORBIT_KNOWN, WELL.replace(orbit_known=False)),
+    (Monitor.ORBIT_KNOWN, WELL.replace(orbit_available=False)),
     (Monitor.NO_SECOND_SENDER, WELL.replace(second_sender=True)),
 ]
 

@@ -35,7 +35,7 @@ def after(world):
         attitude=Attitude((0.8, 0.36, -0.288, 0.384), (0.01, -0.02, 0.03), 0.02, 3e-4, True),
         sample=FieldSample((2e-5, -7e-6, 3e-5), REACHED - 1),
         memory=(1.0, -2.0, 3.0),
-        pulses=replace(world.state.pulses, owed_impulse_body_nms=(1e-4, -2e-4, 3e-4)),
+        pulses=replace(world.state.pulses, pending_impulse_body_nms=(1e-4, -2e-4, 3e-4)),
         coil=CoilView((17, 18, 19), seq=201, refusals=4, past_am2=((1.0, -2.0, 3.0),)),
         events=Throttle([LastReport(Event.REQUEST_REFUSED, 8, REACHED - 4)], held_back=9),
         modes=ModeState(Mode.POINT, REACHED - 70, trips=2),

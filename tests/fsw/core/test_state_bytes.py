@@ -50,7 +50,7 @@ def run(make_world):
     motion = ReadingMotion(by_field, by_sun)
     state = altered(state, health=with_motion(state.health, motion))
     assert state.coil.fired_tick >= 0
-    assert any(state.pulses.owed_impulse_body_nms)
+    assert any(state.pulses.pending_impulse_body_nms)
     assert state.memory
     return state
 

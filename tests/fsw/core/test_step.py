@@ -271,7 +271,7 @@ def test_without_an_attitude_the_measured_field_is_what_control_works_with(make_
     world = make_world(initial={"rate_degps": [0.5, -0.7, 0.4]})
     for _ in range(40):
         world.step(without(SunVector))
-        owed, b = world.state.pulses.owed_impulse_body_nms, world.state.sample.b_body_t
+        owed, b = world.state.pulses.pending_impulse_body_nms, world.state.sample.b_body_t
         if any(owed):
             break
     assert world.state.modes.mode is Mode.DETUMBLE

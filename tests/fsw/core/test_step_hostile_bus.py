@@ -133,7 +133,7 @@ class Watch:
     def judge_state(self, state):
         numbers = (*state.attitude.q_body_from_orbit, *state.attitude.omega_body_orbit_radps)
         assert all(isfinite(number) for number in numbers)
-        assert all(isfinite(owed) for owed in state.pulses.owed_impulse_body_nms)
+        assert all(isfinite(owed) for owed in state.pulses.pending_impulse_body_nms)
         assert state.estimator.estimate is None or mekf.healthy(state.estimator.estimate)
         assert abs(sum(c * c for c in state.attitude.q_body_from_orbit) - 1.0) < 1e-9
 

@@ -70,7 +70,7 @@ def test_freshness_is_counted_from_the_last_message(world, supervised, name, mon
 
 
 def test_an_impulse_that_is_no_number_trips(world, supervised):
-    pulses = replace(world.state.pulses, owed_impulse_body_nms=(0.0, float("nan"), 0.0))
+    pulses = replace(world.state.pulses, pending_impulse_body_nms=(0.0, float("nan"), 0.0))
     assert supervised(pulses=pulses).violated is Monitor.OWED_FINITE
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fsw.input.schema import merge
+from sim.campaign.consistency import consistency_figures
 from sim.campaign.flight import Order, fly_order
-from sim.campaign.honesty import honesty_figures
 from sim.campaign.population import POPULATIONS, population_order, satellite
 from sim.plant.hardware.sensors import MagnetometerPhysics
 from sim.plant.sensor_config import PERFECT_MAGNETOMETER
@@ -200,7 +200,7 @@ def test_a_6u_that_declares_nothing_is_honest_where_drag_outweighs_light(torque_
     """At 550 km; 6e-9 N m, an ordinary torque for its size by light alone, is too little there."""
     bound = {"flight": {"uncertainty": {"torque_nm": torque_nm}}}
     overrides = merge(satellite("6u", 503, declared=False), bound)
-    figures = fly_order(Order("cubesat6u", overrides, 503, 2.0, honesty_figures)).figures
+    figures = fly_order(Order("cubesat6u", overrides, 503, 2.0, consistency_figures)).figures
     inside = min(figures[f"inside_{axis}"] for axis in (1, 2, 3))
     assert (inside > 0.95) is honest, figures
 
@@ -210,4 +210,4 @@ def test_an_order_flies_the_satellite_with_what_is_laid_over_it():
     expected = satellite("50kg", 5, twice=True)
     assert order.overrides["coils"] == expected["coils"] | {"backoff": "per_coil"}
     assert (order.scenario, order.seed, order.orbits) == ("microsat", 5, 8.0)
-    assert order.measure is honesty_figures
+    assert order.measure is consistency_figures

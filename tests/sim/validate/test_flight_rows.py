@@ -9,7 +9,7 @@ import pytest
 from sim.campaign.claim import Study
 from sim.campaign.flight import FlightResult, Order, fly_order
 from sim.errors import HarnessError
-from sim.validate.flight_rows import FlightRows, keep_flight, with_known
+from sim.validate.flight_rows import FlightRows, keep_flight, with_kept_flights
 from sim.validate.microsat import pointing_figures
 
 ORDER = Order("microsat", {"disturbance": {"torque_nm": [1e-8, -2e-8, 3e-8]}}, 3, 8.0, name="one")
@@ -86,7 +86,7 @@ class TestStudies:
     def test_a_flight_that_is_known_takes_the_place_of_its_task(self, path):
         rows = FlightRows(path)
         rows.keep(flight())
-        (known,) = with_known([self.study()], rows)
+        (known,) = with_kept_flights([self.study()], rows)
         before, after = self.study().tasks, known.tasks
         assert after[0]() == rows.flight(ORDER)
         assert [each.args for each in after[1:]] == [each.args for each in before[1:]]

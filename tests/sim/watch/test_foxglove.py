@@ -10,8 +10,8 @@ from mcap.reader import make_reader
 
 from fsw.wire.messages import CoilRefused, CoilRefusedReason, FswBoot, MagField, NavAttitude, Sync
 from sim.errors import HarnessError
+from sim.watch.flight_view import MOST_HAPPENINGS, FlightView
 from sim.watch.foxglove import Publisher, foxglove_server
-from sim.watch.seen import MOST_HAPPENINGS, FlightView
 from sim.watch.source import Batch, batches
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from fsw.wire.frame import EXTENDED_FLAG, Frame
 from sim.bench.bus_load import BITRATE, frame_bits
-from sim.watch.seen import Load, most_bits
+from sim.watch.flight_view import Load, most_bits
 
 
 @pytest.mark.parametrize("length", range(9))

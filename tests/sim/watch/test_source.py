@@ -12,7 +12,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilRefused, CoilRefusedReason
 from sim.errors import HarnessError
 from sim.record.pace import LOCKSTEP, Pace
-from sim.watch.seen import MOST_HAPPENINGS, FlightView
+from sim.watch.flight_view import MOST_HAPPENINGS, FlightView
 from sim.watch.source import Batch, BusSource, LogSource, batches
 
 LINES = [f"({1000.0 + 0.5 * number:.6f}) loop 7{number:02d}#0{number}" for number in range(5)]

@@ -7,8 +7,8 @@ from rich.console import Console
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilStatus, FswBoot, MagField, Mode, NavAttitude, NavQuality, NavRate, Sync
+from sim.watch.flight_view import MOST_UNKNOWN, FlightView
 from sim.watch.happening import Occurrence, Weight
-from sim.watch.seen import MOST_UNKNOWN, FlightView
 from sim.watch.terminal import screen, short_line, show
 
 

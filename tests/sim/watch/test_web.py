@@ -13,7 +13,7 @@ from websockets.sync.client import connect
 
 from fsw.wire.messages import CoilStatus, FswBoot, Sync
 from sim.errors import HarnessError
-from sim.watch.seen import FlightView
+from sim.watch.flight_view import FlightView
 from sim.watch.source import Batch
 from sim.watch.web import WEBSOCKETS, LiveView, application, listening
 

@@ -6,7 +6,7 @@ from typing import final
 import numpy as np
 from numpy.typing import NDArray
 
-from fsw.core.estimation.components import multiplied, seen_in_body
+from fsw.core.estimation.components import directions_in_body, multiplied
 from fsw.core.estimation.kalman import Matrix, move_bodies
 from fsw.core.estimation.parameters import Rotor
 
@@ -55,7 +55,7 @@ def in_body(q: Matrix, v: Matrix) -> Matrix:
 
 def all_in_body(q: Matrix, directions: Matrix) -> Matrix:
     """As ``in_body`` of several vectors, (k, 3), by components, (k, 3, n)."""
-    return seen_in_body(q.T[0], q.T[1:], directions[:, :, None])
+    return directions_in_body(q.T[0], q.T[1:], directions[:, :, None])
 
 
 def turned_by(q: Matrix, rotation: Matrix) -> Matrix:

@@ -26,7 +26,7 @@ the grid may be any longer one, and is not told."""
 STEP_S, MOST_STEP = 0.02, 0.2
 """Of the grid of delays, s, and at most so many ticks."""
 CUBIC = 4
-SEEN_SIGMAS = 6.0
+DETECTED_SIGMAS = 6.0
 """A delay is known where the response is above so many of its standard deviations."""
 
 
@@ -94,7 +94,7 @@ def coil_response(samples: Samples, levels_am2: tuple[float, float, float]) -> C
     free = numbers - sum(3 * CUBIC for _ in windows) - 10
     noise = float(np.sqrt(fit.cost / free)) if free > 0 else float("inf")
     sigma = noise / np.sqrt(np.maximum(fit.weight, 1e-300))[None, :] * np.ones((3, 1))
-    seen = bool((np.abs(fit.response) > SEEN_SIGMAS * sigma).any()) and free > 0
+    seen = bool((np.abs(fit.response) > DETECTED_SIGMAS * sigma).any()) and free > 0
     known = seen and best < len(delays) - 1
     delay, delay_sigma = _refined(delays, costs, best, noise) if known else (None, None)
     residual, phase = _residuals(windows, driven, fit, delays[best])

@@ -9,9 +9,9 @@ from sim.commissioning.calibrate.flown.run_fit import RunCalibration
 from sim.commissioning.calibrate.flown.wiring import channels_from_body
 from sim.value_types import Array
 
-TOLD_OFFSET_NT = 2000.0
+DETERMINED_OFFSET_NT = 2000.0
 """Three standard deviations of an offset that is told: what the bias of a table may be at most is 3000."""
-TOLD_PART = 0.03
+DETERMINED_PART = 0.03
 """The same of a component of M, and of the coils' dipoles."""
 SIGMAS = 3.0
 BEYOND_MEASURE = 1e9
@@ -62,13 +62,13 @@ def untold(found: RunCalibration) -> list[str]:
     text = []
     values, directions = np.linalg.eigh(found.field.covariance[9:, 9:])
     worst_nt = SIGMAS * float(np.sqrt(values[-1]))
-    if worst_nt > TOLD_OFFSET_NT:
+    if worst_nt > DETERMINED_OFFSET_NT:
         along = ", ".join(f"{part:+.2f}" for part in directions[:, -1])
         text.append(
             f"the offset along ({along}) of the channels is known within {worst_nt / 1000.0:.1f} uT only: "
             "the body must turn about another axis, or the log be longer"
         )
-    if SIGMAS * float(part_sigma(found).max()) > TOLD_PART:
+    if SIGMAS * float(part_sigma(found).max()) > DETERMINED_PART:
         percent = 100.0 * SIGMAS * float(part_sigma(found).max())
         text.append(f"scale and turn are known within {percent:.0f} % only: more attitudes are needed")
     response = found.response

@@ -86,14 +86,14 @@ def test_a_pulse_is_paid_when_it_is_asked_for():
     state, _, request = run()
     assert request is not None
     keep = 1.0 - 1.0 / 300.0
-    assert state.owed_impulse_body_nms == pytest.approx((0.0, (1.0 - keep) * 4.8e-4, 0.0))
+    assert state.pending_impulse_body_nms == pytest.approx((0.0, (1.0 - keep) * 4.8e-4, 0.0))
 
 
 def test_the_torque_of_the_demanded_dipole_is_owed():
     """T = m x b: 0.5 A m^2 along axis 1 in 20 uT along axis 3 turn about axis 2."""
     state, _, request = run(ready(ZERO), demand=Demand((0.5, 0.0, 5.0)), readings=measured())
     assert request is None
-    assert state.owed_impulse_body_nms == pytest.approx((0.0, -1e-5, 0.0))
+    assert state.pending_impulse_body_nms == pytest.approx((0.0, -1e-5, 0.0))
 
 
 @pytest.mark.parametrize(("asked_am2", "fires"), [(0.0140, False), (0.0145, True), (-0.0145, True)])
@@ -105,7 +105,7 @@ def test_a_pulse_goes_out_when_more_than_half_of_the_lowest_is_due(asked_am2, fi
         assert (request.coil, abs(request.level)) == (0, 1)
         assert request.level * asked_am2 > 0.0
         paid = 3.0 * 0.5 if asked_am2 > 0.0 else -3.0 * 0.5
-        assert state.owed_impulse_body_nms == pytest.approx((0.0, 2e-5 * (paid - asked_am2), 0.0))
+        assert state.pending_impulse_body_nms == pytest.approx((0.0, 2e-5 * (paid - asked_am2), 0.0))
 
 
 @pytest.mark.parametrize(("coil", "lockout_ms"), list(product((0, 1), product((-1, 0, 163_830), repeat=3))))
@@ -144,10 +144,10 @@ def test_an_impulse_is_met_anew_in_each_tick_and_nothing_of_it_is_owed():
     beyond = Demand(impulse_body_nms=(0.0, -4.0 * 8.0 * 2e-5, 0.0))
     state, _, request = run(ready(OWED_FOR[1]), demand=beyond)
     assert (request.coil, request.level) == (0, 3)
-    assert state.owed_impulse_body_nms == ZERO
+    assert state.pending_impulse_body_nms == ZERO
     state, _, request = run(ready(OWED_FOR[1]), demand=Demand(impulse_body_nms=ZERO))
     assert request is None
-    assert state.owed_impulse_body_nms == ZERO
+    assert state.pending_impulse_body_nms == ZERO
 
 
 def test_the_energy_chooses_where_an_impulse_is_missed_and_the_rate_where_it_is_owed():
@@ -165,7 +165,7 @@ def refused_at(ticks_later, of_tick=TICK):
     config = replace(CONFIG, leak_s=inf)
     state, view, request = run(config=config)
     assert request is not None
-    assert state.owed_impulse_body_nms == pytest.approx(ZERO, abs=1e-18)
+    assert state.pending_impulse_body_nms == pytest.approx(ZERO, abs=1e-18)
     readings = measured(coil=status(0), refused=(refusal(of_tick),))
     state, view, again = run(state, view, readings=readings, tick=TICK + ticks_later, config=config)
     assert again is None, "the own timers run whatever the board did"
@@ -175,10 +175,10 @@ def refused_at(ticks_later, of_tick=TICK):
 @pytest.mark.parametrize("ticks_later", [1, 2])
 def test_what_a_refused_request_paid_is_owed_again_and_only_once(ticks_later):
     state, view, config = refused_at(ticks_later)
-    assert state.owed_impulse_body_nms == pytest.approx(OWED_FOR[0])
+    assert state.pending_impulse_body_nms == pytest.approx(OWED_FOR[0])
     readings = measured(coil=status(0), refused=(refusal(TICK),))
     again, _, _ = run(state, view, readings=readings, tick=TICK + ticks_later + 1, config=config)
-    assert again.owed_impulse_body_nms == state.owed_impulse_body_nms
+    assert again.pending_impulse_body_nms == state.pending_impulse_body_nms
 
 
 def test_a_refusal_that_is_heard_twice_gives_back_once():
@@ -190,7 +190,7 @@ def test_a_refusal_that_is_heard_twice_gives_back_once():
     readings = measured(coil=status(0), refused=(refusal(TICK),))
     for tick in (TICK + 1, TICK + 2):
         state, view, _ = run(state, view, readings=readings, tick=tick, config=config)
-        assert state.owed_impulse_body_nms == pytest.approx(owed)
+        assert state.pending_impulse_body_nms == pytest.approx(owed)
 
 
 @pytest.mark.parametrize("place", [0, 1, 2])
@@ -201,7 +201,7 @@ def test_a_refusal_counts_wherever_it_stands_among_others_of_its_tick(place):
     others.insert(place, refusal(TICK))
     readings = measured(coil=status(0), refused=tuple(others))
     state, view, _ = run(state, view, readings=readings, tick=TICK + 1, config=replace(CONFIG, leak_s=inf))
-    assert state.owed_impulse_body_nms == pytest.approx(OWED_FOR[0])
+    assert state.pending_impulse_body_nms == pytest.approx(OWED_FOR[0])
     assert view.fired == NO_PULSE
 
 
@@ -216,13 +216,13 @@ def test_a_request_that_was_refused_does_not_count_as_driven():
 )
 def test_a_refusal_of_another_request_or_one_that_comes_too_late_gives_nothing_back(ticks_later, of_tick):
     state, view, _ = refused_at(ticks_later, of_tick)
-    assert state.owed_impulse_body_nms == pytest.approx(ZERO, abs=1e-18)
+    assert state.pending_impulse_body_nms == pytest.approx(ZERO, abs=1e-18)
     assert view.paid_body_nms == pytest.approx(OWED_FOR[0])
 
 
 def test_a_refusal_before_the_first_request_gives_nothing_back():
     state, _, _ = run(ready(ZERO), readings=measured(coil=status(0), refused=(refusal(255),)), tick=1)
-    assert state.owed_impulse_body_nms == ZERO
+    assert state.pending_impulse_body_nms == ZERO
 
 
 @pytest.mark.parametrize("seq", [1, 9])
@@ -256,7 +256,7 @@ def test_a_refused_impulse_is_not_owed():
     state, view, _ = run(ready(ZERO), demand=Demand(impulse_body_nms=OWED_FOR[0]))
     readings = measured(coil=status(0), refused=(refusal(TICK),))
     state, _, _ = run(state, view, readings=readings, tick=TICK + 1)
-    assert state.owed_impulse_body_nms == ZERO
+    assert state.pending_impulse_body_nms == ZERO
 
 
 # Without a law
@@ -271,14 +271,14 @@ def test_without_a_law_nothing_is_fired_and_nothing_owed(fresh, lockout_ms):
     view = replace(ALL_FREE, lockout_ms=lockout_ms)
     after, found, request = run_safe(before, view, BOARD_IS_THERE if fresh else measured())
     assert request is None
-    assert after == replace(timers, owed_impulse_body_nms=ZERO)
+    assert after == replace(timers, pending_impulse_body_nms=ZERO)
     assert found == view
 
 
 def test_a_refusal_that_comes_while_no_law_flies_is_not_owed_either():
     state, view, _ = run()
     state, view, _ = run_safe(state, view, measured(coil=status(0), refused=(refusal(TICK),)), TICK + 1)
-    assert state.owed_impulse_body_nms == ZERO
+    assert state.pending_impulse_body_nms == ZERO
 
 
 STRONG = Demand((8.0, 0.0, 0.0))
@@ -309,7 +309,7 @@ def test_seq_follows_what_the_board_accepted_not_what_was_asked():
     state, view, request = run(view=replace(ALL_FREE, seq=7))
     assert request.seq == 8
     view = then(update_view, view, measured(coil=status(0, seq=7)), TICK + 1, COILS)
-    _, _, again = run(replace(state, owed_impulse_body_nms=OWED_FOR[0]), view, tick=TICK + 103)
+    _, _, again = run(replace(state, pending_impulse_body_nms=OWED_FOR[0]), view, tick=TICK + 103)
     assert again.seq == 8
 
 
@@ -322,7 +322,7 @@ def starts(shared, tick_hz, coils, ticks):
     state, view, asked = pulses.boot(0, config), ALL_FREE, []
     for tick in range(ticks):
         for coil in coils:
-            state = replace(state, owed_impulse_body_nms=OWED_FOR[coil])
+            state = replace(state, pending_impulse_body_nms=OWED_FOR[coil])
             state, view, request = run(state, view, tick=tick, config=config)
             if request is not None:
                 asked.append((tick, request.coil))
@@ -361,7 +361,7 @@ def test_only_how_long_the_timers_still_run_matters(ready_in, busy_in, lockout_m
         view = CoilView(lockout_ms=lockout_ms)
         after, _, request = run(state, view, tick=tick, config=config)
         timers = [max(0, t - tick) for t in (*after.ready_tick, after.busy_until)]
-        return timers, after.owed_impulse_body_nms, request and request.replace(tick=0)
+        return timers, after.pending_impulse_body_nms, request and request.replace(tick=0)
 
     once = answer(TICK, ready_in, busy_in, lockout_ms)
     event("fired" if once[2] else "waited")

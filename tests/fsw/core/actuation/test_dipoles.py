@@ -234,7 +234,9 @@ class TestActuate:
     HEARD = measured(dipole=CoilDipoleStatus(0.0, 0.0, 0.0))
 
     def run(self, demand, readings=HEARD, tick=500):
-        state = replace(pulses.boot(0, TIMING), ready_tick=(0, 0, 0), owed_impulse_body_nms=(1.0, 1.0, 1.0))
+        state = replace(
+            pulses.boot(0, TIMING), ready_tick=(0, 0, 0), pending_impulse_body_nms=(1.0, 1.0, 1.0)
+        )
         return answered(state, CoilView(), demand, B_BODY_T, readings, tick, self.COILS)
 
     def test_a_request_goes_out_at_once(self):
@@ -260,7 +262,7 @@ class TestActuate:
     def test_without_a_law_nothing_is_sent_and_nothing_owed(self):
         state, _, sent = self.run(None)
         assert sent is None
-        assert state.owed_impulse_body_nms == ZERO
+        assert state.pending_impulse_body_nms == ZERO
 
 
 def test_full_scale_of_the_wire_is_below_one():

@@ -32,14 +32,14 @@ class TestPlannedPulses:
     def test_are_fired_as_they_are_and_nothing_is_owed(self, coil, level):
         state, view, request = run(ready(), demand=Demand(pulse=Pulse(coil, level)))
         assert (request.coil, request.level, request.tick) == (coil, level, TICK)
-        assert state.owed_impulse_body_nms == ZERO
+        assert state.pending_impulse_body_nms == ZERO
         assert view.fired == Pulse(coil, level)
         assert view.paid_body_nms == ZERO
 
     def test_none_is_none_whatever_was_owed(self):
         state, _, request = run(ready(), demand=Demand(pulse=NO_PULSE))
         assert request is None
-        assert state.owed_impulse_body_nms == ZERO
+        assert state.pending_impulse_body_nms == ZERO
 
     @pytest.mark.parametrize("hindrance", ["own timer", "busy", "lockout", "no status", "fault"])
     def test_are_not_fired_before_timer_and_board_agree(self, hindrance):
@@ -62,7 +62,7 @@ class TestPlannedPulses:
         _, view, _ = run(ready(ZERO), demand=Demand(pulse=Pulse(1, 2)))
         readings = measured(coil=status(0), refused=(refusal(TICK).replace(coil=1),))
         after, view, _ = run(ready(ZERO), view, Demand(pulse=NO_PULSE), readings, TICK + 1)
-        assert after.owed_impulse_body_nms == ZERO
+        assert after.pending_impulse_body_nms == ZERO
         assert view.fired == NO_PULSE
 
 

@@ -39,7 +39,7 @@ def timers(config, ready_tick=(0, 0, 0), busy_until=0):
         pulses.boot(0, config),
         ready_tick=ready_tick,
         busy_until=busy_until,
-        owed_impulse_body_nms=(1.0, -2.0, 3.0),
+        pending_impulse_body_nms=(1.0, -2.0, 3.0),
     )
 
 

@@ -43,7 +43,7 @@ def owing(config, impulse_nms, ready_tick=(0, 0, 0), busy_until=0):
         pulses.boot(0, config),
         ready_tick=ready_tick,
         busy_until=busy_until,
-        owed_impulse_body_nms=impulse_nms,
+        pending_impulse_body_nms=impulse_nms,
     )
 
 
@@ -134,7 +134,7 @@ def may_fire(state, tick, config):
 def test_after_boot_a_whole_back_off_passes_first(tick_hz, shared, boot_tick):
     config = make_config(tick_hz, shared)
     state = pulses.boot(boot_tick, config)
-    assert state.owed_impulse_body_nms == (0.0, 0.0, 0.0)
+    assert state.pending_impulse_body_nms == (0.0, 0.0, 0.0)
     assert state.busy_until == boot_tick, "no pulse is under way"
     free = boot_tick + 100 * tick_hz
     assert all(may_fire(state, tick, config) == set() for tick in range(boot_tick, free))
@@ -183,7 +183,7 @@ def test_a_torque_asked_for_is_owed_as_impulse_and_leaks():
     state = owing(config, (1.0, -2.0, 4.0))
     after = then(pulses.owe, state, (10.0, 20.0, -30.0), STRONG_T, config)
     keep = 1.0 - 0.5 / 100.0
-    assert after.owed_impulse_body_nms == (keep * 1.0 + 5.0, keep * -2.0 + 10.0, keep * 4.0 - 15.0)
+    assert after.pending_impulse_body_nms == (keep * 1.0 + 5.0, keep * -2.0 + 10.0, keep * 4.0 - 15.0)
     assert (after.ready_tick, after.busy_until) == (state.ready_tick, state.busy_until)
 
 
@@ -193,7 +193,7 @@ def test_what_is_owed_is_forgotten_with_the_time_constant_of_the_leak_at_every_r
     state = owing(config, (1.0, -1.0, 0.0))
     for _ in range(300 * tick_hz):
         pulses.owe(state, (0.0, 0.0, 0.0), STRONG_T, config)
-    assert state.owed_impulse_body_nms == pytest.approx((exp(-1.0), -exp(-1.0), 0.0), rel=2e-3)
+    assert state.pending_impulse_body_nms == pytest.approx((exp(-1.0), -exp(-1.0), 0.0), rel=2e-3)
 
 
 @pytest.mark.parametrize("tick_hz", RATES)
@@ -202,7 +202,7 @@ def test_a_lasting_torque_is_owed_up_to_torque_times_leak(tick_hz):
     state = owing(config, (0.0, 0.0, 0.0))
     for _ in range(400 * tick_hz):
         pulses.owe(state, (2e-6, 0.0, -1e-6), STRONG_T, config)
-    assert state.owed_impulse_body_nms == pytest.approx((4e-5, 0.0, -2e-5), rel=1e-6)
+    assert state.pending_impulse_body_nms == pytest.approx((4e-5, 0.0, -2e-5), rel=1e-6)
 
 
 @pytest.mark.parametrize("tick_hz", RATES)
@@ -214,23 +214,25 @@ def test_no_more_is_owed_than_the_strongest_pulse_can_pay_and_its_direction_stay
     state = owing(config, (0.0, 0.0, 0.0))
     for _ in range(10 * tick_hz):
         pulses.owe(state, (0.3, -0.6, 0.6), b_body_t, config)
-        size = np.linalg.norm(state.owed_impulse_body_nms)
+        size = np.linalg.norm(state.pending_impulse_body_nms)
         assert size <= most * (1.0 + 1e-12)
-    assert state.owed_impulse_body_nms == pytest.approx((most / 3, -2 * most / 3, 2 * most / 3))
+    assert state.pending_impulse_body_nms == pytest.approx((most / 3, -2 * most / 3, 2 * most / 3))
 
 
 def test_up_to_the_bound_nothing_is_taken_away():
     config = make_config(leak_s=inf)
     b_body_t = (0.0, 3e-5, -4e-5)
     below = (0.999 * 3.0 * 8.0 * 5e-5, 0.0, 0.0)
-    assert then(pulses.owe, owing(config, (0.0,) * 3), below, b_body_t, config).owed_impulse_body_nms == below
+    assert (
+        then(pulses.owe, owing(config, (0.0,) * 3), below, b_body_t, config).pending_impulse_body_nms == below
+    )
 
 
 def test_without_a_field_nothing_is_owed():
     config = make_config()
     for owed in ((1.0, 1.0, 1.0), (0.0, 0.0, 0.0)):
         state = then(pulses.owe, owing(config, owed), owed, (0.0, 0.0, 0.0), config)
-        assert state.owed_impulse_body_nms == (0.0, 0.0, 0.0)
+        assert state.pending_impulse_body_nms == (0.0, 0.0, 0.0)
 
 
 # What is due
@@ -295,7 +297,7 @@ def test_a_pulse_pays_its_impulse(coil, level):
         pulses.fire, owing(config, owed), pulse, pulses.impulse(pulse, b_body_t, config), TICK, config
     )
     expected = np.array(owed) - impulse(config, coil, level, b_body_t)
-    assert after.owed_impulse_body_nms == pytest.approx(tuple(expected), abs=1e-18)
+    assert after.pending_impulse_body_nms == pytest.approx(tuple(expected), abs=1e-18)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sim.commissioning.phasing.bench_log import Recording, bench_responses, read_recording
-from sim.commissioning.phasing.bench_words import NOT_TOLD, findings, lines
+from sim.commissioning.phasing.bench_words import INCONCLUSIVE, findings, lines
 from sim.commissioning.phasing.command import of_csv
 from sim.errors import HarnessError
 
@@ -154,7 +154,7 @@ def test_a_response_reverses_with_the_level_of_one_sense_of_a_command(levels, ax
 
 
 def test_no_axis_is_claimed(responses):
-    assert lines(list(responses.values()))[-1] == NOT_TOLD
+    assert lines(list(responses.values()))[-1] == INCONCLUSIVE
 
 
 @pytest.mark.parametrize(

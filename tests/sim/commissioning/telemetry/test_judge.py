@@ -13,7 +13,7 @@ from sim.commissioning.recorded.element_sets import nearest_elements
 from sim.commissioning.recorded.recorded_pass import read_pass
 from sim.commissioning.telemetry.follow import Noise
 from sim.commissioning.telemetry.held_back import NO_AZIMUTHS
-from sim.commissioning.telemetry.judge import figures, judge, mean_gyro, told_apart
+from sim.commissioning.telemetry.judge import figures, judge, mean_gyro, rank_motions
 
 KNOWN = read_calibration(DATA / "calibration.toml")
 
@@ -102,13 +102,13 @@ class TestOfAPassInTheSun:
         assert abs(other.azimuths.median_deg) > 15.0
 
     def test_the_wrong_one_alone_is_not_reported_as_converged(self, sunlit):
-        _, verdict = told_apart([sunlit.motions[1]])
+        _, verdict = rank_motions([sunlit.motions[1]])
         assert not verdict.converged
         assert "the Sun that the cells see is off by" in verdict.reason
 
     def test_without_cells_neither_is(self, sunlit):
         blind = [replace(motion, azimuths=NO_AZIMUTHS) for motion in sunlit.motions]
-        _, verdict = told_apart(blind)
+        _, verdict = rank_motions(blind)
         assert not verdict.converged
         assert "fit the field alike, and neither cells nor coasting tell them apart" in verdict.reason
 
@@ -137,15 +137,15 @@ class TestOfAPassInTheSun:
 
     def test_a_motion_that_leaves_no_error_at_all_is_told_by_the_field(self, sunlit):
         exact, other = self.off_by(sunlit.best, 0.0), sunlit.motions[1]
-        ordered, verdict = told_apart([other, exact])
+        ordered, verdict = rank_motions([other, exact])
         assert ordered == [exact, other]
         assert verdict == (True, "field", "")
-        assert told_apart([exact, self.off_by(other, 0.0)])[1].by == "cells"
+        assert rank_motions([exact, self.off_by(other, 0.0)])[1].by == "cells"
 
     def test_a_motion_whose_error_is_no_number_is_lost_and_comes_last(self, sunlit):
         lost = self.off_by(sunlit.best, nan)
-        assert told_apart([lost])[1].reason == "the field is off by nan deg: the filter is lost"
-        assert told_apart([lost, sunlit.motions[1]])[0] == [sunlit.motions[1], lost]
+        assert rank_motions([lost])[1].reason == "the field is off by nan deg: the filter is lost"
+        assert rank_motions([lost, sunlit.motions[1]])[0] == [sunlit.motions[1], lost]
 
 
 class TestOfAPassInShadow:
@@ -156,16 +156,16 @@ class TestOfAPassInShadow:
         assert other.direction_deg_rms < 2.5
 
     def test_the_wrong_one_alone_is_not_reported_as_converged(self, eclipsed):
-        _, verdict = told_apart([eclipsed.motions[1]])
+        _, verdict = rank_motions([eclipsed.motions[1]])
         assert not verdict.converged
         assert "without samples the field is off by" in verdict.reason
 
     def test_one_that_nothing_bears_out_is_not_believed_though_it_stands_alone(self, eclipsed):
         best = eclipsed.best
         short = replace(best, coasts_deg={10: best.coasts_deg[10], 30: best.coasts_deg[30]})
-        _, verdict = told_apart([short])
+        _, verdict = rank_motions([short])
         assert verdict == (False, "field", "neither cells nor a minute of coasting bear the motion out")
-        assert told_apart([best])[1].converged
+        assert rank_motions([best])[1].converged
 
     def test_its_figures(self, eclipsed):
         found = figures(eclipsed)

@@ -9,8 +9,8 @@ import pytest
 
 from fsw.input.schema import merge
 from sim.campaign.claim import ClaimVerdict
+from sim.campaign.consistency import consistency_figures
 from sim.campaign.flight import Order, fly_order
-from sim.campaign.honesty import honesty_figures
 from sim.errors import HarnessError
 from sim.plant.hardware.sensors import MagnetometerPhysics
 from sim.scenario.assemble import plant_config
@@ -131,7 +131,7 @@ def test_a_magnetometer_at_the_end_of_its_range_serves_by_its_other_axes(range_n
     }
     flight = {"calibration": {"magnetometer": magnetometer, "coils": coils}, "uncertainty": uncertainty}
     overrides = merge(merge(satellite(8), POINTED), {"flight": flight})
-    flown = fly_order(Order(SCENARIO, overrides, 8, 2.0, honesty_figures))
+    flown = fly_order(Order(SCENARIO, overrides, 8, 2.0, consistency_figures))
     assert (flown.summary["isolated"] == []) is known
     if known:
         assert min(flown.figures[f"inside_{axis}"] for axis in (1, 2, 3)) > 0.95

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.campaign.honesty import honesty_figures
+from sim.campaign.consistency import consistency_figures
 from sim.campaign.population import satellite
 from sim.scenario.schema import flight_table, load
 from sim.validate.population.sweep import QUANTITIES, sweep_order, sweep_orders
@@ -85,4 +85,4 @@ def test_the_flights_are_those_of_every_size_and_satellite():
     orders = sweep_orders(4, [1, 2, 3])
     assert len({order.name for order in orders}) == len(orders) == 3 * 4 * 3
     assert {order.orbits for order in orders} == {8.0}
-    assert all(order.measure is honesty_figures for order in orders)
+    assert all(order.measure is consistency_figures for order in orders)

@@ -17,7 +17,7 @@ from sim.validate.commissioning import calibrated, wirings
 from sim.validate.flight_rows import FlightRows
 from sim.validate.running import kept_results
 from sim.validate.running.guard import Failed
-from sim.validate.running.kept_results import CODE, keep_result, with_known_results
+from sim.validate.running.kept_results import CODE, keep_result, with_kept_results
 
 TALLY = wirings.Tally((2, -1, 3), 40, 7, ((3, 1, 2),))
 FLOWN = calibrated.Flown(7, (0.5, -2.9), 0.61, 0.58)
@@ -57,7 +57,7 @@ def kept(path, *results):
 
 
 def tasks(rows):
-    return [task for study in with_known_results(studies(), rows) for task in study.tasks]
+    return [task for study in with_kept_results(studies(), rows) for task in study.tasks]
 
 
 def test_a_result_that_is_known_takes_the_place_of_its_task_and_of_no_other(path):

@@ -30,8 +30,8 @@ from fsw.wire.messages import (
     WheelBoot,
 )
 from sim.watch.directions import Around
+from sim.watch.flight_view import MOST_HAPPENINGS, MOST_UNKNOWN, FlightView
 from sim.watch.happening import Weight
-from sim.watch.seen import MOST_HAPPENINGS, MOST_UNKNOWN, FlightView
 from sim.watch.snapshot import snapshot
 
 UNIX_S = 1427424417

@@ -21,7 +21,7 @@ LAST_ORBITS = 3.0
 WRONG_DEG = (5.0, 10.0)
 
 
-def honesty_figures(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
+def consistency_figures(scenario: Scenario, truth: Histories, estimates: Estimates) -> Figures:
     """What differs from the onboard table, how honest the filter is, and how well the satellite points.
 
     ``inside_1``, ``_2``, ``_3``: fraction of the ticks after convergence, attitude valid, with the error
@@ -45,7 +45,7 @@ def honesty_figures(scenario: Scenario, truth: Histories, estimates: Estimates) 
         **{
             f"{prefix}{name}": value
             for prefix, first in starts.items()
-            for name, value in _honesty(error_deg, valid, inside, consistency, first).items()
+            for name, value in _consistency(error_deg, valid, inside, consistency, first).items()
         },
         **{f"wrong_{most:g}deg_s": _longest(valid & (error_deg > most)) / tick_hz for most in WRONG_DEG},
         "pointing_deg": _rms(pointing_deg[-round(LAST_ORBITS * orbit_ticks) :]),
@@ -66,7 +66,7 @@ def _differences(scenario: Scenario) -> Figures:
     }
 
 
-def _honesty(
+def _consistency(
     error_deg: Array,
     valid: NDArray[np.bool_],
     inside: NDArray[np.bool_],

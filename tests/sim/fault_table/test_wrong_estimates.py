@@ -6,8 +6,8 @@ import pytest
 
 from fsw.core.events import Event
 from sim.fault_rig.record import FaultFlightRecord, ReportedEvent
-from sim.fault_table.honesty import never_wrong_for_long
 from sim.fault_table.row import FaultRow, Unseen
+from sim.fault_table.wrong_estimates import never_wrong_for_long
 
 
 def flown(*errors_deg, tick_hz=1, lit=True):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fsw.wire.messages import Mode
-from sim.campaign.honesty import honesty_figures
+from sim.campaign.consistency import consistency_figures
 from sim.record.estimates import EstimateRecorder
 from sim.scenario.schema import load
 
@@ -59,7 +59,7 @@ class Made:
         estimates.omega_body_orbit_radps[:] = 0.0
         estimates.omega_body_radps[:] = 0.0
         estimates.mode[:] = self.mode
-        return honesty_figures(self.scenario, truth, estimates)
+        return consistency_figures(self.scenario, truth, estimates)
 
 
 @pytest.fixture
