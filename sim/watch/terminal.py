@@ -120,7 +120,7 @@ OTHERS = "other identifiers"
 
 
 def show(view: FlightView, batches: Iterator[None], source: str) -> None:
-    """Draw what is view on standard output until there is no more.
+    """Draw what the frames show on standard output until there is no more.
 
     Args:
         view: what the frames have shown.

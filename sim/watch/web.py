@@ -30,7 +30,7 @@ WEBSOCKETS: Literal["websockets-sansio"] = "websockets-sansio"
 
 
 class LiveView:
-    """What is view, filled by one thread and read by another.
+    """What the frames show, filled by one thread and read by another.
 
     Args:
         source: of the frames.
@@ -118,10 +118,10 @@ def listening(port: int) -> "Iterator[socket.socket]":
 
 
 def serve(view: LiveView, port: int, announce: Callable[[str], None]) -> None:
-    """Serve the page until Ctrl-C; what has been view stays when the source has ended.
+    """Serve the page until Ctrl-C; what has been shown stays when the source has ended.
 
     Args:
-        view: what is view.
+        view: what the frames show.
         port: of TCP; 0: any that is free.
         announce: called with the address of the page.
 
