@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from sim.validate.reference import attitude_check
-from sim.validate.reference.attitude_check import read_case
+from sim.validate.reference.attitude_check import read_case, two_body
 from sim.validate.reference.reference_table import ReferenceTable
-from sim.validate.reference.two_body import two_body
 
 
 def test_steps_shrink_with_the_rate():

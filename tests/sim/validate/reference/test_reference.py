@@ -9,7 +9,7 @@ from sim.campaign.claim import ClaimVerdict
 from sim.errors import HarnessError
 from sim.plant.environment.orbit import MU_M3PS2
 from sim.validate.reference import reference
-from sim.validate.reference.two_body import two_body
+from sim.validate.reference.attitude_check import two_body
 
 ROWS = {"attitude_d_offdiag.csv": 6, "attitude_c_dipole.csv": 6, "floquet.csv": 7}
 
