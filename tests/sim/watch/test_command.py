@@ -38,12 +38,12 @@ def test_a_log_a_bus_and_a_path_that_is_missing(log, tmp_path):
 
 
 def test_the_orbit_is_that_of_the_run_or_of_a_scenario(log, recorded_run):
-    assert command.watch(str(log), LOCKSTEP, None).seen.around_at(0) is None
+    assert command.watch(str(log), LOCKSTEP, None).view.around_at(0) is None
     for watched in (
         command.watch(str(log), LOCKSTEP, "microsat"),
         command.watch(str(recorded_run), LOCKSTEP, None),
     ):
-        assert watched.seen.around_at(0) is not None
+        assert watched.view.around_at(0) is not None
     with pytest.raises(TableError, match="nosat"):
         command.watch(str(log), LOCKSTEP, "nosat")
 
