@@ -3,6 +3,7 @@
 import errno
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """``errno`` where a disk, a quota, the size of a file or shared memory is used up; it does not say which."""
@@ -48,3 +49,29 @@ def needing(what: str, package: str, extra: str) -> Iterator[None]:
         if is_out_of_memory(error):
             raise
         raise HarnessError(f"{what} needs {package}: pip install 'torquer[{extra}]'") from None
+
+
+@contextmanager
+def reading(path: Path | str) -> Iterator[None]:
+    """Read this file in this block.
+
+    Raises:
+        HarnessError: it cannot be read, and why.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise HarnessError(f"{path}: cannot be read ({error.strerror or error})") from None
+
+
+@contextmanager
+def writing(path: Path | str) -> Iterator[None]:
+    """Write this file, or into this folder, in this block.
+
+    Raises:
+        HarnessError: it cannot be written, and why.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise HarnessError(f"{path}: cannot be written ({error.strerror or error})") from None

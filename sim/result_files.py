@@ -4,7 +4,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from sim.errors import HarnessError
+from sim.errors import HarnessError, writing
 from sim.record.destination import check_file
 from sim.record.whole_file import replace_file
 
@@ -41,10 +41,8 @@ def write_result(path: Path, text: str) -> None:
     Raises:
         HarnessError: it cannot be written.
     """
-    try:  # the name of a recorded file, which stands in the text, need not be valid UTF-8
+    with writing(path):  # the name of a recorded file, which stands in the text, need not be valid UTF-8
         replace_file(path, text.encode("utf-8", errors="backslashreplace"))
-    except OSError as error:
-        raise HarnessError(f"{path}: cannot be written ({error.strerror})") from None
 
 
 def _are_one(path: Path, other: Path) -> bool:

@@ -20,7 +20,7 @@ from sim.drawing.canvas import style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import PageHeader, PageSection, Table, Tile, sections_page
 from sim.drawing.time_chart import Level, Panel, Series, TimeChart, draw, time_data
-from sim.errors import HarnessError
+from sim.errors import HarnessError, writing
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.progress import note, progress
 from sim.record.destination import check_folder
@@ -309,15 +309,13 @@ def _write(
     facts = [seed, f"{description['sim_seconds']:.0f} s", f"judged by the {by.words}"]
     if not description["complete"]:
         facts.append("given up before all had flown")
-    try:
+    with writing(folder):
         write_json(folder / JSON, plain(as_json(scores, description)))
         replace_text(folder / CSV, as_csv(scores))
         picture(folder / PICTURE, f"{scenario.name}, {seed}", results, by)
         window = _window(scenario, description["ticks"])
         page = compare_page(scenario, facts, scores, results, window, by, kept)
         replace_text(folder / PAGE, page)
-    except OSError as error:
-        raise HarnessError(f"{folder}: cannot be written ({error.strerror or error})") from None
 
 
 def _new_folder(folder: Path) -> Path:

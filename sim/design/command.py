@@ -18,7 +18,7 @@ from sim.design.theory.search import natural_gains
 from sim.drawing.canvas import style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import PageHeader, PageSection, Tile, sections_page
-from sim.errors import HarnessError
+from sim.errors import HarnessError, writing
 from sim.progress import progress
 from sim.record.destination import check_file, check_folder
 from sim.record.run_dir import write_json
@@ -60,10 +60,8 @@ def write_gains(path: Path, gains: Gains) -> None:
         HarnessError: the file cannot be read or written, or does not give both keys a line of their own.
     """
     after = _edited(path, gains)
-    try:
+    with writing(path):
         _replace(path.resolve(), after)
-    except OSError as error:
-        raise HarnessError(f"{path}: cannot be written ({error.strerror or error})") from None
 
 
 def _edited(path: Path, gains: Gains) -> str:
@@ -226,13 +224,11 @@ def _check(gains: Gains, body: Body) -> None:
 
 def _draw(folder: Path, analysis: Analysis, scenario: Scenario) -> tuple[Path, ...]:
     of_scenario = Gains(scenario.control.k_w, scenario.control.k_a)
-    try:
+    with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
         maps = picture_maps(analysis)
         gain_picture(folder / GAIN_PICTURE, analysis, maps, of_scenario)
         robustness_picture(folder / ROBUSTNESS_PICTURE, analysis, maps.inertia)
         replace_text(folder / PAGE, design_page(analysis, scenario, maps))
         write_json(folder / RESULT, as_json(analysis))
-    except OSError as error:
-        raise HarnessError(f"{folder}: cannot be written ({error.strerror or error})") from None
     return folder / GAIN_PICTURE, folder / ROBUSTNESS_PICTURE

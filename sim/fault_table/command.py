@@ -13,8 +13,7 @@ from sim.fault_table.row import CheckVerdict, RowResult
 from sim.fault_table.rows.table import ROWS, choose_rows
 from sim.junit import prepare_junit, write_junit
 from sim.progress import progress
-from sim.record.whole_file import replace_file
-from sim.result_files import check_results
+from sim.result_files import check_results, write_result
 from sim.validate.registry import find_repository
 
 PAGE, JUNIT, HTML, JSON = "faults.md", "faults.xml", "faults.html", "faults.json"
@@ -77,7 +76,7 @@ def faults(
         by_name[result.row.name] = result
         if keep is not None:
             kept = _in_order(by_name)
-            _write(keep, render.as_json(kept, render.otherwise_flown(kept, phases, seeds)))
+            write_result(keep, render.as_json(kept, render.otherwise_flown(kept, phases, seeds)))
         if not bar:
             _print(result, frozenset())
 
@@ -91,7 +90,7 @@ def faults(
     answer(render.json_values(results, other))
     _write_reports(results, other, out, junit)
     if page is not None:
-        _write(page, render.markdown(results, phases, seeds))
+        write_result(page, render.markdown(results, phases, seeds))
         say(f"page: {page}")
     return int(any(result.verdict is CheckVerdict.FAIL for result in results))
 
@@ -102,8 +101,8 @@ def _write_reports(
     for file in (junit, None if out is None else out / JUNIT):
         write_junit(file, "torquer faults", render.suites(results, other))
     if out is not None:
-        _write(out / HTML, render.html(results, other))
-        _write(out / JSON, render.as_json(results, other))
+        write_result(out / HTML, render.html(results, other))
+        write_result(out / JSON, render.as_json(results, other))
 
 
 def _in_order(by_name: dict[str, RowResult]) -> list[RowResult]:
@@ -121,11 +120,3 @@ def _docs_page(names: set[str]) -> Path:
 
 def _print(result: RowResult, other: Collection[str]) -> None:
     say(render.line(result, other), failed=result.verdict is CheckVerdict.FAIL)
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        replace_file(path, text.encode())
-    except OSError as error:
-        raise HarnessError(f"{path}: cannot be written ({error.strerror})") from None

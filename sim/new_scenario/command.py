@@ -11,7 +11,7 @@ from fsw.input.schema import Nested, TableError
 from fsw.input.toml_text import parse_toml
 from fsw.table.ordinary import TORQUE_NM, ordinary_dipole_am2, relative_volume
 from sim.console import answer, say, warn
-from sim.errors import HarnessError
+from sim.errors import HarnessError, writing
 from sim.new_scenario.figure_doubts import figure_doubts, in_options
 from sim.new_scenario.satellite import NewSatellite, gains_for
 from sim.record.destination import check_file
@@ -47,11 +47,8 @@ def new(satellite: NewSatellite, out: Path | None) -> int:
     check_new(satellite.name, file)
     text = scenario_text(satellite, file.name)
     scenario = scenario_made(text)
-    try:
-        with file.open("x", encoding="utf-8") as target:
-            target.write(text)
-    except OSError as error:
-        raise HarnessError(f"{file}: cannot be written ({error.strerror})") from None
+    with writing(file), file.open("x", encoding="utf-8") as target:
+        target.write(text)
     for doubt in (*figure_doubts(satellite, scenario), *doubts(scenario)):
         warn(doubt)
     expectation = expect(scenario)

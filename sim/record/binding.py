@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from fsw.input.gzip_text import open_text
 from fsw.input.schema import TableError
-from sim.errors import HarnessError
+from sim.errors import HarnessError, reading
 from sim.progress import Watch, progress
 from sim.record import run_dir
 from sim.record.run_dir import BUS_LOG, DIGESTS, RUN, SCENARIO, SCENARIO_DIGEST, SUMMARY, TRUTH
@@ -158,13 +158,10 @@ def sha256_of(path: Path, watch: Watch = lambda size: None) -> str:
         HarnessError: it cannot be read.
     """
     sha256 = hashlib.sha256()
-    try:
-        with open_text(path) as file:
-            while chunk := file.read(CHUNK):
-                sha256.update(chunk)
-                watch(os.lseek(file.fileno(), 0, os.SEEK_CUR))
-    except OSError as error:
-        raise HarnessError(f"{path}: cannot be read: {error.strerror}") from None
+    with reading(path), open_text(path) as file:
+        while chunk := file.read(CHUNK):
+            sha256.update(chunk)
+            watch(os.lseek(file.fileno(), 0, os.SEEK_CUR))
     return sha256.hexdigest()
 
 

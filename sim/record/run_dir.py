@@ -17,7 +17,7 @@ from fsw.compiled import standing
 from fsw.core.estimation.kalman import Algebra, available
 from fsw.input import gzip_text
 from fsw.input.schema import Nested, TableError
-from sim.errors import HarnessError
+from sim.errors import HarnessError, writing
 from sim.record.destination import check_folder
 from sim.record.log_index import SUFFIX
 from sim.record.pace import Pace
@@ -93,7 +93,7 @@ def begin(
     check_folder(path)
     if any(os.path.lexists(path / name) for name in FILES):
         raise HarnessError(f"{path} already holds a run: choose another --out")
-    try:
+    with writing(path):
         replace_file(path / SCENARIO, text.encode())
         write_json(
             path / RUN,
@@ -116,8 +116,6 @@ def begin(
                 "complete": False,
             },
         )
-    except OSError as error:
-        raise HarnessError(f"{path}: cannot be written ({error.strerror})") from None
     return path
 
 

@@ -19,7 +19,7 @@ from sgp4.io import compute_checksum
 
 from fsw.core.orbit.tle import plain_line, read_tle, tle_elements
 from fsw.input.text_file import read_text
-from sim.errors import HarnessError
+from sim.errors import HarnessError, reading
 
 MOST_BYTES = 20_000_000
 LONGEST_NAME = 40
@@ -60,10 +60,8 @@ def read_element_file(path: Path) -> list[FiledElements]:
     Raises:
         HarnessError: the file cannot be read, holds no set, or a malformed one.
     """
-    try:
+    with reading(path):
         text = read_text(path, MOST_BYTES, odd_letters=True)
-    except OSError as error:
-        raise HarnessError(f"{path}: cannot be read ({error.strerror or error})") from None
     try:
         found = list(_sets(text))
     except ValueError as error:

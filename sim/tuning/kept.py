@@ -18,7 +18,7 @@ from typing_extensions import TypedDict
 from fsw.input.schema import Nested
 from fsw.input.text_file import read_text
 from fsw.input.toml_text import MOST_BYTES, BoundsError
-from sim.errors import HarnessError
+from sim.errors import HarnessError, writing
 from sim.record.whole_file import replace_file
 from sim.scenario.schema import Scenario, flight_table
 from sim.tuning.applicable import coils_of
@@ -155,8 +155,6 @@ def write_gains(path: Path, kept: KeptGains) -> None:
     rules: Nested = {
         "found": {"body": kept.body, "flights": kept.flights, "orbits": kept.orbits, "seed": kept.seed}
     }
-    try:
+    with writing(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         replace_file(path, (_HEAD + tomli_w.dumps(rules | kept.rows)).encode())
-    except OSError as error:
-        raise HarnessError(f"{path}: cannot be written ({error.strerror or error})") from None

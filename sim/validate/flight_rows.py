@@ -15,7 +15,7 @@ from typing import Any
 from sim.campaign.claim import Study, Task
 from sim.campaign.code_digest import code_digest
 from sim.campaign.flight import FlightResult, Measure, Order, fly_order
-from sim.errors import HarnessError
+from sim.errors import HarnessError, writing
 from sim.value_types import Json
 
 BEGINNING = b'{"order": "'
@@ -90,7 +90,7 @@ class FlightRows:
         self._add({"order": key, "name": name, "code": code_digest(), "result": values})
 
     def _add(self, row: Json) -> None:
-        try:
+        with writing(self._path):
             self._path.parent.mkdir(parents=True, exist_ok=True)
             with self._path.open("ab") as file:
                 if file.tell() != self._size:
@@ -98,8 +98,6 @@ class FlightRows:
                 file.truncate(self._end)
                 self._end += file.write(json.dumps(row).encode() + b"\n")
                 self._size = self._end
-        except OSError as error:
-            raise HarnessError(f"{self._path}: cannot be written ({error.strerror})") from None
         self._rows[row["order"]] = row
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from fsw.input.text_file import read_text
 from sim.commissioning.recorded.columns import TIME, Places, places
 from sim.commissioning.recorded.strays import most_left_out
-from sim.errors import HarnessError
+from sim.errors import HarnessError, reading
 from sim.value_types import Array
 
 Mask = NDArray[np.bool_]
@@ -138,10 +138,8 @@ def read_pass(path: Path) -> RecordedPass:
     Raises:
         HarnessError: it cannot be read, a column is missing, too many rows are of no use.
     """
-    try:
+    with reading(path):
         text = read_text(path, MOST_BYTES)
-    except OSError as error:
-        raise HarnessError(f"{path}: cannot be read ({error.strerror or error})") from None
     try:
         head, *rows = csv.reader(text.splitlines())
         where = places([name.strip() for name in head])

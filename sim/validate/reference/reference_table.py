@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from fsw.input.text_file import read_text
-from sim.errors import HarnessError
+from sim.errors import HarnessError, reading
 from sim.value_types import Array
 
 MOST_BYTES = 16_000_000
@@ -148,10 +148,8 @@ def read_lines(path: Path) -> list[tuple[int, str]]:
     Raises:
         HarnessError: it cannot be read as text.
     """
-    try:
+    with reading(path):
         text = read_text(path, MOST_BYTES)
-    except OSError as error:
-        raise HarnessError(f"{path}: cannot be read ({error.strerror})") from None
     return list(enumerate(text.splitlines(), start=1))
 
 

@@ -7,8 +7,7 @@ from pathlib import Path
 from sim.campaign.claim import Claim
 from sim.campaign.runner import StudyResult
 from sim.console import say
-from sim.errors import HarnessError
-from sim.record.whole_file import replace_file
+from sim.result_files import write_result
 from sim.validate.outcomes import Judges, Record, as_text, outdated, with_record
 from sim.validate.page import render
 
@@ -71,12 +70,4 @@ class ResultFiles:
     def _write(self, known: Record, text: str) -> None:
         for file, content in ((self.figures, as_text(known)), (self.page, text)):
             if file is not None:
-                _replace(file, content)
-
-
-def _replace(file: Path, text: str) -> None:
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        replace_file(file, text.encode())  # outcomes of hours are not lost by a kill
-    except OSError as error:
-        raise HarnessError(f"{file}: cannot be written ({error.strerror})") from None
+                write_result(file, content)  # outcomes of hours are not lost by a kill
