@@ -7,9 +7,9 @@ from typing import Literal, NamedTuple
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG
 from fsw.wire.messages import MagField, SunCells, SunVector
 from sim.faults import bus_kinds as bus
-from sim.faults import cell_kinds as cell
-from sim.faults import forged_kinds as forged
+from sim.faults import bus_kinds as forged
 from sim.faults import node_kinds as node
+from sim.faults import plant_kinds as cell
 from sim.faults import plant_kinds as plant
 from sim.faults.fault import Fault, Parameters
 

@@ -2,14 +2,14 @@
 
 import pytest
 
+from fsw.core import telemetry
 from fsw.core.events import Event, Happening
-from fsw.core.fdir import fault_events
 from fsw.core.fdir.coils.health import CoilHealth
-from fsw.core.fdir.fault_events import find_faults
 from fsw.core.fdir.faults import CoilFault, SensorFault
 from fsw.core.fdir.fdir import Health
 from fsw.core.fdir.sensors.health import SensorHealth, Watch
 from fsw.core.fdir.sensors.pair import Pair, Standing
+from fsw.core.telemetry import find_faults
 
 FROZEN, SILENT = SensorFault.FROZEN, SensorFault.SILENT
 OPEN, WEAK = CoilFault.OPEN, CoilFault.WEAK
@@ -24,7 +24,7 @@ def coils(*faults):
 
 
 def happenings(before, after):
-    return fault_events.happenings(find_faults(before), find_faults(after))
+    return telemetry.fault_happenings(find_faults(before), find_faults(after))
 
 
 class TestHappenings:
