@@ -47,7 +47,11 @@ def within_3sigma(truth: Histories, estimates: Estimates) -> NDArray[np.bool_]:
 
 
 def nees(truth: Histories, estimates: Estimates) -> Array:
-    """Normalised estimation error squared of attitude and rate at each tick; NaN where unknown."""
+    """Normalised estimation error squared of attitude and rate at each tick, e' P^-1 e.
+
+    NaN where the estimate is unknown, and where P is singular as far as its numbers go: then rounding alone
+    would decide.
+    """
     ticks = len(truth["t_s"])
     turn = estimate_error(truth, estimates)
     orbit_rate = np.linalg.norm(
@@ -60,6 +64,18 @@ def nees(truth: Histories, estimates: Estimates) -> Array:
     defined = np.isfinite(error).all(axis=1)
     result = np.full(ticks, np.nan)
     if defined.any():
-        solved = np.linalg.solve(estimates.covariance[:ticks][defined], error[defined][:, :, None])[:, :, 0]
-        result[defined] = np.sum(error[defined] * solved, axis=1)
+        solved = _solved(estimates.covariance[:ticks][defined], error[defined])
+        squared = np.sum(error[defined] * solved, axis=1)
+        result[defined] = np.where(squared >= 0.0, squared, np.nan)
     return result
+
+
+def _solved(covariance: Array, error: Array) -> Array:
+    """P^-1 e of each row; NaN where P is singular."""
+    try:
+        whole: Array = np.linalg.solve(covariance, error[:, :, None])[:, :, 0]
+    except np.linalg.LinAlgError:
+        regular = np.linalg.matrix_rank(covariance, hermitian=True) == error.shape[1]
+        whole = np.full(error.shape, np.nan)
+        whole[regular] = np.linalg.solve(covariance[regular], error[regular][:, :, None])[:, :, 0]
+    return whole

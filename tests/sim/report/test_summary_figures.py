@@ -207,6 +207,23 @@ class TestNees:
         summary = Made(error[:, :3], error[:, 3:], self.COVARIANCE / 4.0).summary(audit)
         assert summary["nees_mean"] == pytest.approx(24.0, rel=0.05)
 
+    @pytest.mark.parametrize(
+        "singular", [np.zeros((6, 6)), np.outer(np.arange(1.0, 7.0), np.arange(1.0, 7.0))]
+    )
+    def test_is_unknown_where_the_covariance_is_singular_and_only_there(self, singular):
+        error = self.errors(10)
+        made = Made(error[:, :3], error[:, 3:], self.COVARIANCE)
+        expected = nees(made.truth, made.estimates)
+        made.estimates.covariance[4] = singular
+        expected[4] = np.nan
+        np.testing.assert_array_equal(nees(made.truth, made.estimates), expected)
+
+    def test_is_unknown_where_rounding_has_made_the_covariance_indefinite(self):
+        error = self.errors(10)
+        made = Made(error[:, :3], error[:, 3:], self.COVARIANCE)
+        made.estimates.covariance[4] *= -1.0
+        assert np.isnan(nees(made.truth, made.estimates)).tolist() == [tick == 4 for tick in range(10)]
+
     def test_is_unknown_where_the_estimate_is(self):
         made = Made(error_of(np.full(10, 1.0)))
         made.estimates.omega_body_radps[3] = np.nan
