@@ -73,7 +73,7 @@ def nees(truth: Histories, estimates: Estimates) -> Array:
 def _solved(covariance: Array, error: Array) -> Array:
     """P^-1 e of each row; NaN where P is singular."""
     try:
-        whole: Array = np.linalg.solve(covariance, error[:, :, None])[:, :, 0]
+        whole = np.asarray(np.linalg.solve(covariance, error[:, :, None])[:, :, 0], np.float64)
     except np.linalg.LinAlgError:
         regular = np.linalg.matrix_rank(covariance, hermitian=True) == error.shape[1]
         whole = np.full(error.shape, np.nan)
