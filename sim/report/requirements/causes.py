@@ -67,7 +67,7 @@ def beyond_bounds(scenario: Scenario) -> list[str]:
     return [sentence for _, sentence in sorted(found, reverse=True)[:SHOWN]]
 
 
-# --- Why a flight settled late: causes from its course, in addition to those of ``causes.py``
+# --- Why a flight settled late: causes from its course
 
 MOST_NAMED = 3
 FALLS = 0.9
