@@ -112,7 +112,7 @@ lint: environment
 	$(bin)/python tools/write_scenario_keys.py --check
 	$(bin)/python tools/draw_design.py --check
 	$(bin)/python tools/write_cli.py --check
-	$(bin)/python tools/write_seeds.py --check
+	$(bin)/python tools/write_methods.py --check
 
 docs_installed := .venv/.docs-installed
 sphinx := $(bin)/sphinx-build -W -n --keep-going --quiet -b html

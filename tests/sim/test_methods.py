@@ -1,4 +1,4 @@
-"""docs/seeds.md: a row a method, what is not measured called so, the counts at the top."""
+"""docs/methods.md: a row a method, what is not measured called so, the counts at the top."""
 
 from dataclasses import replace
 

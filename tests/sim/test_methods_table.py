@@ -114,7 +114,7 @@ def test_a_law_that_no_row_names_is_found(law):
 
 def test_the_references_that_no_row_names_stand_on_the_page():
     """They are told, so that it can be seen what is missing; the surveys and the history have rows too."""
-    text = (ROOT / "docs" / "seeds.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "methods.md").read_text(encoding="utf-8")
     listed = ", ".join(map(str, missing(METHODS))) or "none"
     assert f"References of the review that no method names: {listed}.\n" in text
     assert missing([]) == list(range(1, LAST + 1))

@@ -1,4 +1,4 @@
-"""Write docs/seeds.md from methods and docs/validation.json; with --check, exit 1 when it is stale."""
+"""Write docs/methods.md from methods and docs/validation.json; with --check, exit 1 when it is stale."""
 
 import sys
 from pathlib import Path
@@ -8,7 +8,7 @@ from sim.record.whole_file import replace_text
 from sim.validate.outcomes import as_figures, read_record
 
 DOCS = Path(__file__).resolve().parent.parent / "docs"
-TARGET = DOCS / "seeds.md"
+TARGET = DOCS / "methods.md"
 
 
 def main() -> int:
@@ -16,7 +16,7 @@ def main() -> int:
     if "--check" in sys.argv[1:]:
         stale = not TARGET.is_file() or TARGET.read_text(encoding="utf-8") != text
         if stale:
-            print(f"{TARGET} is stale: run tools/write_seeds.py")
+            print(f"{TARGET} is stale: run tools/write_methods.py")
         return int(stale)
     replace_text(TARGET, text)
     return 0
