@@ -27,7 +27,7 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 """Their tests, which a user copies with them, fly for many seconds and carry no mark of ours."""
 
 LONG = "pytest.mark.long"
-"""It stands in the very file that has long tests: see ``test_house.py``."""
+"""It stands in the very file that has long tests: see ``test_structure.py``."""
 
 
 INTERPRETED = ("pytest.mark.interpreted", "interpreted_alone()")

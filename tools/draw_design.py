@@ -1,6 +1,6 @@
 """Draw the pictures of docs/design.md; with --check, exit 1 when one is stale.
 
-docs/house.svg and docs/core.svg: the rooms of each package on the floors that the layers contracts of
+docs/packages.svg and docs/core.svg: the rooms of each package on the floors that the layers contracts of
 pyproject.toml give them. Arrows are the imports in the source between rooms of one package, less those that a
 longer path implies; what a room imports of other packages stands in it. docs/modes.svg: the transitions of
 fsw/core/modes.py, with the dwell times of fsw/flight.toml.
@@ -53,7 +53,7 @@ Box = tuple[str, Floors, float, float, float]
 
 
 def main(arguments: list[str]) -> int:
-    pictures = {"house": house(), "core": core(), "modes": modes()}
+    pictures = {"packages": packages(), "core": core(), "modes": modes()}
     stale = []
     for name, picture in pictures.items():
         path = ROOT / "docs" / f"{name}.svg"
@@ -68,7 +68,7 @@ def main(arguments: list[str]) -> int:
     return 0
 
 
-def house() -> str:
+def packages() -> str:
     """torquer over sim, sim over the boards and the flight software."""
     commands, ground = floors("torquer"), floors("sim")
     top = MARGIN + box_height(len(commands)) + GAP

@@ -10,7 +10,7 @@ from pathlib import Path
 import sim
 from sim.errors import HarnessError
 
-HOUSE = Path(sim.__file__).resolve().parents[1]
+PROJECT = Path(sim.__file__).resolve().parents[1]
 FLIGHT_CODE = (
     "fsw",
     "hil_stub",
@@ -51,24 +51,24 @@ DATA = (".toml", ".dbc")
 
 
 @cache
-def code_digest(parts: tuple[str, ...] = FLIGHT_CODE, house: Path = HOUSE) -> str:
+def code_digest(parts: tuple[str, ...] = FLIGHT_CODE, project: Path = PROJECT) -> str:
     """A digest that is the same for the same programs and data, whatever their comments and docstrings.
 
     Args:
         parts: folders and files; by default all that flights depend on.
-        house: where they are.
+        project: where they are.
 
     Raises:
         HarnessError: one of them is not there, so that its changes would go unnoticed.
     """
     digest = hashlib.sha256()
-    for part in (house / part for part in parts):
+    for part in (project / part for part in parts):
         whole = [part] if part.is_file() else sorted(part.rglob("*"))
         files = [path for path in whole if path.suffix in (".py", *DATA)]
         if not files:
             raise HarnessError(f"{part}: holds no code to tell from other code")
         for path in files:
-            name = path.relative_to(house)
+            name = path.relative_to(project)
             if not any(name.is_relative_to(left_out) for left_out in (*NOT_FLOWN, *WORDS)):
                 content = (
                     path.read_bytes() if path.suffix in DATA else program(path.read_text(encoding="utf-8"))

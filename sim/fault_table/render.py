@@ -98,7 +98,7 @@ def line(result: RowResult, other: Collection[str] = ()) -> str:
 
 def listed(row: FaultRow) -> str:
     """One row for ``--list``."""
-    return f"{row.name:<24} {told(row)}; expected: {expected(row)}"
+    return f"{row.name:<24} {fault_words(row)}; expected: {expected(row)}"
 
 
 def listed_json(row: FaultRow) -> Json:
@@ -171,7 +171,7 @@ def html(results: Sequence[RowResult], other: Collection[str] = ()) -> str:
 def _html_row(result: RowResult, other: Collection[str]) -> tuple[tuple[str, ...], str, str]:
     """The cells of a row without its verdict, then the style class of the verdict, and the verdict."""
     row, colour = result.row, {CheckVerdict.PASS: "good", CheckVerdict.FAIL: "bad", CheckVerdict.OPEN: "note"}
-    cells = (row.name, told(row), expected(row), str(len(result.cases)), _found(result))
+    cells = (row.name, fault_words(row), expected(row), str(len(result.cases)), _found(result))
     return cells, colour[result.verdict], _verdict(result, other)
 
 
@@ -187,7 +187,7 @@ def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
         for result in rows:
             cells = (
                 f"`{result.row.name}`",
-                told(result.row),
+                fault_words(result.row),
                 expected(result.row),
                 str(len(result.cases)),
                 _found(result),
@@ -216,7 +216,7 @@ def injected(row: FaultRow) -> str:
     return "; ".join([*map(_fault, row.faults), *row.settings])
 
 
-def told(row: FaultRow) -> str:
+def fault_words(row: FaultRow) -> str:
     """The same for a reader: a fault that only names a unit is left out beside others."""
     acting = [fault for fault in row.faults if fault.kind != "none"] or row.faults[:1]
     return "; ".join([*map(_fault, acting), *row.settings])

@@ -56,7 +56,7 @@ class StallDetector:
         return quiet_s if quiet_s > (self._next_s if size > 0 else self._first_s) else 0.0
 
 
-HOUSE = str(Path(__file__).parents[2])
+PROJECT = str(Path(__file__).parents[2])
 """The folder that holds the packages of torquer."""
 POLL_S = 0.1
 GRACE_S = 5.0
@@ -207,7 +207,7 @@ def start_node(module: str, *arguments: str, **pipes: int | Sequence[int]) -> su
     ``pipes``: of ``stdin``, ``stdout``, ``stderr`` and ``pass_fds``, as ``subprocess`` takes them.
     """
     words = [sys.executable, "-m", module, *arguments]
-    folders = [*filter(None, sys.path), HOUSE]
+    folders = [*filter(None, sys.path), PROJECT]
     path = {"PYTHONPATH": os.pathsep.join(folders), "PYTHONSAFEPATH": "1"}
     environment = {**os.environ, **path, "OPENBLAS_NUM_THREADS": "1"}
     popen: subprocess.Popen[bytes] = subprocess.Popen(

@@ -43,7 +43,7 @@ def test_the_mode_diagram_has_every_mode_and_transition_of_the_table(draw):
 def test_the_house_has_every_room_of_a_package(draw, package):
     rooms = {path.stem for path in (ROOT / package).iterdir() if path.name[0] not in "._"}
     rooms -= {path.stem for path in (ROOT / package).iterdir() if path.is_file() and path.suffix != ".py"}
-    assert rooms <= set(texts(draw.house()))
+    assert rooms <= set(texts(draw.packages()))
 
 
 def test_an_import_that_a_longer_path_implies_is_left_out(draw):

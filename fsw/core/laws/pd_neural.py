@@ -52,7 +52,7 @@ class NeuralGains:
             raise ValueError("lag_orbits must be greater than 0")
 
 
-def seen(error: float, rate_radps: float, orbit_rate_radps: float) -> tuple[float, float]:
+def unit_inputs(error: float, rate_radps: float, orbit_rate_radps: float) -> tuple[float, float]:
     """What a unit sees: ln(1 + |E| / E0), ln(1 + |Omega| / Omega0).
 
     Args:
@@ -70,7 +70,7 @@ def neural(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Control
     gains: NeuralGains = config.gains["pd_neural"]
     omega, error = inputs.attitude.omega_body_orbit_radps, far_error(inputs.attitude.q_body_from_orbit)
     w0 = inputs.reference.orbit_rate_radps
-    by_error, by_rate = seen(norm(error), norm(omega), w0)
+    by_error, by_rate = unit_inputs(norm(error), norm(omega), w0)
     s_w = gains.w0 + gains.w1 * by_error + gains.w2 * by_rate
     s_a = gains.a0 + gains.a1 * by_error + gains.a2 * by_rate
     w_first, w_second, a_first, a_second = memory if len(memory) == 4 else (s_w, s_w, s_a, s_a)

@@ -45,7 +45,7 @@ from fsw.core.laws.lqr import (
     without_memory,
 )
 from fsw.core.laws.plan.cost_to_go import cost_to_go, times
-from fsw.core.laws.plan.orbit_ahead import OrbitAhead, check_horizon, seen
+from fsw.core.laws.plan.orbit_ahead import OrbitAhead, check_horizon, interpolated_orbit
 from fsw.core.laws.plan.pulse_model import NEVER, NO_PULSE, Pulse, PulseModel, kicks
 from fsw.core.laws.plan.riccati import Array, Problem, Schedule
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference
@@ -196,7 +196,7 @@ def _ahead(
     the others nearly the nominal one.
     """
     now_s = model.epoch_unix_s + inputs.tick * config.tick_s
-    ahead = seen(model, now_s + 0.5 * config.horizon_s, pulses.sight)
+    ahead = interpolated_orbit(model, now_s + 0.5 * config.horizon_s, pulses.sight)
     if ahead is None:
         return []
     count, problem = pulses.searched, pulses.problem

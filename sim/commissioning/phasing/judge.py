@@ -109,7 +109,7 @@ def by_coil_field(response: CoilResponse, field_nt_per_am2: Array) -> set[tuple[
     return admitted
 
 
-def seen(response: CoilResponse) -> bool:
+def is_detected(response: CoilResponse) -> bool:
     """Whether each output that was fired shows in the field."""
     clear = np.abs(response.nt_per_am2) > SIGMAS * response.sigma
     return all(clear[:, output].any() for output, pulses in enumerate(response.pulses) if pulses)
@@ -215,7 +215,7 @@ def phasing(samples: Samples, table: FlightTable, known: Known, dipoles: Judged 
     ]
     if known.coil_field_nt_per_am2 is None:
         missing.append("the coils' field at the magnetometer is not known")
-    elif not seen(response):
+    elif not is_detected(response):
         missing.append("the coils' field is too weak to be seen by the magnetometer")
     else:
         admitted = by_coil_field(response, known.coil_field_nt_per_am2)

@@ -105,7 +105,7 @@ def flown(number: int) -> Flown:
         log = _fly(Path(scratch) / "tumbling", tumbling, number, ORBIT_TICKS) / run_dir.BUS_LOG
         samples, true = read_samples(log, tumbling.time.tick_hz), true_calibration(tumbling)
         try:
-            off, given = told(samples, flight_table(tumbling), true, 1.0 / tumbling.time.tick_hz)
+            off, given = determined_values(samples, flight_table(tumbling), true, 1.0 / tumbling.time.tick_hz)
         except HarnessError as error:
             return Flown(number, (nan,) * VALUES, nan, nan, str(error))
         found_deg, perfect_deg = (
@@ -115,7 +115,7 @@ def flown(number: int) -> Flown:
     return Flown(number, off, found_deg, perfect_deg)
 
 
-def told(
+def determined_values(
     samples: Samples, table: FlightTable, true: TrueCalibration, tick_s: float
 ) -> tuple[tuple[float, ...], Nested]:
     """What a log tells: the errors of the values found, in standard deviations, and the tables.

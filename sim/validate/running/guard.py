@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from sim.campaign.claim import Claim, ClaimOutcome, Study, Task
-from sim.campaign.code_digest import HOUSE
+from sim.campaign.code_digest import PROJECT
 from sim.campaign.flight import fly_order
 from sim.campaign.study import FlightStudy, campaign, describe_order
 from sim.console import detail
@@ -20,7 +20,7 @@ Errors = tuple[type[Exception], ...]
 OF_THE_MACHINE: Errors = (OSError, MemoryError, ImportError)
 """No room, no memory, no package: what a claim says is not touched by them."""
 
-PACKAGES = tuple(HOUSE / name for name in ("fsw", "hil_stub", "sim"))
+PACKAGES = tuple(PROJECT / name for name in ("fsw", "hil_stub", "sim"))
 
 
 class Failed(NamedTuple):
@@ -102,6 +102,6 @@ def _reason(error: Exception) -> str:
 
 
 def _place(file: str) -> str:
-    """The path of a module of this house; empty for others."""
+    """The path of a module of this project; empty for others."""
     path = Path(file)
-    return path.relative_to(HOUSE).as_posix() if any(map(path.is_relative_to, PACKAGES)) else ""
+    return path.relative_to(PROJECT).as_posix() if any(map(path.is_relative_to, PACKAGES)) else ""

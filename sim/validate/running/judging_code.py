@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from sim.campaign.code_digest import FLIGHT_CODE, HOUSE, code_digest
+from sim.campaign.code_digest import FLIGHT_CODE, PROJECT, code_digest
 from sim.errors import HarnessError
 
 JUDGES = ("sim/commissioning", "sim/design", "sim/validate")
@@ -36,19 +36,19 @@ def judging_files(module: str) -> tuple[str, ...]:
         if file is not None and file not in found:
             found.add(file)
             waiting += _imported(file)
-    return tuple(sorted(file.relative_to(HOUSE).as_posix() for file in found))
+    return tuple(sorted(file.relative_to(PROJECT).as_posix() for file in found))
 
 
 def _file_of(name: str) -> Path | None:
     """The file of a module; None where it is none of JUDGES, or flight code."""
-    path = HOUSE.joinpath(*name.split("."))
+    path = PROJECT.joinpath(*name.split("."))
     files = [file for file in (path.with_suffix(".py"), path / "__init__.py") if file.is_file()]
     judges = [file for file in files if _is_in(file, JUDGES) and not _is_in(file, FLIGHT_CODE)]
     return judges[0] if judges else None
 
 
 def _is_in(file: Path, parts: tuple[str, ...]) -> bool:
-    return any(file.is_relative_to(HOUSE / part) for part in parts)
+    return any(file.is_relative_to(PROJECT / part) for part in parts)
 
 
 def _imported(file: Path) -> Iterator[str]:

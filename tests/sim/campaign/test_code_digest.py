@@ -15,9 +15,9 @@ from sim.scenario.schema import parse_settings
 
 
 @pytest.fixture(scope="module")
-def house(tmp_path_factory):
+def project(tmp_path_factory):
     """A copy of all that a flight follows from."""
-    copied, here = tmp_path_factory.mktemp("house"), Path(__file__).parents[3]
+    copied, here = tmp_path_factory.mktemp("project"), Path(__file__).parents[3]
     for part in FLIGHT_CODE:
         if (here / part).is_dir():
             shutil.copytree(here / part, copied / part, ignore=shutil.ignore_patterns("__pycache__"))
@@ -32,23 +32,23 @@ import sys
 from sim.campaign.flight import Order, fly_order
 from sim.fault_table import case
 fly_order(Order("microsat", {}, 3, 0.01))
-house = {"fsw", "hil_stub", "sim", "torquer"}
-print(*(module.__file__ for name, module in sys.modules.items() if name.split(".")[0] in house))
+project = {"fsw", "hil_stub", "sim", "torquer"}
+print(*(module.__file__ for name, module in sys.modules.items() if name.split(".")[0] in project))
 """
 ONLY_SHOWN = ("sim/console.py", "sim/drawing", "sim/errors.py", "sim/progress.py", "sim/sizing")
 """What a flight imports and no figure follows from."""
 
 
-def test_it_is_the_same_for_the_same_code_elsewhere(house):
-    assert code_digest.__wrapped__(house=house) == code_digest()
+def test_it_is_the_same_for_the_same_code_elsewhere(project):
+    assert code_digest.__wrapped__(project=project) == code_digest()
 
 
 @pytest.mark.parametrize("part", FLIGHT_CODE)
-def test_it_is_another_where_a_line_of_any_part_is(house, part):
-    file = house / part if part.endswith(".py") else next((house / part).rglob("*.py"))
-    before, content = code_digest.__wrapped__((part,), house), file.read_bytes()
+def test_it_is_another_where_a_line_of_any_part_is(project, part):
+    file = project / part if part.endswith(".py") else next((project / part).rglob("*.py"))
+    before, content = code_digest.__wrapped__((part,), project), file.read_bytes()
     file.write_bytes(content + b"CHANGED = 1\n")
-    assert code_digest.__wrapped__((part,), house) != before
+    assert code_digest.__wrapped__((part,), project) != before
     file.write_bytes(content)
 
 
@@ -74,10 +74,10 @@ def test_all_that_is_executed_is_code(code, changed):
     assert program(code) != program(changed)
 
 
-def test_a_file_that_no_flight_imports_may_change(house):
-    before = code_digest.__wrapped__(("sim/scenario",), house)
-    (house / "sim/scenario/keys/page.py").write_text("CHANGED = 1\n")
-    assert code_digest.__wrapped__(("sim/scenario",), house) == before
+def test_a_file_that_no_flight_imports_may_change(project):
+    before = code_digest.__wrapped__(("sim/scenario",), project)
+    (project / "sim/scenario/keys/page.py").write_text("CHANGED = 1\n")
+    assert code_digest.__wrapped__(("sim/scenario",), project) == before
 
 
 @pytest.mark.long
@@ -104,13 +104,13 @@ def test_no_figure_of_a_flight_follows_from_the_words_that_tell_why(monkeypatch)
     assert without == summary
 
 
-def test_the_words_are_asked_for_by_nothing_but_the_verdict(house):
+def test_the_words_are_asked_for_by_nothing_but_the_verdict(project):
     names = [part.removesuffix(".py").replace("/", ".") for part in WORDS]
-    for file in house.rglob("*.py"):
-        if file.relative_to(house).as_posix() not in (*WORDS, "sim/report/requirements/judge.py"):
+    for file in project.rglob("*.py"):
+        if file.relative_to(project).as_posix() not in (*WORDS, "sim/report/requirements/judge.py"):
             assert not [name for name in names if f"{name} import" in file.read_text()], file
 
 
 def test_a_part_that_is_not_there_is_told(tmp_path):
     with pytest.raises(HarnessError, match="fsw: holds no code"):
-        code_digest.__wrapped__(house=tmp_path)
+        code_digest.__wrapped__(project=tmp_path)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from sim.fault_table.render import told
+from sim.fault_table.render import fault_words
 from sim.fault_table.rows.table import choose_rows
 
 
@@ -16,4 +16,4 @@ from sim.fault_table.rows.table import choose_rows
 )
 def test_a_fault_that_only_names_a_unit_is_not_told_beside_one_that_does_something(name, words):
     (row,) = choose_rows([name])
-    assert told(row) == words
+    assert fault_words(row) == words

@@ -76,7 +76,7 @@ def sight(wanted_s: Sequence[float], orbit_s: float) -> Sight:
     return Sight(tuple(nodes_s.tolist()), weights)
 
 
-def seen(model: EphemerisModel, from_unix_s: float, by: Sight) -> OrbitAhead | None:
+def interpolated_orbit(model: EphemerisModel, from_unix_s: float, by: Sight) -> OrbitAhead | None:
     """The orbit at the times wanted, counted from ``from_unix_s``; None where it has no position."""
     at_nodes = orbit_ahead(model, [from_unix_s + node_s for node_s in by.nodes_s])
     if at_nodes is None:

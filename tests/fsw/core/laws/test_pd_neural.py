@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fsw.core.laws.pd import pd_far
-from fsw.core.laws.pd_neural import NeuralGains, neural, seen
+from fsw.core.laws.pd_neural import NeuralGains, neural, unit_inputs
 
 K_W, K_A = 5e6, 1200.0
 KEPT = Path(__file__).resolve().parents[4] / "sim" / "design" / "neural_found.json"
@@ -34,8 +34,8 @@ def ask(bench, inputs):
 
 
 def test_what_a_unit_sees():
-    assert seen(0.06, 0.0, 1e-3) == pytest.approx((log(4.0), 0.0))
-    assert seen(0.0, 1e-4, 1e-3) == pytest.approx((0.0, log(6.0)))
+    assert unit_inputs(0.06, 0.0, 1e-3) == pytest.approx((log(4.0), 0.0))
+    assert unit_inputs(0.0, 1e-4, 1e-3) == pytest.approx((0.0, log(6.0)))
 
 
 def test_with_no_weights_it_is_the_pd_law_of_the_far_error(bench, inputs, ask):
@@ -57,7 +57,7 @@ def test_each_unit_has_a_gain_of_its_own(bench, inputs, ask, gains, of_rate, of_
 def test_error_and_rate_have_weights_of_their_own(inputs, ask):
     attitude, w0 = inputs.attitude, inputs.reference.orbit_rate_radps
     error = 4.0 * np.linalg.norm(attitude.q_body_from_orbit[1:])
-    by_error, by_rate = seen(error, float(np.linalg.norm(attitude.omega_body_orbit_radps)), w0)
+    by_error, by_rate = unit_inputs(error, float(np.linalg.norm(attitude.omega_body_orbit_radps)), w0)
     memory = ask(NeuralGains(w0=0.1, w1=0.2, w2=-0.3, a0=-0.4, a1=0.5, a2=0.6)).memory
     rate_unit, error_unit = 0.1 + 0.2 * by_error - 0.3 * by_rate, -0.4 + 0.5 * by_error + 0.6 * by_rate
     assert memory == pytest.approx((rate_unit, rate_unit, error_unit, error_unit))

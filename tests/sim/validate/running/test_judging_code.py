@@ -18,21 +18,21 @@ FILES = {
 
 
 @pytest.fixture
-def house(tmp_path, monkeypatch):
-    """A house whose claims import figures, and those units, which import the claims again."""
+def project(tmp_path, monkeypatch):
+    """A project whose claims import figures, and those units, which import the claims again."""
     folder = tmp_path / "sim" / "validate"
     folder.mkdir(parents=True)
     (folder / "__init__.py").write_text("")
     for name, text in FILES.items():
         (folder / name).write_text(text)
     whole = judging_code.code_digest.__wrapped__
-    monkeypatch.setattr(judging_code, "HOUSE", tmp_path)
+    monkeypatch.setattr(judging_code, "PROJECT", tmp_path)
     monkeypatch.setattr(judging_code, "code_digest", lambda files: whole(files, tmp_path))
     return folder
 
 
 @pytest.fixture
-def digest(house):
+def digest(project):
     """The digest of the claims, computed anew."""
 
     def computed():
@@ -43,23 +43,23 @@ def digest(house):
     judging_digest.cache_clear()
 
 
-def test_what_is_imported_counts_by_whatever_way_and_what_is_not_does_not(house):
+def test_what_is_imported_counts_by_whatever_way_and_what_is_not_does_not(project):
     assert judging_files("sim.validate.claims") == tuple(
         f"sim/validate/{name}" for name in ("__init__.py", "claims.py", "figures.py", "units.py")
     )
 
 
 @pytest.mark.parametrize("name", ["claims.py", "figures.py", "units.py"])
-def test_a_change_of_any_of_them_is_another_digest(house, digest, name):
+def test_a_change_of_any_of_them_is_another_digest(project, digest, name):
     before = digest()
-    (house / name).write_text(FILES[name] + "LIMIT = 2.0\n")
+    (project / name).write_text(FILES[name] + "LIMIT = 2.0\n")
     assert digest() != before
 
 
-def test_a_comment_or_another_module_is_none(house, digest):
+def test_a_comment_or_another_module_is_none(project, digest):
     before = digest()
-    (house / "figures.py").write_text("# in degrees\n" + FILES["figures.py"])
-    (house / "other.py").write_text("LIMIT = 2.0\n")
+    (project / "figures.py").write_text("# in degrees\n" + FILES["figures.py"])
+    (project / "other.py").write_text("LIMIT = 2.0\n")
     assert digest() == before
 
 

@@ -114,8 +114,8 @@ def test_the_code_is_all_that_they_import():
         " if n.partition('.')[0] in ('fsw', 'hil_stub', 'sim') and m.__file__))"
     )
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    house = Path(__file__).parents[4]
-    files = [Path(file).relative_to(house) for file in ran.stdout.split()]
+    project = Path(__file__).parents[4]
+    files = [Path(file).relative_to(project) for file in ran.stdout.split()]
     parts = (*FLIGHT_CODE, *CODE, *NOT_USED)
     left = [file for file in files if file.name != "__init__.py" and not any(map(file.is_relative_to, parts))]
     assert len(files) > 200

@@ -1,4 +1,4 @@
-"""The house: rooms that say what they are for, tests that mirror them, a flight loop of one screen."""
+"""The structure: folders that say what they are for, tests that mirror them, a flight loop of one screen."""
 
 import ast
 from pathlib import Path
