@@ -108,11 +108,8 @@ lint: environment
 	$(bin)/python tools/generate_messages.py --check
 	$(bin)/python tools/generate_state_bytes.py --check
 	$(bin)/python tools/generate_icd.py --check
-	$(bin)/python tools/write_requirements.py --check
-	$(bin)/python tools/write_scenario_keys.py --check
 	$(bin)/python tools/draw_design.py --check
-	$(bin)/python tools/write_cli.py --check
-	$(bin)/python tools/write_methods.py --check
+	$(bin)/python tools/write_pages.py --check
 
 docs_installed := .venv/.docs-installed
 sphinx := $(bin)/sphinx-build -W -n --keep-going --quiet -b html

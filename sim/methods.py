@@ -21,7 +21,7 @@ Figures = Mapping[str, Mapping[str, str]]
 
 _HEAD = """# The methods of the papers
 
-Written by `tools/write_methods.py` from `sim/methods.toml`; do not edit. Every method of the review [O19]
+Written by `tools/write_pages.py` from `sim/methods.toml`; do not edit. Every method of the review [O19]
 (Ovchinnikov, Roldugin 2019), of the paper on the choice of gains [O15] (Ovchinnikov, Roldugin, Ivanov,
 Penkov 2015) and of the one on PoSAT-1 [T] (Tavares et al., ConSat): section and number in the review's list
 of references, where it is, what the text or its cited author claims, and what `torquer validate` has last

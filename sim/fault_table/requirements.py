@@ -254,7 +254,7 @@ def _watch(requirement: Requirement) -> str:
 
 _HEAD = """# Requirements on fault detection
 
-Written from `sim/fault_table/requirements.py` by `python tools/write_requirements.py`; a test fails when it
+Written from `sim/fault_table/requirements.py` by `python tools/write_pages.py`; a test fails when it
 is stale or when no test cites one of its requirements. The number in parentheses is the argument of the
 event. A violated `REQ-TRIP` requirement leads to SAFE in the same tick; `REQ-TRIP-03` alone does from ACQUIRE
 and POINT, and is otherwise left to DETUMBLE. For a sensor the argument is 100 times its number

@@ -8,7 +8,7 @@ from sim.scenario.keys.editor_schema import json_schema, unit_of
 
 HEAD = """# Scenario keys
 
-Written from the schema by `tools/write_scenario_keys.py`. Every key of a scenario file, by section, with
+Written from the schema by `tools/write_pages.py`. Every key of a scenario file, by section, with
 its unit, what is allowed, and its default; one with no default is optional. A name ends with its
 unit, components are in body axes. `torquer sil --set SECTION.KEY=VALUE` lays a value over any of them.
 
