@@ -69,11 +69,13 @@ def _bar(what: str, total: int) -> Iterator[Watch]:
     from rich.progress import (  # noqa: PLC0415  (slow to load)
         BarColumn,
         Progress,
+        SpinnerColumn,
         TextColumn,
         TimeRemainingColumn,
     )
 
     columns = (
+        SpinnerColumn(),  # moves where one step takes long
         TextColumn("{task.description}", markup=False),
         BarColumn(),
         TextColumn("{task.percentage:3.0f}%"),
