@@ -36,9 +36,6 @@ CONTRADICTIONS = {
 }
 
 
-FAILED = {"status": Status.FAILED, "failure": "no fuel", "success": False, "cells": {}, "profiles": {}}
-
-
 @pytest.fixture
 def flown(small, row_of, tmp_path):
     """A folder with the results of four runs, the last of which failed."""

@@ -6,13 +6,12 @@ import sys
 from dataclasses import replace
 
 import pytest
+from campaign_rows import FAILED
 
 from sim.campaign.definition.campaign_file import load_campaign
 from sim.campaign.results.row import Status
 from sim.campaign.results.store import RESULTS, SCHEMA_VERSION, open_results, read_results
 from sim.errors import HarnessError
-
-FAILED = {"status": Status.FAILED, "failure": "no fuel", "success": False, "cells": {}, "profiles": {}}
 
 
 def test_a_row_is_read_as_it_was_written(small, row_of, tmp_path):
