@@ -1,80 +1,91 @@
-"""A digest that distinguishes the code of one flight from that of another, by the text of its files."""
+"""A digest that distinguishes the code of one flight from that of another: all that is loaded for it.
+
+That is the module which flies, what it imports, whatever these import in turn, data files beside them, and
+the versions of Python and of the libraries that compute. Nothing is listed by hand.
+"""
 
 import ast
 import hashlib
 import io
+import platform
 import tokenize
+from collections.abc import Iterator
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 
 import sim
-from sim.errors import HarnessError
 
 PROJECT = Path(sim.__file__).resolve().parents[1]
-FLIGHT_CODE = (
-    "fsw",
-    "hil_stub",
-    "sim/audit",
-    "sim/campaign",
-    "sim/design/from_scenario.py",
-    "sim/design/theory",
-    "sim/faults",
-    "sim/flight",
-    "sim/plant",
-    "sim/record",
-    "sim/replay",
-    "sim/report",
-    "sim/scenario",
-    "sim/statistics",
-    "sim/value_types.py",
-)
-"""Folders and files that a flight and its figures depend on."""
-NOT_FLOWN = (
-    "sim/campaign/code_digest.py",
-    "sim/campaign/command.py",
-    "sim/campaign/executors",
-    "sim/campaign/report",
-    "sim/campaign/results",
-    "sim/fault_table/command.py",
-    "sim/fault_table/earlier_rows.py",
-    "sim/fault_table/render.py",
-    "sim/plant/__main__.py",
-    "sim/scenario/keys",
-)
-"""Within those, what no flight imports: what orders flights, stores their results and shows them."""
-WORDS = (
-    "sim/report/requirements/causes.py",
-    "sim/report/requirements/sizing.py",
-)
-"""Within those, why a requirement is missed, in words: a flight imports it, and no figure follows from it."""
-DATA = (".toml", ".dbc")
+PACKAGES = ("fsw", "hil_stub", "sim", "torquer")
+FLIGHT = "sim.campaign.flight"
+"""What flies a scenario in memory, audits it and computes its figures."""
+DATA = (".toml", ".dbc", ".json", ".c")
+LIBRARIES = ("filterpy", "numpy", "scipy", "sgp4")
 
 
 @cache
-def code_digest(parts: tuple[str, ...] = FLIGHT_CODE, project: Path = PROJECT) -> str:
+def code_digest(module: str = FLIGHT, project: Path = PROJECT) -> str:
     """A digest that is the same for the same programs and data, whatever their comments and docstrings.
 
     Args:
-        parts: folders and files; by default all that flights depend on.
-        project: where they are.
-
-    Raises:
-        HarnessError: one of them is not there, so that its changes would go unnoticed.
+        module: the one that is run.
+        project: the folder of the packages.
     """
-    digest = hashlib.sha256()
-    for part in (project / part for part in parts):
-        whole = [part] if part.is_file() else sorted(part.rglob("*"))
-        files = [path for path in whole if path.suffix in (".py", *DATA)]
-        if not files:
-            raise HarnessError(f"{part}: holds no code to tell from other code")
-        for path in files:
-            name = path.relative_to(project)
-            if not any(name.is_relative_to(left_out) for left_out in (*NOT_FLOWN, *WORDS)):
-                content = (
-                    path.read_bytes() if path.suffix in DATA else program(path.read_text(encoding="utf-8"))
-                )
-                digest.update(name.as_posix().encode() + content)
+    digest = hashlib.sha256(platform.python_version().encode())
+    for library in LIBRARIES:
+        digest.update(version(library).encode())
+    for file in loaded_files(module, project):
+        digest.update(file.relative_to(project).as_posix().encode() + _content(file))
     return digest.hexdigest()[:16]
+
+
+def loaded_files(module: str, project: Path = PROJECT) -> tuple[Path, ...]:
+    """The files of a module and of all that it imports, at once or later, and the data beside them."""
+    waiting, found = [module], set[Path]()
+    while waiting:
+        name = waiting.pop()
+        parts = name.split(".")
+        files = [_file_of(parts[:count], project) for count in range(1, len(parts) + 1)]
+        for file in files if parts[0] in PACKAGES else []:
+            if file is not None and file not in found:
+                found.add(file)
+                waiting += _imported(file)
+    folders = {file.parent for file in found} - {project / package for package in PACKAGES}
+    return tuple(sorted(found | {data for folder in folders for data in _data(folder)}))
+
+
+def _file_of(parts: list[str], project: Path) -> Path | None:
+    path = project.joinpath(*parts)
+    files = (path.with_suffix(".py"), path / "__init__.py")
+    return next((file for file in files if file.is_file()), None)
+
+
+def _data(folder: Path) -> Iterator[Path]:
+    """Data in a folder, and in folders below it that hold nothing else."""
+    for path in folder.iterdir():
+        if path.suffix in DATA:
+            yield path
+        elif path.is_dir() and {file.name for file in path.glob("*.py")} <= {"__init__.py"}:
+            yield from _data(path)
+
+
+@cache
+def _imported(file: Path) -> tuple[str, ...]:
+    """The names of what a file imports; those of functions and classes are names of no module."""
+    found: list[str] = []
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            module = node.module or ""
+            found += [module, *(f"{module}.{alias.name}" for alias in node.names)]
+    return tuple(found)
+
+
+@cache
+def _content(file: Path) -> bytes:
+    return file.read_bytes() if file.suffix in DATA else program(file.read_text(encoding="utf-8"))
 
 
 def program(source: str) -> bytes:

@@ -4,15 +4,15 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from sim.campaign.claim import Study
-from sim.campaign.code_digest import FLIGHT_CODE, code_digest
+from sim.campaign.code_digest import code_digest
 from sim.campaign.runner import StudyResult, run
 from sim.fault_table.case import fly
 from sim.fault_table.row import CaseResult, FaultRow, RowResult
 
 Watch = Callable[[int], None]
 
-FAULT_CODE = (*FLIGHT_CODE, "sim/fault_rig", "sim/fault_table")
-"""Folders and files that the result of a row depends on."""
+FAULT_CODE = __name__
+"""The module whose code the result of a row depends on."""
 
 
 def fly_rows(

@@ -6,6 +6,7 @@ from types import ModuleType
 
 from fsw.input.near import did_you_mean
 from sim.campaign.claim import Study
+from sim.campaign.code_digest import code_digest
 from sim.errors import HarnessError
 from sim.validate import cells, computed, microsat, optimal_pulses, shipped
 from sim.validate.commissioning import calibrated, wirings
@@ -28,7 +29,6 @@ from sim.validate.review import (
     spin,
     wheel,
 )
-from sim.validate.running.judging_code import judging_digest
 
 MODULES: tuple[ModuleType, ...] = (
     *(computed, prediction, minimisers, posat1, microsat, shipped, optimal_pulses, cells),
@@ -54,7 +54,7 @@ def all_studies(satellites: int | None = None) -> list[Study]:
 def judging_digests() -> dict[str, str]:
     """By the id of each study with flights: what tells the code that judges them from other code."""
     return {
-        study.id: judging_digest(module.__name__)
+        study.id: code_digest(module.__name__)
         for module in MODULES
         for study in _made_by(module, None)
         if study.has_flights

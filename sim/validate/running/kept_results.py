@@ -13,9 +13,6 @@ from sim.campaign.code_digest import code_digest
 from sim.validate.commissioning import calibrated, wirings
 from sim.validate.flight_rows import FlightRows
 
-CODE = ("sim/commissioning", "sim/validate/commissioning")
-"""Folders that their results follow from, beside the code of flights."""
-
 
 class KeptKind(NamedTuple):
     """Tasks of one argument; the first value of the result is that argument."""
@@ -72,5 +69,5 @@ def _given(result: object) -> object:
 
 def _key(kind: KeptKind, argument: object) -> str:
     """What tells one result from another, and the code of one from the code of another."""
-    told = f"{kind.name} {argument!r} {code_digest()} {code_digest(CODE)}"
+    told = f"{kind.name} {argument!r} {code_digest(kind.task.__module__)}"
     return hashlib.sha256(told.encode()).hexdigest()[:16]

@@ -1,4 +1,4 @@
-"""Code is told from other code by the text of all that a flight follows from."""
+"""Code is told from other code by the text of all that is loaded for a flight."""
 
 import shutil
 import subprocess
@@ -7,49 +7,79 @@ from pathlib import Path
 
 import pytest
 
-from sim.campaign.code_digest import FLIGHT_CODE, NOT_FLOWN, WORDS, code_digest, program
-from sim.campaign.flight import Order, fly_order
-from sim.errors import HarnessError
+from sim.campaign import code_digest as module
+from sim.campaign.code_digest import code_digest, loaded_files, program
 from sim.fault_table.campaign import FAULT_CODE
-from sim.scenario.schema import parse_settings
+
+HERE = Path(__file__).parents[3]
+FILES = {
+    "sim/__init__.py": "",
+    "sim/run.py": '"""Runs."""\nfrom sim.figures import worst\n',
+    "sim/figures/__init__.py": "def worst(x):\n    import sim.figures.units\n    return max(x)\n",
+    "sim/figures/units.py": "from sim import run\nDEG = 57.3\n",
+    "sim/figures/limits.toml": "most = 1.0\n",
+    "sim/figures/shipped/__init__.py": "",
+    "sim/figures/shipped/one.toml": "a = 1\n",
+    "sim/figures/other/__init__.py": "",
+    "sim/figures/other/page.py": "LIMIT = 1.0\n",
+    "sim/figures/other/page.toml": "a = 1\n",
+}
+LOADED = [name for name in FILES if "/other/" not in name and name != "sim/figures/shipped/__init__.py"]
 
 
-@pytest.fixture(scope="module")
-def project(tmp_path_factory):
-    """A copy of all that a flight follows from."""
-    copied, here = tmp_path_factory.mktemp("project"), Path(__file__).parents[3]
-    for part in FLIGHT_CODE:
-        if (here / part).is_dir():
-            shutil.copytree(here / part, copied / part, ignore=shutil.ignore_patterns("__pycache__"))
-        else:
-            (copied / part).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(here / part, copied / part)
-    return copied
+@pytest.fixture
+def project(tmp_path):
+    """A project whose run imports figures, these units when they are asked for, and units the run."""
+    for name, text in FILES.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    return tmp_path
 
 
-IMPORTED = """
-import sys
-from sim.campaign.flight import Order, fly_order
-from sim.fault_table import case
-fly_order(Order("microsat", {}, 3, 0.01))
-project = {"fsw", "hil_stub", "sim", "torquer"}
-print(*(module.__file__ for name, module in sys.modules.items() if name.split(".")[0] in project))
-"""
-ONLY_SHOWN = ("sim/console.py", "sim/drawing", "sim/errors.py", "sim/progress.py", "sim/sizing")
-"""What a flight imports and no figure follows from."""
+@pytest.fixture
+def digest(project):
+    """The digest of the run, read again."""
+
+    def compute():
+        for kept in (module._imported, module._content):
+            kept.cache_clear()
+        return code_digest.__wrapped__("sim.run", project)
+
+    yield compute
+    for kept in (module._imported, module._content):
+        kept.cache_clear()
 
 
-def test_it_is_the_same_for_the_same_code_elsewhere(project):
-    assert code_digest.__wrapped__(project=project) == code_digest()
+def test_what_is_imported_at_once_or_later_is_loaded_and_the_data_beside_it(project):
+    found = [file.relative_to(project).as_posix() for file in loaded_files("sim.run", project)]
+    assert found == sorted(LOADED)
 
 
-@pytest.mark.parametrize("part", FLIGHT_CODE)
-def test_it_is_another_where_a_line_of_any_part_is(project, part):
-    file = project / part if part.endswith(".py") else next((project / part).rglob("*.py"))
-    before, content = code_digest.__wrapped__((part,), project), file.read_bytes()
-    file.write_bytes(content + b"CHANGED = 1\n")
-    assert code_digest.__wrapped__((part,), project) != before
-    file.write_bytes(content)
+@pytest.mark.parametrize("name", LOADED[1:])
+def test_a_change_of_any_of_them_is_another_digest(project, digest, name):
+    before = digest()
+    (project / name).write_text(FILES[name] + "LIMIT = 2.0\n")
+    assert digest() != before
+
+
+@pytest.mark.parametrize("name", sorted(FILES.keys() - set(LOADED)))
+def test_what_is_not_loaded_may_change(project, digest, name):
+    before = digest()
+    (project / name).write_text("LIMIT = 2.0\n")
+    assert digest() == before
+
+
+def test_it_is_the_same_for_the_same_code_elsewhere(project, digest, tmp_path_factory):
+    other = tmp_path_factory.mktemp("other") / "copy"
+    shutil.copytree(project, other)
+    assert code_digest.__wrapped__("sim.run", other) == digest()
+
+
+@pytest.mark.parametrize("library", ["numpy", "sgp4"])
+def test_another_version_of_a_library_is_another_digest(digest, monkeypatch, library):
+    before, version = digest(), module.version
+    monkeypatch.setattr(module, "version", lambda name: "0.0" if name == library else version(name))
+    assert digest() != before
 
 
 def test_words_for_readers_are_no_code():
@@ -74,43 +104,31 @@ def test_all_that_is_executed_is_code(code, changed):
     assert program(code) != program(changed)
 
 
-def test_a_file_that_no_flight_imports_may_change(project):
-    before = code_digest.__wrapped__(("sim/scenario",), project)
-    (project / "sim/scenario/keys/page.py").write_text("CHANGED = 1\n")
-    assert code_digest.__wrapped__(("sim/scenario",), project) == before
+IMPORTED = """
+import sys
+from sim.campaign.flight import Order, fly_order
+from sim.fault_table import case
+fly_order(Order("microsat", {}, 3, 0.01))
+project = {"fsw", "hil_stub", "sim", "torquer"}
+print(*(module.__file__ for name, module in sys.modules.items() if name.split(".")[0] in project))
+"""
 
 
 @pytest.mark.long
-def test_it_is_of_all_that_a_flight_imports():
-    here = Path(__file__).parents[3]
-    ran = subprocess.run([sys.executable, "-c", IMPORTED], capture_output=True, text=True, check=True)
-    imported = [Path(file).relative_to(here) for file in ran.stdout.split()]
-    imported = [file for file in imported if file.name != "__init__.py"]
-    parts = [Path(part) for part in (*FAULT_CODE, *ONLY_SHOWN)]
+def test_a_flight_imports_nothing_that_is_not_counted():
+    ran = subprocess.run(
+        [sys.executable, "-c", IMPORTED],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={"TORQUER_INTERPRETED": "1", "PYTHONPATH": str(HERE)},
+    )
+    imported = {Path(file).resolve() for file in ran.stdout.split() if file.endswith(".py")}
+    imported = {file for file in imported if file.name != "__init__.py"}
     assert len(imported) > 200
-    assert not [file for file in imported if not any(file.is_relative_to(part) for part in parts)]
-    assert not [file for file in imported if any(file.is_relative_to(part) for part in NOT_FLOWN)]
+    assert imported - set(loaded_files(FAULT_CODE)) == set()
 
 
-def test_no_figure_of_a_flight_follows_from_the_words_that_tell_why(monkeypatch):
-    missed = 'requirement=[{index="ape",at_most_deg=0.01,by_orbit=0.05,last_orbits=0.05}]'
-    order = Order("microsat", parse_settings((missed,)), 3, 0.06)
-    summary = fly_order(order).summary
-    assert [one["verdict"] for one in summary["requirements"]] == ["failed"]
-    monkeypatch.setattr("sim.report.requirements.judge.reasons", lambda missed, evidence: [])
-    without = fly_order(order).summary
-    for one in (summary, without):
-        one["requirements"][0]["reasons"] = one["wall_seconds"] = one["realtime_factor"] = None
-    assert without == summary
-
-
-def test_the_words_are_asked_for_by_nothing_but_the_verdict(project):
-    names = [part.removesuffix(".py").replace("/", ".") for part in WORDS]
-    for file in project.rglob("*.py"):
-        if file.relative_to(project).as_posix() not in (*WORDS, "sim/report/requirements/judge.py"):
-            assert not [name for name in names if f"{name} import" in file.read_text()], file
-
-
-def test_a_part_that_is_not_there_is_told(tmp_path):
-    with pytest.raises(HarnessError, match="fsw: holds no code"):
-        code_digest.__wrapped__(project=tmp_path)
+def test_scenarios_that_ship_the_bus_and_the_kernel_are_counted():
+    names = {file.name for file in loaded_files("sim.campaign.flight")}
+    assert {"microsat.toml", "torquer.dbc", "kalman_kernel.c"} <= names

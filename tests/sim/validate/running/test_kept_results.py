@@ -1,15 +1,11 @@
 """What phasing and calibration give, kept beside the flights and found by task and code."""
 
-import subprocess
-import sys
 from functools import partial
 from math import nan
-from pathlib import Path
 
 import pytest
 
 from sim.campaign.claim import Study
-from sim.campaign.code_digest import FLIGHT_CODE
 from sim.campaign.flight import FlightResult, Order
 from sim.errors import HarnessError
 from sim.validate import flight_rows
@@ -17,19 +13,10 @@ from sim.validate.commissioning import calibrated, wirings
 from sim.validate.flight_rows import FlightRows
 from sim.validate.running import kept_results
 from sim.validate.running.guard import Failed
-from sim.validate.running.kept_results import CODE, keep_result, with_kept_results
+from sim.validate.running.kept_results import keep_result, with_kept_results
 
 TALLY = wirings.Tally((2, -1, 3), 40, 7, ((3, 1, 2),))
 FLOWN = calibrated.Flown(7, (0.5, -2.9), 0.61, 0.58)
-NOT_USED = (
-    "sim/bench",
-    "sim/console.py",
-    "sim/drawing",
-    "sim/errors.py",
-    "sim/progress.py",
-    "sim/signals.py",
-)
-"""What is imported and changes no result: pages, messages, real boards."""
 
 
 def studies():
@@ -104,19 +91,3 @@ def test_a_row_without_a_result_is_no_row(path):
     path.write_text(path.read_text().replace('"result"', '"results"'))
     with pytest.raises(HarnessError, match="line 1 is not a flight"):
         FlightRows(path)
-
-
-@pytest.mark.long
-def test_the_code_is_all_that_they_import():
-    code = (
-        "import sys, sim.validate.commissioning.calibrated\n"
-        "print(*(m.__file__ for n, m in sys.modules.items()"
-        " if n.partition('.')[0] in ('fsw', 'hil_stub', 'sim') and m.__file__))"
-    )
-    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    project = Path(__file__).parents[4]
-    files = [Path(file).relative_to(project) for file in ran.stdout.split()]
-    parts = (*FLIGHT_CODE, *CODE, *NOT_USED)
-    left = [file for file in files if file.name != "__init__.py" and not any(map(file.is_relative_to, parts))]
-    assert len(files) > 200
-    assert sorted(map(str, left)) == []
