@@ -92,7 +92,7 @@ def test_one_that_is_damaged_is_one_sentence(run, torquer):
     for command in ("check", "replay"):
         outcome = torquer(command, run)
         assert outcome.code == 2
-        assert "bus.log.gz: cannot be read: its compressed text is damaged" in outcome.sentence
+        assert "bus.log.gz: cannot be read (its compressed text is damaged)" in outcome.sentence
 
 
 def test_a_sensor_shows_what_one_has_recorded(run, sil_run):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fsw.core.laws.plan.orbit_ahead import orbit_ahead, seen, sight
+from fsw.core.laws.plan.orbit_ahead import interpolated_orbit, orbit_ahead, sight
 from fsw.core.orbit.ephemeris import ephemeris_model
 from fsw.core.orbit.field import FieldKind
 from fsw.core.orbit.propagation import circular_orbit, sgp4_orbit, state_eci
@@ -50,7 +50,7 @@ def test_none_where_the_orbit_has_no_position(monkeypatch):
     monkeypatch.setattr("fsw.core.laws.plan.orbit_ahead.state_eci", lambda orbit, unix_s: None)
     model = model_of(FieldKind.DIRECT_DIPOLE)
     assert orbit_ahead(model, [EPOCH, EPOCH + 60.0]) is None
-    assert seen(model, EPOCH, sight([0.0, 60.0], ORBIT_S)) is None
+    assert interpolated_orbit(model, EPOCH, sight([0.0, 60.0], ORBIT_S)) is None
 
 
 class TestSight:
@@ -67,14 +67,14 @@ class TestSight:
         model = model_of(FieldKind.IGRF14, circular_orbit(altitude_km, 97.0, 20.0, 10.0, EPOCH))
         wanted_s = np.linspace(0.0, share * ORBIT_S, 40)
         by = sight(wanted_s.tolist(), ORBIT_S)
-        here = seen(model, EPOCH + start_s, by)
+        here = interpolated_orbit(model, EPOCH + start_s, by)
         exact = orbit_ahead(model, (EPOCH + start_s + wanted_s).tolist())
         assert np.abs(here.b_orbit_t - exact.b_orbit_t).max() < most_t
         assert len(by.nodes_s) <= 0.5 * len(wanted_s)
 
     def test_so_is_the_rate_of_an_orbit_that_is_no_circle(self):
         model, wanted_s = model_of(FieldKind.DIRECT_DIPOLE), np.linspace(0.0, 2190.0, 40)
-        here = seen(model, EPOCH + 900.0, sight(wanted_s.tolist(), ORBIT_S))
+        here = interpolated_orbit(model, EPOCH + 900.0, sight(wanted_s.tolist(), ORBIT_S))
         exact = orbit_ahead(model, (EPOCH + 900.0 + wanted_s).tolist()).rate_radps
         assert here.rate_radps == pytest.approx(exact, abs=1e-3 * np.ptp(exact))
 
