@@ -63,6 +63,8 @@ def _answer_syncs(node: FlightNode, bus: Bus, parent: int | None, bench: bool) -
             booted_s = now_s
 
 
+# --- The process
+
 MOST_DISCARDED = 10_000
 
 

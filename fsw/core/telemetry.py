@@ -103,6 +103,8 @@ def _add_coil(found: list[Happening], coil: int, before: int, after: int) -> Non
         found.append(Happening(kind, 100 * coil + (after or before)))
 
 
+# --- What is sent in a tick
+
 CONTRACT_VERSION: Final = 1
 LEAST_ARGUMENT: Final = -(2**31)
 MOST_ARGUMENT: Final = 2**31 - 1

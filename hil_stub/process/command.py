@@ -95,6 +95,8 @@ def _patience_s(due_ms: int | None) -> float:
     return POLL_S if due_ms is None else min(POLL_S, max(0.0, (due_ms - now_ms()) / 1000.0))
 
 
+# --- The command line
+
 NT = 1e-9
 LEAST_DEADMAN_S = 0.001
 """The board's clock counts milliseconds."""

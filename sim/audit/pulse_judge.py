@@ -64,6 +64,9 @@ class PulseTable(Sequence[DrivenPulse]):
         return DrivenPulse(self._coils[place], self._levels[place], start_s, end_s)
 
 
+# --- The judge
+
+
 @dataclass(slots=True)
 class _Drive:
     """A coil that is being driven. Instants as ``LogClock`` counts them."""

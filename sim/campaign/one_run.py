@@ -75,6 +75,8 @@ def _stretches(values: Array, count: int) -> Array:
     return result
 
 
+# --- The run
+
 ERROR_HISTORY = "error_deg"
 """Name of the pointing error over the time of a run among its profiles."""
 LIMITS = "limits of the coils"

@@ -174,6 +174,8 @@ def yardstick(scenario: Scenario) -> Controlled:
     return controlled(scenario)
 
 
+# --- The command
+
 BEST, SCENARIO = "best", "scenario"
 """Gains: those that were found for the body, or the scenario's."""
 JSON, CSV, PICTURE, PAGE = "compare.json", "compare.csv", "compare.png", "compare.html"

@@ -194,6 +194,8 @@ def _failure(check: Check, board: BoardUnderTest) -> str | None:
     return None
 
 
+# --- The command
+
 LEAST_DEADMAN_TICKS = 2
 """A tick is held for part of the dead-man, and may be late."""
 

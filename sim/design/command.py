@@ -150,6 +150,8 @@ def _tiles(analysis: Analysis) -> list[Tile]:
     ]
 
 
+# --- The command
+
 GAIN_PICTURE, ROBUSTNESS_PICTURE = "gains.png", "robustness.png"
 PAGE, RESULT = "design.html", "design.json"
 

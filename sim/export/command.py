@@ -148,6 +148,8 @@ def _channel(name: str) -> str | None:
     return name if number is None or number < MOST_CHANNELS else None
 
 
+# --- The command
+
 Write = Callable[[Source, Path, Watch], list[str]]
 
 

@@ -46,6 +46,8 @@ def _parameter(fault: RowFault, name: str) -> float:
     return fault.parameters.get(name, KINDS[fault.kind].parameters[name].default)
 
 
+# --- The checks
+
 PULSE_S = 3
 LEAST_PULSES = 5
 """Pulses of a coil that suffice to isolate it if it is faulty."""

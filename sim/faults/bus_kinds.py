@@ -51,6 +51,8 @@ class ForgedTickDone(Fault):
         return [TickDone(tick, self.rng.getrandbits(32)).encode()]
 
 
+# --- Frames lost, late, altered, added
+
 FULL = 8
 IDS = 0x800
 _OF_FSW = {can_id for can_id, sender in SENDERS.items() if sender == "FSW"}

@@ -73,6 +73,8 @@ class CellStuck(WrongCurrent):
         return self._held
 
 
+# --- Faults of sensors, coils and boards
+
 BoardName = Literal["magnetometer", "sun", "coil"]
 _NODE: dict[BoardName, str] = {"magnetometer": "MAG", "sun": "SUN", "coil": "COIL"}
 T_PER_NT = 1e-9

@@ -51,6 +51,8 @@ def parameter_table(summary: Json) -> Table:
     return Table(("", "unit", "bound", "estimate at the end", "sigma", "truth"), rows)
 
 
+# --- The page
+
 SCRIPTS = ("script/attitude.js", "script/track.js", "script/events.js")
 
 

@@ -65,6 +65,8 @@ def ignored_keys(scenario: Scenario) -> list[str]:
     return told
 
 
+# --- Values that are probably wrong
+
 DAY_S = 86400.0
 OLD_TLE_DAYS = 366.0
 """A TLE is good for days; what is a year from its epoch is another year's."""

@@ -94,6 +94,8 @@ def _path(keyed: _Keyed, step_s: float, steps: int) -> Path:
     return Path(tuple(references[:-1]), tuple(around))
 
 
+# --- The flight
+
 STEP_S = 10.0
 NO_FAULTS = (0, 0, 0)
 REPORTED = Measurements()

@@ -48,6 +48,8 @@ def fly_whole(scenario: Scenario, seed: int, orbits: float) -> FlownMotion:
     )
 
 
+# --- The search
+
 BUDGET = 24
 """Flights for a law."""
 ORBITS = 4.0

@@ -98,6 +98,8 @@ def sparkline(values: list[float | None], width: int) -> str:
     return "".join(" " if value is None else _BARS[1 + round(7 * value / top)] for value in shown)
 
 
+# --- The terminal
+
 REFRESH_HZ = 8
 LAST_ROWS = 40
 """Of the picture that stays on the terminal."""

@@ -79,6 +79,8 @@ def _figure(figure: FigureStatistics) -> Json:
     }
 
 
+# --- The campaign
+
 if TYPE_CHECKING:
     import pandas as pd
 

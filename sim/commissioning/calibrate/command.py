@@ -102,6 +102,8 @@ def _plain(values: Array, decimals: int) -> str:
     return ", ".join(f"{value:.{decimals}f}" for value in values)
 
 
+# --- The command
+
 PARAMETERS = (9, 12)
 
 

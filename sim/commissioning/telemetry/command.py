@@ -151,6 +151,9 @@ def _beside(found: dict[str, Any], spun: int) -> str:
     return "no gyro" if gyro is None else f"gyro {gyro[spun]:.2f}"
 
 
+# --- The command
+
+
 def telemetry(path: Path, tle: Path, calibration: Path | None, page: Path | None, start_s: float) -> int:
     """Follow a recorded pass, say how well, and write the page if it is wanted.
 

@@ -63,7 +63,7 @@ FORGED_ROWS: tuple[FaultRow, ...] = (
 CUBESAT = "cubesat-cells"
 CELLS = "a Sun cell: dead, stuck, of half the current; more light from the Earth"
 MESSAGE = "the message of the Sun cells: late, lost, corrupted, with extreme or random values"
-ORBIT_S = 5740.0
+CUBESAT_ORBIT_S = 5740.0
 """Period of the scenario's orbit."""
 BRIGHT = ("sensors.cells.albedo=0.45", "sensors.cells.albedo_spread=0.4", "flight.cells.albedo=0.3")
 """1.5 times as much light from the Earth as the table assumes."""
@@ -80,7 +80,7 @@ def _cell(name: str, kind: str, cell: int, **parameters: float) -> FaultRow:
         When.ORBIT,
         ("goes on", "bounded", "named"),
         f"cell {cell}",
-        watch_s=1.5 * ORBIT_S,
+        watch_s=1.5 * CUBESAT_ORBIT_S,
         unseen=Unseen.SETTLING,
         scenario=CUBESAT,
     )
@@ -97,7 +97,7 @@ def _table(name: str, settings: tuple[str, ...], *expect: str) -> FaultRow:
         When.ORBIT,
         expect,
         settings=settings,
-        watch_s=ORBIT_S,
+        watch_s=CUBESAT_ORBIT_S,
         unseen=Unseen.SETTLING,
         scenario=CUBESAT,
     )
@@ -140,6 +140,8 @@ CELL_ROWS: tuple[FaultRow, ...] = (
 )
 """All of them, in the order of the page."""
 
+
+# --- The table
 
 Rows = tuple[FaultRow, ...]
 BUS = ("no extra pulse", "goes on")

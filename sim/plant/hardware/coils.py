@@ -62,6 +62,8 @@ class Remanence:
         return kept_a, 1.0
 
 
+# --- The coils
+
 _EXTINCT_A = 1e-15
 """A current below this counts as zero."""
 

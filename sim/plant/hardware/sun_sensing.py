@@ -16,8 +16,6 @@ from sim.plant.random_streams import Normals
 from sim.plant.rotation import ZERO, Mat3, Vec3, from_vector, matrix, transform
 from sim.plant.sensor_config import CellConfig, SunCellsConfig, SunSensorConfig
 
-# --- The physics of coarse Sun cells: cosine, gain, shading, the Earth's light, noise, step, threshold
-
 # --- The Earth's light on small plates, by integration over the part of the Earth that is in view
 
 RINGS, SECTORS = 8, 12
@@ -70,6 +68,8 @@ def _horizontal(up: list[float]) -> tuple[Array, Array]:
     a, b, c = across
     return np.array(across), np.array((y * c - z * b, z * a - x * c, x * b - y * a))
 
+
+# --- The physics of coarse Sun cells: cosine, gain, shading, the Earth's light, noise, step, threshold
 
 CLOUDS_S = 300.0
 """Time in which a satellite in low orbit comes over other clouds."""
@@ -173,6 +173,9 @@ def earthlight(r_eci_m: Vec3, sun_eci: Vec3) -> Vec3:
     towards_m = max(0.0, x * sx + y * sy + z * sz)
     factor = -ALBEDO * EARTH_RADIUS_M**2 * towards_m / (r2_m2 * r2_m2)
     return (factor * x, factor * y, factor * z)
+
+
+# --- What the satellite senses of the Sun
 
 
 @final

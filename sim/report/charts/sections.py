@@ -70,6 +70,8 @@ def wheel(flight: DrawnFlight) -> DrawnChart:
     return draw(flight.time, TimeChart(flight.t_s, (panel,)))
 
 
+# --- The sections
+
 Drawing = tuple[Callable[[DrawnFlight], DrawnChart], str]
 """What draws a chart, and the words under it."""
 

@@ -133,6 +133,8 @@ def _unit(missed: Missed) -> str:
     return "deg/s" if missed.what == "spin" else "deg"
 
 
+# --- The causes
+
 TREND = 3
 """Half orbits from which a trend is determined."""
 COARSE = 4.0

@@ -52,6 +52,8 @@ def two_body(r0_m: Array, v0_mps: Array, mu_m3ps2: float, t_s: Array) -> Array:
     return r_m
 
 
+# --- The check
+
 ATTITUDE_RAD = 1e-7
 RATE_RADPS = 1e-9
 POSITION_M = 1e-2

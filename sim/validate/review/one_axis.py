@@ -64,6 +64,8 @@ SHUTTLECOCK = LawFlight(
 """A 3U satellite with four feathers, its long axis 2 ahead."""
 
 
+# --- The claims
+
 REVIEW = "Ovchinnikov, Roldugin 2019, section"
 FIRM = ((0.3, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, 0.0, 2.2))
 """A body with a boom along the vertical, kg m^2."""
