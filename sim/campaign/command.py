@@ -159,7 +159,7 @@ def _check_code(folder: Path, results: Results) -> None:
         )
     elif begun != code_digest():
         raise HarnessError(
-            f"{folder} was begun by other code of torquer {ours}, of digest {begun}, "
+            f"{folder} was begun by other code of torquer {ours} or of its libraries, of digest {begun}, "
             f"this is {code_digest()}: choose another --out"
         )
 

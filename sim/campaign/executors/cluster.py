@@ -78,8 +78,8 @@ class Cluster:
         for worker, digest in digests.items():
             if digest != code_digest():
                 raise HarnessError(
-                    f"--scheduler: {worker} has other code of torquer {ours}, of digest {digest}, this is "
-                    f"{code_digest()}"
+                    f"--scheduler: {worker} has other code of torquer {ours} or of its libraries, of digest "
+                    f"{digest}, this is {code_digest()}"
                 )
         return sum(client.nthreads().values())
 
