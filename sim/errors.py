@@ -2,7 +2,7 @@
 
 import errno
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -51,27 +51,27 @@ def needing(what: str, package: str, extra: str) -> Iterator[None]:
         raise HarnessError(f"{what} needs {package}: pip install 'torquer[{extra}]'") from None
 
 
-@contextmanager
-def reading(path: Path | str) -> Iterator[None]:
-    """Read this file in this block.
+def reading(path: Path | str) -> AbstractContextManager[None]:
+    """A block that reads this file.
 
     Raises:
         HarnessError: it cannot be read, and why.
     """
-    try:
-        yield
-    except OSError as error:
-        raise HarnessError(f"{path}: cannot be read ({error.strerror or error})") from None
+    return _naming(path, "read")
 
 
-@contextmanager
-def writing(path: Path | str) -> Iterator[None]:
-    """Write this file, or into this folder, in this block.
+def writing(path: Path | str) -> AbstractContextManager[None]:
+    """A block that writes this file, or into this folder.
 
     Raises:
         HarnessError: it cannot be written, and why.
     """
+    return _naming(path, "written")
+
+
+@contextmanager
+def _naming(path: Path | str, done: str) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise HarnessError(f"{path}: cannot be written ({error.strerror or error})") from None
+        raise HarnessError(f"{path}: cannot be {done} ({error.strerror or error})") from None

@@ -64,7 +64,7 @@ def _file_of(parts: list[str], project: Path) -> Path | None:
 def _data(folder: Path) -> Iterator[Path]:
     """Data in a folder, and in folders below it that hold nothing else."""
     for path in folder.iterdir():
-        if path.suffix in DATA:
+        if path.suffix in DATA and not path.name.startswith("."):  # an editor's own
             yield path
         elif path.is_dir() and {file.name for file in path.glob("*.py")} <= {"__init__.py"}:
             yield from _data(path)

@@ -75,7 +75,8 @@ def _solved(covariance: Array, error: Array) -> Array:
     try:
         whole = np.asarray(np.linalg.solve(covariance, error[:, :, None])[:, :, 0], np.float64)
     except np.linalg.LinAlgError:
-        regular = np.linalg.matrix_rank(covariance, hermitian=True) == error.shape[1]
+        regular = np.isfinite(covariance).all(axis=(1, 2))
+        regular[regular] = np.linalg.matrix_rank(covariance[regular], hermitian=True) == error.shape[1]
         whole = np.full(error.shape, np.nan)
         whole[regular] = np.linalg.solve(covariance[regular], error[regular][:, :, None])[:, :, 0]
     return whole

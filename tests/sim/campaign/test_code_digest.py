@@ -75,6 +75,12 @@ def test_it_is_the_same_for_the_same_code_elsewhere(project, digest, tmp_path_fa
     assert code_digest.__wrapped__("sim.run", other) == digest()
 
 
+def test_the_lock_of_an_editor_is_no_data(project, digest):
+    before = digest()
+    (project / "sim/figures/.#limits.toml").symlink_to("someone@elsewhere.1234")
+    assert digest() == before
+
+
 @pytest.mark.parametrize("library", ["numpy", "sgp4"])
 def test_another_version_of_a_library_is_another_digest(digest, monkeypatch, library):
     before, version = digest(), module.version

@@ -218,6 +218,15 @@ class TestNees:
         expected[4] = np.nan
         np.testing.assert_array_equal(nees(made.truth, made.estimates), expected)
 
+    @pytest.mark.parametrize("unknown", [np.nan, np.inf])
+    def test_an_unknown_covariance_beside_a_singular_one_leaves_the_others(self, unknown):
+        error = self.errors(10)
+        made = Made(error[:, :3], error[:, 3:], self.COVARIANCE)
+        expected = nees(made.truth, made.estimates)
+        made.estimates.covariance[4], made.estimates.covariance[7] = 0.0, unknown
+        expected[[4, 7]] = np.nan
+        np.testing.assert_array_equal(nees(made.truth, made.estimates), expected)
+
     def test_is_unknown_where_rounding_has_made_the_covariance_indefinite(self):
         error = self.errors(10)
         made = Made(error[:, :3], error[:, 3:], self.COVARIANCE)
