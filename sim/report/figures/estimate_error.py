@@ -1,13 +1,12 @@
 """The error of the estimate by tick, against the plant's truth and against what the filter states."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures.attitude_arrays import normal_in_body, relative, rotation_vectors
 from sim.report.figures.spans import spans
-from sim.value_types import Array
+from sim.value_types import Array, Flags
 
 CONVERGED_DEG = 2.0
 CONVERGED_FOR_S = 600.0
@@ -34,7 +33,7 @@ def converged_tick(error_deg: Array, tick_hz: int) -> int | None:
     return next((first for first, past in spans(error_deg < CONVERGED_DEG) if past - first >= length), None)
 
 
-def within_3sigma(truth: Histories, estimates: Estimates) -> NDArray[np.bool_]:
+def within_3sigma(truth: Histories, estimates: Estimates) -> Flags:
     """Whether each axis of the attitude error is inside the filter's own 3 sigma, by tick, (n, 3), body axes.
 
     False where the error or its covariance is unknown.
@@ -42,7 +41,7 @@ def within_3sigma(truth: Histories, estimates: Estimates) -> NDArray[np.bool_]:
     ticks = len(truth["t_s"])
     error_rad = 2.0 * estimate_error(truth, estimates)[:, 1:]
     variance = np.diagonal(estimates.covariance[:ticks, :3, :3], axis1=1, axis2=2)
-    result: NDArray[np.bool_] = np.abs(error_rad) < 3.0 * np.sqrt(variance)
+    result: Flags = np.abs(error_rad) < 3.0 * np.sqrt(variance)
     return result
 
 
@@ -75,7 +74,7 @@ def _solved(covariance: Array, error: Array) -> Array:
     try:
         whole = np.asarray(np.linalg.solve(covariance, error[:, :, None])[:, :, 0], np.float64)
     except np.linalg.LinAlgError:
-        regular = np.isfinite(covariance).all(axis=(1, 2))
+        regular: Flags = np.asarray(np.isfinite(covariance).all(axis=(1, 2)))
         regular[regular] = np.linalg.matrix_rank(covariance[regular], hermitian=True) == error.shape[1]
         whole = np.full(error.shape, np.nan)
         whole[regular] = np.linalg.solve(covariance[regular], error[regular][:, :, None])[:, :, 0]
