@@ -6,19 +6,13 @@
 # make test-paced   of the long ones, those that keep deadlines in real time: they want a core for themselves
 # make test-unpaced   the other long ones
 # make lint   style, types, layers, generated code, pages and pictures
-# make validate   compute every claim and reference figure, into docs/validation.md: some hours; stopped, it goes on where it was
-# make validate-recorded the same whole, but flights that this code has flown and judged count as docs/validation.json has them: a minute or two
-# make same-flights SINCE=COMMIT   are all flights byte for byte those of the commit? then its records count as this code's: a quarter of an hour
-# make population   fly populations of random satellites, into docs/population.md: some hours; stopped, it goes on where it was
-# make pulse-limits   how near mpc and pulse_mpc come to the least error, over the coils and the disturbances, into docs/pulse-limits.md: ten minutes
+# make evidence   all that docs/ states of flights: gains, population, validate, comparison, faults, pulse limits, sizing; stopped, it goes on where it was
+# make gains population validate comparison faults pulse-limits sizing   one of them, or some
+# make same-flights SINCE=COMMIT   are all flights byte for byte those of the commit? a quarter of an hour
 # make replay-elsewhere   does a log of 20 orbits replay with other processor features, into docs/replay.md
-# make faults     every fault in ten phases and with five seeds, 250 real kills among them, into docs/faults.md and .json.gz: some hours; stopped, it goes on where it was
 # make bench      how fast flights are beside Basilisk in the same minutes, into docs/performance.md: ten minutes
 # make scaling    what a campaign costs beside its flights, and what 10^6 runs take, into docs/scaling.md: ten minutes
-# make sizing   flights of what torquer size judges, into docs/sizing.md: a quarter of an hour
 # make soak       72 simulated hours, and an hour on the bench in real time, into docs/soak.md
-# make gains      search the gains of every law for the bodies that compare ships gains for, on all cores: an hour or two; stopped, it goes on where it was
-# make comparison every law that a body has a use for, on the same bodies, with those gains, into docs/comparison.md: an hour or two; stopped, it goes on where it was
 # make golden     record the golden logs again: after a change that means to alter the answers of fsw
 # make docs      build the documentation into build/docs, each warning an error: half a minute
 # make docs-gallery   the same, with notebooks and gallery executed: some minutes
@@ -47,7 +41,7 @@ compiled := .venv/.compiled
 pip := TORQUER_INTERPRETED=1 $(bin)/pip install --quiet --disable-pip-version-check --no-compile
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv environment compiled sil test test-interpreted test-long test-unpaced test-paced lint docs docs-gallery notebooks test-vcan test-chromium gains comparison golden validate validate-recorded same-flights fuzz scenarios attack differential replay-elsewhere faults bench scaling population pulse-limits sizing soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv environment compiled sil test test-interpreted test-long test-unpaced test-paced lint docs docs-gallery notebooks test-vcan test-chromium evidence gains population validate comparison faults pulse-limits sizing golden same-flights fuzz scenarios attack differential replay-elsewhere bench scaling soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -136,22 +130,14 @@ test-vcan: venv
 test-chromium: venv
 	TORQUER_REQUIRE_CHROMIUM=1 $(bin)/pytest -q -rs -p no:cacheprovider -m chromium tests/sim
 
-bodies := microsat cubesat3u posat1 pitch-wheel microsat-wheel spinner
-gains: $(bodies:%=gains-%)
-gains-%: venv
-	$(bin)/torquer design $* --laws all --keep sim/tuning/found/$*.toml
+evidence: venv
+	$(bin)/python tools/evidence.py
 
-comparison: venv
-	$(bin)/python tools/comparison.py $(COMPARISON)
+gains population validate comparison faults pulse-limits sizing: venv
+	$(bin)/python tools/evidence.py $@
 
 golden: venv
 	$(bin)/python tests/golden/record.py
-
-validate: venv
-	$(bin)/torquer validate --keep build/flights.jsonl
-
-validate-recorded: venv
-	$(bin)/torquer validate --recorded docs/validation.json --record
 
 fuzz: venv
 	TORQUER_FUZZ_FRAMES=1000000 TORQUER_FUZZ_MUTATIONS=1000 TORQUER_CORRUPT_PASSES=200 $(bin)/pytest -q --timeout 7200 tests/fuzz
@@ -168,14 +154,6 @@ differential: venv
 replay-elsewhere: venv
 	$(bin)/python tools/replay_elsewhere.py $(foreach other,$(PYTHONS),--python $(other))
 
-build/faults.json: docs/faults.json.gz
-	@mkdir -p build
-	gunzip -c $< > $@.part && mv $@.part $@
-
-faults: venv build/faults.json
-	$(bin)/torquer faults --phases 10 --seeds 5 --slow --write-docs --keep build/faults.json; \
-		code=$$?; gzip -9nc build/faults.json > docs/faults.json.gz; exit $$code
-
 bench: venv
 	$(bin)/python tools/bench.py
 
@@ -183,16 +161,7 @@ scaling: venv
 	$(bin)/python tools/scaling.py
 
 same-flights: venv
-	$(bin)/python tools/same_flights.py $(SINCE) --carry-over
-
-population: venv
-	$(bin)/python tools/population.py $(POPULATION)
-
-pulse-limits: venv
-	$(bin)/python tools/pulse_limits.py $(PULSE_LIMITS)
-
-sizing: venv
-	$(bin)/python tools/sizing.py
+	$(bin)/python tools/same_flights.py $(SINCE)
 
 soak: venv
 	$(bin)/python tools/soak.py $(SOAK)

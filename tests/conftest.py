@@ -15,6 +15,9 @@ from hypothesis import settings
 
 from fsw.compiled import SWITCH, standing
 
+os.environ["TORQUER_CACHE"] = ""
+"""What a test flies, it flies."""
+
 settings.register_profile("ci", derandomize=True, deadline=None, print_blob=True)
 settings.register_profile("dev", deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))

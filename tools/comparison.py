@@ -1,8 +1,7 @@
 """Compare the laws on six satellites, and write docs/comparison.md with a picture of each.
 
-The flights are those of ``torquer compare BODY``. The table of a satellite is recorded in
-docs/comparison.json once it has flown whole; a satellite that the present code, gains and scenario have flown
-is not flown again. --render writes the page anew without flying. Exit code 1 where the limits were broken.
+The flights are those of ``torquer compare BODY``. A run that was stopped goes on where it was. Exit code 1
+where the limits were broken.
 """
 
 import argparse
@@ -14,14 +13,12 @@ from importlib.metadata import version
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
-from zlib import crc32
 
 from argument_types import count
 from comparison_picture import draw
 from jinja2 import Environment, StrictUndefined
 
 from fsw.core.laws.entry import Aim
-from sim.campaign.code_digest import code_digest
 from sim.compare.case import Driver
 from sim.compare.command import JSON as COMPARED
 from sim.compare.command import compare
@@ -30,11 +27,9 @@ from sim.compare.table import as_table, error_text, ranked
 from sim.drawing.page_parts import Table
 from sim.errors import HarnessError
 from sim.record.destination import check_file
-from sim.record.whole_file import replace_file, replace_text
+from sim.record.whole_file import replace_text
 from sim.report.figures.controlled import Controlled
-from sim.scenario.schema import load
 from sim.tuning.cost import BY_RATE
-from sim.tuning.kept import FOLDER as GAINS
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE, TEMPLATE = ROOT / "docs" / "comparison.md", ROOT / "tools" / "comparison.md.j2"
@@ -59,7 +54,6 @@ class Compared(NamedTuple):
         by: what the laws are judged by.
         flown_s: length of a flight, s.
         scores: best first, each aim for itself.
-        outdated: whether code, gains or scenario have changed since.
     """
 
     name: str
@@ -67,7 +61,6 @@ class Compared(NamedTuple):
     by: Controlled
     flown_s: float
     scores: Sequence[Score]
-    outdated: bool
 
     @property
     def picture(self) -> str:
@@ -92,45 +85,21 @@ class Compared(NamedTuple):
         ]
 
 
-def state_of(name: str) -> str:
-    """Of code, scenario and gains: a comparison by others is out of date."""
-    gains = GAINS / f"{name}.toml"
-    parts = (load(name).model_dump_json(), gains.read_text() if gains.exists() else "")
-    return f"{code_digest()} {crc32(json.dumps(parts).encode()):08x}"
-
-
 def fly(name: str, workers: int) -> Record:
-    """Compare the laws on a satellite, with the gains that ship: what is recorded."""
+    """Compare the laws on a satellite, with the gains that ship: what the command writes."""
     with TemporaryDirectory() as folder:
         compare(name, (), None, "both", None, 1, workers, Path(folder))
-        return {**json.loads(Path(folder, COMPARED).read_text()), "state": state_of(name)}
-
-
-def read_record(path: Path) -> dict[str, Record]:
-    """What is recorded; nothing if there is no file.
-
-    Raises:
-        HarnessError: the file is none of this tool.
-    """
-    if not path.exists():
-        return {}
-    try:
-        records: dict[str, Record] = json.loads(path.read_text(encoding="utf-8"))
-        for name, record in records.items():
-            compared(name, record)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise HarnessError(f"{path}: no record of comparisons: {error}") from None
-    return records
+        record: Record = json.loads(Path(folder, COMPARED).read_text())
+        return record
 
 
 def compared(name: str, record: Record) -> Compared:
-    """A record as values, its scores ranked."""
+    """What the command wrote as values, its scores ranked."""
     by = Controlled(**record["judged"])
     scores = [
         Score(**{**row, "aim": Aim(row["aim"]), "driver": Driver(row["driver"])}) for row in record["rows"]
     ]
-    outdated = record["state"] != state_of(name)
-    return Compared(name, SATELLITES[name], by, record["sim_seconds"], ranked(scores, by), outdated)
+    return Compared(name, SATELLITES[name], by, record["sim_seconds"], ranked(scores, by))
 
 
 def winner(score: Score | None, by: Controlled) -> str:
@@ -162,54 +131,28 @@ def page(satellites: Sequence[Compared]) -> str:
     )
 
 
-def write(records: dict[str, Record], out: Path) -> None:
-    """The record, the page and its pictures."""
-    replace_file(record_path(out), (json.dumps(records, indent=1, sort_keys=True) + "\n").encode())
-    satellites = [compared(name, records[name]) for name in SATELLITES if name in records]
-    for satellite in satellites:
-        draw(satellite.scores, satellite.by, out.with_name(satellite.picture))
-    replace_text(out, page(satellites))
-
-
-def record_path(out: Path) -> Path:
-    """Of the record, beside the page."""
-    return out.with_suffix(".json")
-
-
 def main(words: Sequence[str] | None = None) -> int:
-    """Fly what is missing, write the page; 1 where limits were broken."""
+    """Fly, write the page; 1 where limits were broken."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("bodies", nargs="*", metavar="BODY", help=f"default: {' '.join(SATELLITES)}")
     parser.add_argument("--workers", type=count, default=os.cpu_count() or 1, help="processes")
-    parser.add_argument("--render", action="store_true", help="fly nothing")
-    parser.add_argument(
-        "--out", type=Path, default=PAGE, help="the page; its record and pictures lie beside it"
-    )
+    parser.add_argument("--out", type=Path, default=PAGE, help="the page; its pictures lie beside it")
     arguments = parser.parse_args(words)
-    for name in arguments.bodies:
-        if name not in SATELLITES:
-            parser.error(f"there is no satellite '{name}' here: choose among {', '.join(SATELLITES)}")
     try:
         check_file(arguments.out)
-        records = read_record(record_path(arguments.out))
-        for name in () if arguments.render else arguments.bodies or SATELLITES:
-            if name in records and not compared(name, records[name]).outdated:
-                print(f"{name}: flown already by this code, with these gains")
-                continue
-            records[name] = fly(name, arguments.workers)
-            write(records, arguments.out)
-        if arguments.render:
-            write(records, arguments.out)
+        satellites = [compared(name, fly(name, arguments.workers)) for name in SATELLITES]
     except HarnessError as error:
         print(f"comparison: {error}", file=sys.stderr)
         return error.exit_code
     except KeyboardInterrupt:
-        print("comparison: interrupted; the satellites that have flown whole are kept", file=sys.stderr)
+        print("comparison: interrupted; flights that are done are not flown again", file=sys.stderr)
         return 130
+    for satellite in satellites:
+        draw(satellite.scores, satellite.by, arguments.out.with_name(satellite.picture))
+    replace_text(arguments.out, page(satellites))
     print(arguments.out)
-    return int(any(row["limits_ok"] is False for record in records.values() for row in record["rows"]))
+    return int(any(score.limits_ok is False for satellite in satellites for score in satellite.scores))
 
 
 if __name__ == "__main__":

@@ -1,11 +1,10 @@
 """Are the flights of this code those of an earlier commit, byte for byte?
 
-    python tools/same_flights.py COMMIT [--orbits N] [--but-state-crc | --carry-over]
+    python tools/same_flights.py COMMIT [--orbits N] [--but-state-crc]
 
 For a change that means to alter no flight, such as one of a sentence. Both versions fly every shipped
 scenario and inject every fault once, but for those that kill processes; log, truth and summary, and what each
-fault did, must be equal. Exit code 1 if one is not. With --carry-over, and if all are, what docs/ has
-recorded by the commit counts as recorded by this code: the digests there are replaced.
+fault did, must be equal. Exit code 1 if one is not.
 
 With --but-state-crc the CRC of the flight state in each TICK_DONE is left out, for a change that lays out the
 state in another way; and so is the fault that flips bits of the state, since it draws their places from the
@@ -13,7 +12,6 @@ layout.
 """
 
 import argparse
-import gzip
 import hashlib
 import json
 import os
@@ -28,9 +26,9 @@ from typing import Any
 from argument_types import count, positive
 
 from fsw.wire.messages import TickDone
+from sim.campaign.study_cache import VARIABLE
 from sim.console import counted
 from sim.errors import HarnessError
-from sim.record.whole_file import replace_file
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENARIOS = "sim/scenario/shipped"
@@ -47,17 +45,10 @@ NO_FIGURES = frozenset(
     }
 )
 """Of a summary or a row of faults: the time that the computer took, what code computed it, and words."""
-DIGESTS = """
-from sim.campaign.code_digest import code_digest
-from sim.fault_table.campaign import FAULT_CODE
-print(code_digest(), code_digest(FAULT_CODE))
-"""
 OF_LAYOUT = ("bit-flip",)
 """Faults whose places are drawn from the layout of the flight state."""
 STATE_CRC_FROM = 8
 """Hex digits of a TICK_DONE before those of its state_crc and CRC: the tick."""
-RECORDS = ("validation.json", "comparison.json", "faults.json.gz")
-"""In docs/; those that are there hold digests."""
 
 Digests = Mapping[str, str]
 Json = Any
@@ -69,7 +60,8 @@ def run(tree: Path, *words: str) -> str:
     Raises:
         HarnessError: it failed otherwise.
     """
-    environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONSAFEPATH": "1", "OPENBLAS_NUM_THREADS": "1"}
+    settings = {"PYTHONPATH": str(tree), "PYTHONSAFEPATH": "1", "OPENBLAS_NUM_THREADS": "1", VARIABLE: ""}
+    environment = {**os.environ, **settings}
     done = subprocess.run(
         [sys.executable, *words], cwd=tree, env=environment, capture_output=True, text=True, check=False
     )
@@ -104,12 +96,10 @@ def without_state_crc(log: bytes) -> bytes:
 def faults(tree: Path, rows: Sequence[str] = ()) -> dict[str, str]:
     """The digest of what each fault of the table did, once each; of some rows alone if they are named."""
     with TemporaryDirectory() as folder:
-        kept = Path(folder, "faults.json")
         chosen = [word for row in rows for word in ("--row", row)]
         once = ["--phases", "1", "--seeds", "1", "--quiet"]
-        files = ("--keep", str(kept), "--out", str(Path(folder, "out")))
-        run(tree, "-m", "torquer", "faults", *once, *files, *chosen)
-        found = json.loads(kept.read_text())["rows"]
+        run(tree, "-m", "torquer", "faults", *once, "--out", folder, *chosen)
+        found = json.loads(Path(folder, "faults.json").read_text())["rows"]
     return {f"fault {row['row']}": _sha256(json.dumps(figures(row)).encode()) for row in found}
 
 
@@ -141,21 +131,6 @@ def different(before: Digests, now: Digests) -> list[str]:
     return sorted(name for name in before.keys() | now.keys() if before.get(name) != now.get(name))
 
 
-def carry_over(docs: Path, replaced: Mapping[str, str]) -> list[str]:
-    """Replace digests in the records; the files that had one, each with how many."""
-    said = []
-    for path in (docs / name for name in RECORDS if (docs / name).exists()):
-        packed = path.suffix == ".gz"
-        text = (gzip.decompress(path.read_bytes()) if packed else path.read_bytes()).decode()
-        digests = sum(text.count(f'"{old}') for old in replaced)
-        for old, new in replaced.items():
-            text = text.replace(f'"{old}', f'"{new}')
-        if digests:
-            replace_file(path, gzip.compress(text.encode(), mtime=0) if packed else text.encode())
-            said.append(f"{path.name}: {digests}")
-    return said
-
-
 def exported(commit: str, folder: Path) -> None:
     """The files of a commit.
 
@@ -180,9 +155,7 @@ def main(words: Sequence[str] | None = None, fly: Callable[..., Digests] = fligh
     parser.add_argument("commit", help="the earlier one")
     parser.add_argument("--orbits", type=positive, default=1.0, help="of each flight of a scenario")
     parser.add_argument("--workers", type=count, default=os.cpu_count() or 1, help="flights at once")
-    kind = parser.add_mutually_exclusive_group()
-    kind.add_argument("--but-state-crc", action="store_true", help="the layout of the state may differ")
-    kind.add_argument("--carry-over", action="store_true", help="write the digests of this code in docs/")
+    parser.add_argument("--but-state-crc", action="store_true", help="the layout of the state may differ")
     arguments = parser.parse_args(words)
     try:
         with TemporaryDirectory() as folder:
@@ -190,7 +163,6 @@ def main(words: Sequence[str] | None = None, fly: Callable[..., Digests] = fligh
             trees = (Path(folder), ROOT)
             how = (arguments.orbits, arguments.workers, not arguments.but_state_crc)
             before, now = (fly(tree, *how) for tree in trees)
-            codes = [run(tree, "-c", DIGESTS).split() for tree in trees]
     except HarnessError as error:
         print(f"same_flights: {error}", file=sys.stderr)
         return error.exit_code
@@ -202,8 +174,6 @@ def main(words: Sequence[str] | None = None, fly: Callable[..., Digests] = fligh
         return 1
     extent = ", but for the CRC of the state" if arguments.but_state_crc else ""
     print(f"{counted(len(now), 'flight')} the same byte for byte as by {arguments.commit}{extent}")
-    if arguments.carry_over:
-        print("\n".join(carry_over(ROOT / "docs", dict(zip(*codes, strict=True)))))
     return 0
 
 

@@ -20,6 +20,7 @@ from fsw.input.schema import Nested, TableError
 from sim.campaign.claim import Study
 from sim.campaign.flight import FlightResult, Order, fly_order
 from sim.campaign.runner import run
+from sim.campaign.study_cache import with_cache
 from sim.errors import HarnessError
 from sim.progress import progress
 from sim.record.destination import check_file
@@ -97,11 +98,16 @@ def fly(seeds: int, workers: int) -> list[Row]:
     """
     scenarios = [(what, name, load(name, keys)) for what, name, keys in SATELLITES]
     studies = [
-        Study(name, tuple(partial(fly_order, order) for order in orders_of(name, keys, seeds)), lambda _: [])
+        Study(
+            name,
+            tuple(partial(fly_order, order) for order in orders_of(name, keys, seeds)),
+            lambda flights: [],
+            has_flights=True,
+        )
         for _, name, keys in SATELLITES
     ]
     with progress("flying", seeds * len(studies)) as watch:
-        flown = run(studies, workers, watch, lambda study: None)
+        flown = run(with_cache(studies), workers, watch, lambda study: None)
     return [
         Row(what, name, scenario.control.law, expect(scenario), tuple(map(pointing_deg, study.results)))
         for (what, name, scenario), study in zip(scenarios, flown, strict=True)

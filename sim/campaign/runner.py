@@ -44,7 +44,6 @@ def run(
     workers: int,
     watch: Watch,
     report: Callable[[StudyResult], None],
-    keep: Callable[[Any], None] | None = None,
 ) -> list[StudyResult]:
     """Run all tasks and conclude every study.
 
@@ -53,7 +52,6 @@ def run(
         workers: processes; 1 for this one alone.
         watch: called with the number of tasks done.
         report: called with each study when it is done.
-        keep: called with each task's result as it comes.
 
     Returns:
         The studies in their order.
@@ -77,8 +75,6 @@ def run(
         conclude(place)
     for done, (place, number, result) in enumerate(_results(studies, workers), start=1):
         results[place, number] = result
-        if keep is not None:
-            keep(result[1])
         watch(done)
         waiting[place] -= 1
         if not waiting[place]:

@@ -77,12 +77,6 @@ class FlightStudy(Study):
         return tuple(order for group in self.groups for order in group.orders)
 
 
-def part_of(study: FlightStudy, flies: Callable[[Order], bool]) -> FlightStudy:
-    """The study with only the orders that ``flies`` selects."""
-    groups = [Group(group.name, tuple(filter(flies, group.orders))) for group in study.groups]
-    return campaign(study.id, study.source, groups, study.figures, study.counted, study.made_for)
-
-
 def campaign(
     study_id: str,
     source: str,

@@ -11,6 +11,7 @@ from typing import Any
 
 from sim.campaign.claim import Study
 from sim.campaign.runner import StudyResult, run
+from sim.campaign.study_cache import with_cache
 from sim.compare.case import Driver, cases, chosen_laws
 from sim.compare.picture import axis_label, colour_of, laws_of, picture, with_unit
 from sim.compare.score import WINDOW_ORBITS, Result, Score, fly_case
@@ -28,7 +29,7 @@ from sim.record.run_dir import RUN, write_json
 from sim.record.whole_file import replace_text
 from sim.report.figures.controlled import SETTLED_DEG, Controlled, controlled
 from sim.report.summary_text import last_orbit
-from sim.scenario.schema import Scenario, flight_table, load, orbit_period_s, parse_settings
+from sim.scenario.schema import Scenario, flight_table, load, orbit_period_s, parse_settings, shipped_names
 from sim.statistics.settling import HELD_S
 from sim.tuning.applicable import aims_of
 from sim.tuning.cost import BY_RATE
@@ -238,6 +239,8 @@ def compare(
         "judged": by._asdict(),
         "gains": gains if kept is not None else SCENARIO,
     }
+    if name in shipped_names() and not settings:  # else a file of the user's may be part of it
+        studies = with_cache(studies)
     results: list[Result] = []
     bar = sys.stderr.isatty()  # else each flight's line is the progress
 

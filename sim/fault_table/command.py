@@ -2,13 +2,13 @@
 
 import os
 import sys
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from sim.console import answer, say
 from sim.errors import HarnessError
-from sim.fault_table import earlier_rows, render
-from sim.fault_table.campaign import fly_rows, is_whole
+from sim.fault_table import render
+from sim.fault_table.campaign import fly_rows
 from sim.fault_table.row import CheckVerdict, RowResult
 from sim.fault_table.rows.table import ROWS, choose_rows
 from sim.junit import prepare_junit, write_junit
@@ -35,7 +35,6 @@ def faults(
     workers: int | None,
     write_docs: bool,
     slow: bool = False,
-    keep: Path | None = None,
     junit: Path | None = None,
 ) -> int:
     """Fly the rows, print each result, write the requested files.
@@ -47,10 +46,6 @@ def faults(
         out: folder for faults.xml, faults.html and faults.json; None: not written.
         workers: processes; None: one per core.
         slow: include rows that run real processes.
-        keep: file in which each row is kept once it is done, in the form of faults.json; it need not exist.
-            Rows in it count where they are not flown now, with a mark where it was other code that flew them;
-            those that the present code has flown, in at least as many phases with as many seeds, are not
-            flown again.
         write_docs: write docs/faults.md of the repository.
         junit: file for the verdicts as JUnit XML; None: not written.
 
@@ -61,52 +56,35 @@ def faults(
         HarnessError: there is no such row, or a file cannot be written.
     """
     rows = choose_rows(names, slow)
-    earlier = {} if keep is None else earlier_rows.read(keep, {row.name for row in rows})
-    page = _docs_page({*earlier, *(row.name for row in rows)}) if write_docs else None
+    page = _docs_page({row.name for row in rows}) if write_docs else None
     beside = {f"{name} of --out": out / name for name in (JUNIT, HTML, JSON)} if out is not None else {}
-    check_results({"the page": page, **beside, "--keep": keep, "--junit": junit}, {})
+    check_results({"the page": page, **beside, "--junit": junit}, {})
     prepare_junit(junit)
     bar = sys.stderr.isatty()  # then the rows are printed after it
-    to_fly = [
-        row for row in rows if row.name not in earlier or not is_whole(earlier[row.name], phases, seeds)
-    ]
-    by_name = dict(earlier)
 
     def report(result: RowResult) -> None:
-        by_name[result.row.name] = result
-        if keep is not None:
-            kept = _in_order(by_name)
-            write_result(keep, render.as_json(kept, render.otherwise_flown(kept, phases, seeds)))
         if not bar:
-            _print(result, frozenset())
+            _print(result)
 
-    with progress("injecting faults", len(to_fly) * phases * seeds) as watch:
-        fly_rows(to_fly, phases, seeds, workers or os.cpu_count() or 1, watch, report)
-    results = _in_order(by_name)
-    other = render.otherwise_flown(results, phases, seeds)
+    with progress("injecting faults", len(rows) * phases * seeds) as watch:
+        results = fly_rows(rows, phases, seeds, workers or os.cpu_count() or 1, watch, report)
     for result in results if bar else ():
-        _print(result, other)
-    say(render.tally(results, other))
-    answer(render.json_values(results, other))
-    _write_reports(results, other, out, junit)
+        _print(result)
+    say(render.tally(results))
+    answer(render.json_values(results))
+    _write_reports(results, out, junit)
     if page is not None:
         write_result(page, render.markdown(results, phases, seeds))
         say(f"page: {page}")
     return int(any(result.verdict is CheckVerdict.FAIL for result in results))
 
 
-def _write_reports(
-    results: Sequence[RowResult], other: Collection[str], out: Path | None, junit: Path | None
-) -> None:
+def _write_reports(results: Sequence[RowResult], out: Path | None, junit: Path | None) -> None:
     for file in (junit, None if out is None else out / JUNIT):
-        write_junit(file, "torquer faults", render.suites(results, other))
+        write_junit(file, "torquer faults", render.suites(results))
     if out is not None:
-        write_result(out / HTML, render.html(results, other))
-        write_result(out / JSON, render.as_json(results, other))
-
-
-def _in_order(by_name: dict[str, RowResult]) -> list[RowResult]:
-    return [by_name[row.name] for row in ROWS if row.name in by_name]
+        write_result(out / HTML, render.html(results))
+        write_result(out / JSON, render.as_json(results))
 
 
 def _docs_page(names: set[str]) -> Path:
@@ -114,9 +92,9 @@ def _docs_page(names: set[str]) -> Path:
     if repository is None:
         raise HarnessError("--write-docs: this is no checkout of torquer, so that there is no docs/faults.md")
     if not names >= {row.name for row in ROWS if not row.slow}:
-        raise HarnessError("--write-docs: the page is of all rows: leave out --row, or --keep the others")
+        raise HarnessError("--write-docs: the page is of all rows: leave out --row")
     return repository / "docs" / PAGE
 
 
-def _print(result: RowResult, other: Collection[str]) -> None:
-    say(render.line(result, other), failed=result.verdict is CheckVerdict.FAIL)
+def _print(result: RowResult) -> None:
+    say(render.line(result), failed=result.verdict is CheckVerdict.FAIL)

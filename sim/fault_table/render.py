@@ -1,14 +1,13 @@
 """What a fault campaign found: for the terminal, as JSON, JUnit XML, one HTML page and docs/faults.md."""
 
 import json
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from itertools import groupby
 from math import inf
 
 from sim.console import counted
 from sim.drawing.pages import page
-from sim.fault_table.campaign import is_whole
 from sim.fault_table.checks import checks_of
 from sim.fault_table.row import CaseResult, CheckVerdict, FaultRow, RowFault, RowResult
 from sim.faults.kinds import KINDS
@@ -67,16 +66,8 @@ bias that drifts by 0.2 nT/s. A kind that ends in `_late` delays the samples of 
 |---|---|---|"""
 
 
-OTHERWISE_FLOWN = "flown by an earlier version, or in fewer phases or with fewer seeds"
-
-
-def otherwise_flown(results: Sequence[RowResult], phases: int, seeds: int) -> frozenset[str]:
-    """The names of the rows that this code has not flown in so many phases with so many seeds."""
-    return frozenset(result.row.name for result in results if not is_whole(result, phases, seeds))
-
-
-def tally(results: Sequence[RowResult], other: Collection[str] = ()) -> str:
-    """How many rows and cases there were, how many failed, and how many were flown otherwise."""
+def tally(results: Sequence[RowResult]) -> str:
+    """How many rows and cases there were, and how many failed."""
     cases = [case for result in results for case in result.cases]
     rows = {verdict: sum(result.verdict is verdict for result in results) for verdict in CheckVerdict}
     broken = sum(not _holds(case, "limits") for case in cases)
@@ -85,15 +76,12 @@ def tally(results: Sequence[RowResult], other: Collection[str] = ()) -> str:
     text = f"{flown}: {counted(passed, 'row')} passed, {failed} failed"
     if rows[CheckVerdict.OPEN]:
         text += f", {rows[CheckVerdict.OPEN]} not yet"
-    text += f"; {counted(broken, 'violation')} of the coil limits"
-    return f"{text}; * {counted(len(other), 'row')} {OTHERWISE_FLOWN}" if other else text
+    return f"{text}; {counted(broken, 'violation')} of the coil limits"
 
 
-def line(result: RowResult, other: Collection[str] = ()) -> str:
+def line(result: RowResult) -> str:
     """One row for the terminal."""
-    return (
-        f"{_verdict(result, other):<9} {result.row.name:<24} {len(result.cases):>4} cases  {_found(result)}"
-    )
+    return f"{result.verdict.value:<9} {result.row.name:<24} {len(result.cases):>4} cases  {_found(result)}"
 
 
 def listed(row: FaultRow) -> str:
@@ -106,14 +94,14 @@ def listed_json(row: FaultRow) -> Json:
     return {"row": row.name, "group": row.group, "injected": injected(row), "expected": expected(row)}
 
 
-def as_json(results: Sequence[RowResult], other: Collection[str] = ()) -> str:
+def as_json(results: Sequence[RowResult]) -> str:
     """Everything, for programs: a line for each row, since indentation would nearly double the size."""
-    values = json_values(results, other)
+    values = json_values(results)
     rows = ",\n".join(json.dumps(row, separators=(",", ":")) for row in values["rows"])
     return f'{{"tally": {json.dumps(values["tally"])},\n"rows": [\n{rows}\n]}}\n'
 
 
-def json_values(results: Sequence[RowResult], other: Collection[str] = ()) -> Json:
+def json_values(results: Sequence[RowResult]) -> Json:
     """The same as values of JSON."""
     rows = [
         {
@@ -123,29 +111,20 @@ def json_values(results: Sequence[RowResult], other: Collection[str] = ()) -> Js
             "expected": list(checks_of(result.row)),
             "verdict": result.verdict.value,
             "measured": result.measured,
-            "code": result.code,
-            "otherwise_flown": result.row.name in other,
             "cases": [asdict(case) for case in result.cases],
         }
         for result in results
     ]
-    return {"tally": tally(results, other), "rows": rows}
+    return {"tally": tally(results), "rows": rows}
 
 
-def suites(results: Sequence[RowResult], other: Collection[str] = ()) -> dict[str, list[JunitCase]]:
-    """For JUnit XML, a suite for each row and a test for each case.
-
-    An open verdict counts as skipped, and so does what was flown otherwise and has not failed.
-    """
-    return {
-        result.row.name: [_test(case, result.row.name in other) for case in result.cases]
-        for result in results
-    }
+def suites(results: Sequence[RowResult]) -> dict[str, list[JunitCase]]:
+    """For JUnit XML, a suite for each row and a test for each case; an open verdict counts as skipped."""
+    return {result.row.name: [_test(case) for case in result.cases] for result in results}
 
 
-def _test(case: CaseResult, is_other: bool) -> JunitCase:
+def _test(case: CaseResult) -> JunitCase:
     failed, waiting = _with(case, CheckVerdict.FAIL), _with(case, CheckVerdict.OPEN)
-    waiting += [OTHERWISE_FLOWN] * is_other
     return JunitCase(
         f"faults.{case.row}",
         f"phase {case.phase} seed {case.seed}",
@@ -155,32 +134,29 @@ def _test(case: CaseResult, is_other: bool) -> JunitCase:
     )
 
 
-def html(results: Sequence[RowResult], other: Collection[str] = ()) -> str:
+def html(results: Sequence[RowResult]) -> str:
     """One self-contained page."""
     bad = any(result.verdict is CheckVerdict.FAIL for result in results)
     return page(
         "sim.fault_table",
         "faults.html",
         badge="bad" if bad else "good",
-        tally=tally(results, other),
+        tally=tally(results),
         head=_COLUMNS,
-        groups=[(group, [_html_row(result, other) for result in rows]) for group, rows in _groups(results)],
+        groups=[(group, [_html_row(result) for result in rows]) for group, rows in _groups(results)],
     )
 
 
-def _html_row(result: RowResult, other: Collection[str]) -> tuple[tuple[str, ...], str, str]:
+def _html_row(result: RowResult) -> tuple[tuple[str, ...], str, str]:
     """The cells of a row without its verdict, then the style class of the verdict, and the verdict."""
     row, colour = result.row, {CheckVerdict.PASS: "good", CheckVerdict.FAIL: "bad", CheckVerdict.OPEN: "note"}
     cells = (row.name, fault_words(row), expected(row), str(len(result.cases)), _found(result))
-    return cells, colour[result.verdict], _verdict(result, other)
+    return cells, colour[result.verdict], result.verdict.value
 
 
 def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
     """docs/faults.md."""
     lines = [_HEAD, f"{tally(results)}. Phases {phases}, seeds {seeds} each.", ""]
-    other = otherwise_flown(results, phases, seeds)
-    if other:
-        lines += [f"But \\*, {counted(len(other), 'row')}: {OTHERWISE_FLOWN}.", ""]
     for group, rows in _groups(results):
         lines += [f"## {group}", "", f"| {' | '.join(_COLUMNS)} |"]
         lines.append("|---|---|---|---|---|---|")
@@ -191,7 +167,7 @@ def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
                 expected(result.row),
                 str(len(result.cases)),
                 _found(result),
-                _verdict(result, other).replace("*", "\\*"),
+                result.verdict.value,
             )
             lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
         lines.append("")
@@ -259,10 +235,6 @@ def _figures(result: RowResult) -> str:
         part = f" in {count} of {len(result.cases)}" if count < len(result.cases) else ""
         said.append(f"{name} {result.measured[name]:.4g}{part}")
     return ", ".join(said)
-
-
-def _verdict(result: RowResult, other: Collection[str]) -> str:
-    return result.verdict.value + " *" * (result.row.name in other)
 
 
 def _with(case: CaseResult, verdict: CheckVerdict) -> list[str]:

@@ -152,11 +152,10 @@ class CaseResult:
 
 @dataclass(frozen=True, slots=True)
 class RowResult:
-    """All cases of a row; ``code``: the digest of the code that flew them, empty where it is unknown."""
+    """All cases of a row."""
 
     row: FaultRow
     cases: tuple[CaseResult, ...]
-    code: str = ""
 
     @property
     def verdict(self) -> CheckVerdict:

@@ -3,27 +3,24 @@
 import os
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from sim.campaign.claim import ClaimOutcome, ClaimVerdict, Study
 from sim.campaign.runner import StudyResult, run
 from sim.campaign.study import FlightStudy
+from sim.campaign.study_cache import with_cache
 from sim.console import answer, counted, say, warn
 from sim.errors import HarnessError
 from sim.junit import prepare_junit, write_junit
 from sim.progress import note, progress
 from sim.result_files import Files, check_results
 from sim.validate.flight_data import claims
-from sim.validate.flight_rows import FlightRows, keep_flight, with_kept_flights
-from sim.validate.outcomes import read_record
+from sim.validate.guard import claims_of, guarded
+from sim.validate.outcomes import ResultFiles, read_record
 from sim.validate.page import as_json, line, loose, suites, tally
 from sim.validate.reference import reference
-from sim.validate.registry import all_studies, choose_studies, find_repository, judging_digests
-from sim.validate.running.guard import claims_of, guarded
-from sim.validate.running.kept_results import keep_result, with_kept_results
-from sim.validate.running.recorded import recorded_studies
-from sim.validate.running.results import ResultFiles
+from sim.validate.registry import all_studies, choose_studies, find_repository
 
 PAGE = "validation.md"
 DATA_SUFFIXES = (".csv", ".txt")
@@ -39,8 +36,6 @@ def validate(
     junit: Path | None = None,
     flight_data: Path | None = None,
     record: bool = False,
-    keep: Path | None = None,
-    recorded: Path | None = None,
 ) -> int:
     """Run the studies, print each outcome, write the page.
 
@@ -60,35 +55,25 @@ def validate(
         flight_data: run only the claims on the recorded passes in this folder.
         record: put the outcomes of each study that is done among those of ``validation.json``, and write the
             page of all.
-        keep: file of flights; those in it, of this code, are not flown again, and each new one is added.
-        recorded: file of outcomes; those in it of flights that this code has flown and judged count.
 
     Returns:
         The exit code: 1 if a claim fails, else 0, also where some are not judged, which is said.
 
     Raises:
-        HarnessError: reference data are malformed or missing, an id is unknown, a file cannot be written,
-            ``keep`` or ``recorded`` holds something else, or there are no such outcomes.
+        HarnessError: reference data are malformed or missing, an id is unknown, or a file cannot be written.
     """
     began = time.monotonic()
-    for option, given in (("--record", record), ("--recorded", recorded)):
-        if given:
-            _check_whole(option, folder, satellites)
+    if record:
+        _check_whole(folder, satellites)
     there_are = _studies(folder, flight_data, satellites)
     whole = folder is None and flight_data is None and not only and not quick and satellites is None
     results = _results(out, whole, record, there_are)
-    written = {"--out": results.page, "the outcomes": results.figures, "--keep": keep, "--junit": junit}
-    check_results(written, {**_data_files(folder or flight_data), **_read_only(recorded, results.figures)})
-    known = {} if recorded is None else _recorded(recorded, there_are)
-    studies = choose_studies(there_are, only, quick, known)
-    if recorded is not None and quick:
-        _tell_left_out(choose_studies(there_are, only, False, known), studies)
+    written = {"--out": results.page, "the outcomes": results.figures, "--junit": junit}
+    check_results(written, _data_files(folder or flight_data))
+    chosen = choose_studies(there_are, only, quick)
     prepare_junit(junit)
-    rows = FlightRows(keep) if keep is not None else None
-    if rows is not None:
-        studies = with_kept_results(with_kept_flights(studies, rows), rows)
     passed = (HarnessError,) if folder is not None or flight_data is not None else ()  # the user's own files
-    studies = [guarded(study, passed) for study in studies]
+    studies = [guarded(study, passed) for study in with_cache(chosen)]
     bar = sys.stderr.isatty()  # then the outcomes are printed after the progress bar
 
     def report(study: StudyResult) -> None:
@@ -96,10 +81,10 @@ def validate(
             _print(study)
         results.take(study, time.monotonic() - began)
 
-    if whole and keep is None and any(study.has_flights and study.tasks for study in studies):
-        note("some hours of flights; with --keep FILE one that is stopped goes on, --quick leaves them out")
+    if whole and any(study.has_flights for study in studies):
+        note("an hour or more of flights; one that is stopped goes on, --quick leaves them out")
     with progress("validating", sum(len(study.tasks) for study in studies)) as watch:
-        finished = run(studies, workers or os.cpu_count() or 1, watch, report, _keeper(rows))
+        finished = run(studies, workers or os.cpu_count() or 1, watch, report)
     if bar:
         for study in finished:
             _print(study)
@@ -145,31 +130,15 @@ def _data_files(folder: Path | None) -> Files:
     return {f"{file.name} of the data": file for file in files if file.suffix in DATA_SUFFIXES}
 
 
-def _read_only(recorded: Path | None, figures: Path | None) -> Files:
-    """The record, where the new one is not to take its place."""
-    replaced = recorded is None or (figures is not None and figures.resolve() == recorded.resolve())
-    return {} if replaced else {"--recorded": recorded}
-
-
-def _check_whole(option: str, folder: Path | None, satellites: int | None) -> None:
+def _check_whole(folder: Path | None, satellites: int | None) -> None:
     """Refuse other outcomes than those of the project."""
     if folder is not None:
         raise HarnessError(
-            f"{option} is for outcomes by the reference files that ship, not by those of another folder: "
+            "--record is for outcomes by the reference files that ship, not by those of another folder: "
             "leave out --reference"
         )
     if satellites is not None:
-        raise HarnessError(f"{option} is for outcomes of whole populations: leave out --satellites")
-
-
-def _recorded(path: Path, studies: Sequence[Study]) -> dict[str, Study]:
-    """The studies with recorded outcomes, by their ids."""
-    if not path.exists():
-        raise HarnessError(f"--recorded {path}: no such file; --record writes one")
-    known = recorded_studies(studies, read_record(path), judging_digests())
-    flown = sum(len(study.tasks) for study in studies if study.id in known)
-    note(f"{path}: {counted(flown, 'flight')} that this code has flown and judged, not flown again")
-    return known
+        raise HarnessError("--record is for outcomes of whole populations: leave out --satellites")
 
 
 def _results(out: Path | None, whole: bool, record: bool, studies: Sequence[Study]) -> ResultFiles:
@@ -179,29 +148,8 @@ def _results(out: Path | None, whole: bool, record: bool, studies: Sequence[Stud
         raise HarnessError(f"--out {out}: the outcomes beside the page would have its name: end it in .md")
     before = read_record(figures) if record and figures is not None else None
     flown = [study for study in all_studies(None) if isinstance(study, FlightStudy)] if record else []
-    claimed = {claim.id: claim for study in flown for claim in claims_of(study)}
-    ids = frozenset(study.id for study in studies)
-    judges = judging_digests() if any(study.has_flights for study in studies) else {}
-    return ResultFiles(page, figures, ids, judges, claimed, before)
-
-
-def _tell_left_out(meant: Sequence[Study], chosen: Sequence[Study]) -> None:
-    """Name the studies that ``--quick`` leaves out, although a record was to stand for their flights."""
-    there = {study.id for study in chosen}
-    if missing := [study.id for study in meant if study.id not in there]:
-        warn(f"left out by --quick, as this code has not flown or judged them: {', '.join(missing)}")
-
-
-def _keeper(rows: FlightRows | None) -> Callable[[object], None] | None:
-    """What keeps a result; None where none is kept."""
-    if rows is None:
-        return None
-
-    def keep(result: object) -> None:
-        keep_flight(rows, result)
-        keep_result(rows, result)
-
-    return keep
+    claimed = frozenset(claim.id for study in flown for claim in claims_of(study))
+    return ResultFiles(page, figures, frozenset(study.id for study in studies), claimed, before)
 
 
 def _default_page() -> Path:

@@ -1,10 +1,9 @@
-"""validation.json: the outcomes of the claims as last computed, for what is written from them."""
+"""The outcomes of the claims: validation.json, which holds the last of each, and the page beside it."""
 
-import hashlib
 import json
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
 
 from pydantic import BaseModel, ConfigDict, RootModel, ValidationError
 
@@ -12,28 +11,19 @@ from fsw.input.regular_file import read_regular
 from fsw.input.schema import faults
 from fsw.input.toml_text import BoundsError
 from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Spread, Threshold
-from sim.campaign.code_digest import code_digest
 from sim.campaign.runner import StudyResult
+from sim.console import say
 from sim.errors import HarnessError
-from sim.validate.page import figure_text
+from sim.result_files import write_result
+from sim.validate.page import figure_text, render
 
 MOST_BYTES = 4_000_000
 DIGITS = 6
 """Of each figure that is kept: more would be those of the machine."""
+UNJUDGED = (ClaimVerdict.ABSENT, ClaimVerdict.TOO_FEW)
 
-
-class Recorded(NamedTuple):
-    """An outcome; where there are flights, the digest of the code that flew and the mark of what judged."""
-
-    outcome: ClaimOutcome
-    code: str
-    judge: str = ""
-
-
-Record = Mapping[str, Recorded]
+Record = Mapping[str, ClaimOutcome]
 """By the id of the claim."""
-Judges = Mapping[str, str]
-"""By the id of each study with flights: the digest of the code that judges them."""
 
 
 class _Row(BaseModel):
@@ -52,53 +42,30 @@ class _Row(BaseModel):
     verdict: ClaimVerdict
     where: str
     spread: Spread | None
-    code: str
-    judge: str = ""
 
 
 class _File(RootModel[dict[str, _Row]]):
     """The whole file."""
 
 
-def as_record(finished: Sequence[StudyResult], judges: Judges) -> Record:
-    """What the file is to hold of them; a claim that is not judged is left out."""
-    return {name: one for done in finished for name, one in _rows_of(done, judges).items()}
-
-
-def _rows_of(done: StudyResult, judges: Judges) -> Record:
-    unjudged = (ClaimVerdict.ABSENT, ClaimVerdict.TOO_FEW)
-    outcomes = {one.claim.id: one for one in done.outcomes if one.verdict not in unjudged}
-    flown = done.study.has_flights
-    code, judge = (code_digest(), mark(judges, done.study.id, outcomes)) if flown else ("", "")
-    return {name: Recorded(outcome, code, judge) for name, outcome in outcomes.items()}
-
-
-def mark(judges: Judges, study: str, claims: Iterable[str]) -> str:
-    """Of the code that judges a study and all claims that it makes: with one missing it is another."""
-    if study not in judges:
-        return ""
-    return hashlib.sha256(" ".join([judges[study], *sorted(claims)]).encode()).hexdigest()[:16]
-
-
-def with_record(
-    before: Record, finished: Sequence[StudyResult], studies: Collection[str], judges: Judges
-) -> Record:
+def with_record(before: Record, finished: Sequence[StudyResult], studies: Collection[str]) -> Record:
     """The outcomes of now and, of other studies, those before, sorted: what a study no longer claims goes.
 
-    A claim whose data are not there now keeps its outcome.
+    A claim that is not judged now, as its data are missing, keeps its outcome.
 
     Args:
         before: what the file held.
         finished: what was run.
         studies: ids of all studies; a claim is of the one with the longest id that it begins with.
-        judges: digests of the code that judges flights.
     """
     run_now = {done.study.id for done in finished}
-    claimed = {outcome.claim.id for done in finished for outcome in done.outcomes}
+    outcomes = [outcome for done in finished for outcome in done.outcomes]
+    claimed = {outcome.claim.id for outcome in outcomes}
     kept = {
         name: one for name, one in before.items() if name in claimed or study_of(name, studies) not in run_now
     }
-    return dict(sorted({**kept, **as_record(finished, judges)}.items()))
+    judged = {outcome.claim.id: outcome for outcome in outcomes if outcome.verdict not in UNJUDGED}
+    return dict(sorted({**kept, **judged}.items()))
 
 
 def study_of(claim: str, studies: Collection[str]) -> str:
@@ -106,42 +73,19 @@ def study_of(claim: str, studies: Collection[str]) -> str:
     return max((one for one in studies if f"{claim}.".startswith(f"{one}.")), key=len, default="")
 
 
-def outdated(record: Record, made: Mapping[str, Claim], judges: Judges) -> set[str]:
-    """The claims whose flights other code has flown or judged, or that now have other limits or words.
-
-    Args:
-        record: what was computed.
-        made: the claims as this code makes them, by their ids; one that is not there counts as unchanged.
-        judges: digests of the code that judges flights.
-    """
-    marks = _marks(record, judges)
-    return {
-        name
-        for name, (outcome, code, judge) in record.items()
-        if made.get(name, outcome.claim) != outcome.claim
-        or (code and (code, judge) != (code_digest(), marks[name]))
-    }
-
-
-def _marks(record: Record, judges: Judges) -> dict[str, str]:
-    """By the id of each claim with flights: its mark, if this code has judged it."""
-    claims: dict[str, list[str]] = {}
-    for name, one in record.items():
-        if one.code:
-            claims.setdefault(study_of(name, judges), []).append(name)
-    return {name: mark(judges, study, names) for study, names in claims.items() for name in names}
-
-
 def as_figures(record: Record) -> dict[str, dict[str, str]]:
     """By the id of the claim: its figure with its unit, its limits, its verdict."""
     return {
         name: {
-            "figure": figure_text(one.outcome),
-            "limits": one.outcome.claim.limits,
-            "verdict": one.outcome.verdict.value,
+            "figure": figure_text(outcome),
+            "limits": outcome.claim.limits,
+            "verdict": outcome.verdict.value,
         }
-        for name, one in record.items()
+        for name, outcome in record.items()
     }
+
+
+# --- The file
 
 
 def as_text(record: Record) -> str:
@@ -169,8 +113,8 @@ def read_record(path: Path) -> Record:
     return {name: _recorded(name, row) for name, row in rows.items()}
 
 
-def _row(one: Recorded) -> _Row:
-    outcome, claim = one.outcome, one.outcome.claim
+def _row(outcome: ClaimOutcome) -> _Row:
+    claim = outcome.claim
     assert outcome.ours is not None
     return _Row(
         statement=claim.statement,
@@ -184,17 +128,15 @@ def _row(one: Recorded) -> _Row:
         verdict=outcome.verdict,
         where=outcome.where,
         spread=None if outcome.spread is None else _rounded_spread(outcome.spread),
-        code=one.code,
-        judge=one.judge,
     )
 
 
-def _recorded(name: str, row: _Row) -> Recorded:
+def _recorded(name: str, row: _Row) -> ClaimOutcome:
     claim = Claim(name, row.statement, row.source, row.unit, row.low, row.high, row.threshold, row.wide)
     met = row.verdict is ClaimVerdict.PASS
     fitted = met and row.threshold is Threshold.FITTED  # however it was called when it was written
     verdict = ClaimVerdict.FITTED if fitted else row.verdict
-    return Recorded(ClaimOutcome(claim, verdict, row.ours, row.where, row.spread), row.code, row.judge)
+    return ClaimOutcome(claim, verdict, row.ours, row.where, row.spread)
 
 
 def _rounded_spread(spread: Spread) -> Spread:
@@ -208,3 +150,58 @@ def _rounded(value: float) -> float:
 
 def _no_record(path: Path, why: str) -> HarnessError:
     return HarnessError(f"{path}: no outcomes of torquer validate: {why}")
+
+
+# --- The file and the page of a run
+
+
+@dataclass(slots=True)
+class ResultFiles:
+    """What is written of a run.
+
+    Attributes:
+        page: None: not written.
+        figures: the file of outcomes; None: not written.
+        studies: ids of all studies.
+        claimed: ids of the claims that are made, by all studies that tell them beforehand.
+        before: what ``figures`` held of all studies, where the outcomes are put among those; None: it is to
+            hold those of this run alone.
+        done: the studies of this run that are done.
+    """
+
+    page: Path | None
+    figures: Path | None
+    studies: frozenset[str]
+    claimed: frozenset[str] = frozenset()
+    before: Record | None = None
+    done: list[StudyResult] = field(default_factory=list)
+
+    def take(self, study: StudyResult, wall_s: float) -> None:
+        """A study is done; where there are outcomes before, both files now have its own too.
+
+        Raises:
+            HarnessError: a file cannot be written.
+        """
+        self.done.append(study)
+        if self.before is not None:
+            known = with_record(self.before, self.done, self.studies)
+            # no details: those of a part would stand for the whole
+            self._write(known, render([*known.values()], [], wall_s, sorted(self.claimed - known.keys())))
+
+    def finish(self, finished: Sequence[StudyResult], wall_s: float) -> None:
+        """All studies are done; say which files there are.
+
+        Raises:
+            HarnessError: a file cannot be written.
+        """
+        if self.before is None:
+            outcomes = [outcome for study in finished for outcome in study.outcomes]
+            self._write(with_record({}, finished, self.studies), render(outcomes, finished, wall_s))
+        for name, file in (("figures", self.figures), ("page", self.page)):
+            if file is not None:
+                say(f"{name}: {file}")
+
+    def _write(self, known: Record, text: str) -> None:
+        for file, content in ((self.figures, as_text(known)), (self.page, text)):
+            if file is not None:
+                write_result(file, content)  # outcomes of hours are not lost by a kill

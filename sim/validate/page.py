@@ -1,7 +1,7 @@
 """validation.md: one table, made of outcomes alone."""
 
 import platform
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, replace
 from math import inf
 
@@ -29,11 +29,6 @@ the part that is missing counts.) *fitted*: the paper's figure, to which a numbe
 meeting it proves nothing, so it does not count as met. A paper reports one flight; the column *all starts*
 gives the least, the median and the greatest over all starts, and how many meet the tolerance. Settled means
 within the threshold from then on to the end, for at least 600 s.
-
-A star marks what other code has flown or judged. Code that flies the same, byte for byte
-(`make same-flights`), is not other code. The flights take hours, so a row without a star may come from an
-earlier run of the same code: `torquer validate --recorded docs/validation.json` takes such rows as they are,
-computes and flies the rest, and judges the whole.
 """
 
 
@@ -41,7 +36,6 @@ def render(
     outcomes: Sequence[ClaimOutcome],
     finished: Sequence[StudyResult],
     wall_s: float,
-    earlier: Collection[str] = (),
     unknown: Sequence[str] = (),
 ) -> str:
     """The page: the table of claims, what was left out of the reference files, wall time and platform.
@@ -50,12 +44,9 @@ def render(
         outcomes: of all claims of the page.
         finished: the studies whose reference files and recorded passes are listed.
         wall_s: of this run.
-        earlier: claims that other code has flown or judged; they are marked.
         unknown: claims that are made and have no outcome yet.
     """
-    lines = [_HEAD, tally(outcomes) + ".", "", *claims_table(outcomes, earlier), ""]
-    if earlier:
-        lines += [f"\\*: flown or judged by an earlier version, {len(earlier)} of {len(outcomes)}.", ""]
+    lines = [_HEAD, tally(outcomes) + ".", "", *claims_table(outcomes), ""]
     if unknown:
         lines += [f"Claimed, and not computed yet: {', '.join(unknown)}.", ""]
     lines += [
@@ -95,11 +86,10 @@ def _is_loose_part(claim: Claim, ours: float) -> bool:
     return replace(claim, low=-inf, high=1.0 - claim.low).is_loose(1.0 - ours)
 
 
-def claims_table(outcomes: Sequence[ClaimOutcome], marked: Collection[str] = ()) -> list[str]:
-    """The lines of a table of claims with figures and verdicts; ``marked``: claims with a star by these."""
+def claims_table(outcomes: Sequence[ClaimOutcome]) -> list[str]:
+    """The lines of a table of claims with figures and verdicts."""
     head = "| claim | source | ours | all starts | tolerance | whose | verdict |"
-    rows = [_row(outcome, " \\*" if outcome.claim.id in marked else "") for outcome in outcomes]
-    return [head, "|---" * 7 + "|", *rows]
+    return [head, "|---" * 7 + "|", *map(_row, outcomes)]
 
 
 def line(outcome: ClaimOutcome) -> str:
@@ -160,7 +150,7 @@ def platform_line() -> str:
     )
 
 
-def _row(outcome: ClaimOutcome, mark: str) -> str:
+def _row(outcome: ClaimOutcome) -> str:
     claim = outcome.claim
     ours = "" if outcome.ours is None else figure_text(outcome)
     if outcome.verdict is ClaimVerdict.FAIL and outcome.where:
@@ -176,7 +166,7 @@ def _row(outcome: ClaimOutcome, mark: str) -> str:
         "" if outcome.spread is None else _spread(outcome.spread),
         limits,
         claim.threshold.value,
-        outcome.verdict.value + mark,
+        outcome.verdict.value,
     )
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 

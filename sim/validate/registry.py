@@ -1,12 +1,11 @@
 """All studies, and the choice among them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 
 from fsw.input.near import did_you_mean
 from sim.campaign.claim import Study
-from sim.campaign.code_digest import code_digest
 from sim.errors import HarnessError
 from sim.validate import cells, computed, microsat, optimal_pulses, shipped
 from sim.validate.commissioning import calibrated, wirings
@@ -51,26 +50,13 @@ def all_studies(satellites: int | None = None) -> list[Study]:
     return [*reference.shipped_studies(), *made]
 
 
-def judging_digests() -> dict[str, str]:
-    """By the id of each study with flights: what tells the code that judges them from other code."""
-    return {
-        study.id: code_digest(module.__name__)
-        for module in MODULES
-        for study in _made_by(module, None)
-        if study.has_flights
-    }
-
-
-def choose_studies(
-    studies: Sequence[Study], only: Sequence[str], quick: bool, known: Mapping[str, Study]
-) -> list[Study]:
+def choose_studies(studies: Sequence[Study], only: Sequence[str], quick: bool) -> list[Study]:
     """The studies to run.
 
     Args:
         studies: all.
         only: first words of the ids of those that are meant; none: all.
         quick: leave out flights.
-        known: by their ids, studies that take the place of flights.
 
     Raises:
         HarnessError: a word of ``only`` matches no study, or no study is left.
@@ -82,11 +68,7 @@ def choose_studies(
                 f"--only {word}: no such claims{did_you_mean(word, ids)}; there are {', '.join(ids)}"
             )
     meant = [study for study in studies if not only or any(_begins(study.id, word) for word in only)]
-    studies_left = [
-        known.get(study.id, study)
-        for study in meant
-        if study.id in known or not (quick and study.has_flights)
-    ]
+    studies_left = [study for study in meant if not (quick and study.has_flights)]
     if not studies_left:
         raise HarnessError("--quick leaves out flights, and --only names nothing else")
     return studies_left

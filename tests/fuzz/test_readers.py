@@ -23,10 +23,6 @@ from fsw.input import command_line
 from sim.campaign.definition.campaign_file import load_campaign
 from sim.campaign.one_run import Keep, RunTask
 from sim.campaign.results.store import open_results
-from sim.fault_table import command as faults_command
-from sim.fault_table import earlier_rows
-from sim.fault_table.row import CaseResult, CheckOutcome, CheckVerdict, RowResult
-from sim.fault_table.rows.table import ROWS
 from sim.report import conclude
 from sim.scenario.schema import load
 from sim.validate.reference.reference import CHECKS, ELEMENTS
@@ -306,24 +302,6 @@ def test_a_stimulus(mutated, flown, tmp_path, name, sensor):
         words = [sensor, "--bus", "none", "--stimulus", str(tmp_path / name)]
         assert judged(lambda: hil_stub.__main__.main(words))[0] == 2
 
-    mutate()
-
-
-def test_a_campaign_that_is_kept(mutated, tmp_path, monkeypatch):
-    case = CaseResult(
-        ROWS[1].name, 0, 1, (CheckOutcome("limits", CheckVerdict.PASS, "held"),), {"peak_deg": 3.5}, 0.25
-    )
-    whole = faults_command.render.as_json([RowResult(ROWS[1], (case,)), RowResult(ROWS[2], (case, case))])
-    monkeypatch.setattr(faults_command, "fly_rows", lambda *given: [])
-
-    @fuzzed
-    @given(mutated(whole.encode()))
-    def mutate(content):
-        (tmp_path / "faults.json").write_bytes(content)
-        words = ("--row", ROWS[0].name, "--keep", tmp_path / "faults.json", "--out", tmp_path / "out")
-        torquer("faults", *words)
-
-    assert earlier_rows.read(write(tmp_path / "faults.json", whole)).keys() == {ROWS[1].name, ROWS[2].name}
     mutate()
 
 

@@ -100,12 +100,6 @@ def large_run_json(folder):
     return ("report", "run"), "run.json: cannot be read (it is larger than 1 MB)"
 
 
-def large_campaign(folder):
-    (folder / "x.json").touch()
-    os.truncate(folder / "x.json", 10**10)
-    return ("faults", "--keep", "x.json"), "--keep x.json: not the faults.json of a campaign"
-
-
 def rows_without_end(folder):
     """A file of a few kB that declares 10^11 rows of each table."""
     declared = tables(folder)
@@ -137,7 +131,7 @@ def tables(folder):
 
 SAMPLES = (
     deep_list, deep_table, deep_key, deep_setting, many_digits, endless_file, pipe_that_nobody_writes,
-    large_file, large_log, large_run_json, large_campaign, rows_without_end, rows_that_are_not_there,
+    large_file, large_log, large_run_json, rows_without_end, rows_that_are_not_there,
 )  # fmt: skip
 
 
@@ -311,8 +305,7 @@ LONG = "x" * 5000
         ("report", LONG),
         ("validate", "--reference", LONG),
         ("validate", "--quick", "--out", LONG),
-        ("faults", "--keep", LONG),
-        ("validate", "--quick", "--keep", LONG),
+        ("faults", "--out", LONG),
         ("validate", "--flight-data", LONG),
         ("watch", LONG),
         ("watch", f"{LONG}/bus.log"),

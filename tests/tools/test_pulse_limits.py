@@ -1,6 +1,4 @@
-"""What the tool finds wrong, and what it does without rows."""
-
-import json
+"""What the tool finds wrong, and the page that it writes."""
 
 import pulse_limits
 import pytest
@@ -13,21 +11,26 @@ ROWS = {order.key: [0.4 if order.law == BOUND else 0.5] for order in all_orders(
 }
 
 
-def written(tmp_path, rows):
-    path = tmp_path / "rows.json"
-    path.write_text(json.dumps(rows), encoding="utf-8")
-    return ["--rows", str(path), "--out", str(tmp_path / "page.md"), "--render"]
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    """Runs the command on rows; its exit code."""
+
+    def of(rows):
+        monkeypatch.setattr(pulse_limits, "fly_all", lambda workers: rows)
+        return main(["--out", str(tmp_path / "page.md")])
+
+    return of
 
 
-def test_a_page_is_written_beside_its_picture(tmp_path):
-    assert main(written(tmp_path, ROWS)) == 0
+def test_a_page_is_written_beside_its_picture(run, tmp_path):
+    assert run(ROWS) == 0
     assert "![Pointing error" in (tmp_path / "page.md").read_text(encoding="utf-8")
     assert (tmp_path / "page.svg").exists()
 
 
-def test_a_law_better_than_the_bound_fails(tmp_path, capsys):
+def test_a_law_better_than_the_bound_fails(run, capsys):
     better = next(order.key for order in all_orders() if order.law == "mpc")
-    assert main(written(tmp_path, ROWS | {better: [0.1]})) == 1
+    assert run(ROWS | {better: [0.1]}) == 1
     assert "less error than the bound: mpc, back-off [s] 0" in capsys.readouterr().out
 
 
@@ -37,34 +40,6 @@ def test_a_whole_flight_that_differs_fails():
     assert list(faults(ROWS | {name: [0.7, 0.52, 0.49]})) == [
         f"linear and whole flight differ by 0.180 deg: {name}"
     ]
-
-
-def test_without_rows_nothing_is_rendered(tmp_path, capsys):
-    words = ["--rows", str(tmp_path / "none.json"), "--out", str(tmp_path / "page.md"), "--render"]
-    assert main(words) == 2
-    assert "none.json: no rows can be read" in capsys.readouterr().err
-    assert not (tmp_path / "page.md").exists()
-
-
-@pytest.mark.parametrize("rows", [[1.0], {"mpc": 1.0}, {"mpc": ["none"]}, 3])
-def test_what_is_no_rows_is_told(rows, tmp_path, capsys):
-    assert main(written(tmp_path, rows)) == 2
-    assert "no rows can be read" in capsys.readouterr().err
-
-
-def test_what_is_kept_is_not_flown_again(tmp_path, monkeypatch):
-    monkeypatch.setattr(pulse_limits, "both", None)
-    words = written(tmp_path, ROWS)[:-1]
-    assert main([*words, "--keep"]) == 0
-
-
-def test_without_a_file_yet_keeping_begins(tmp_path, monkeypatch):
-    monkeypatch.setattr(pulse_limits, "both", lambda *of: [0.5, 0.52, 0.49])
-    monkeypatch.setattr(pulse_limits, "all_orders", lambda: ())
-    path = tmp_path / "rows.json"
-    pulse_limits.fly_missing({}, path)
-    assert json.loads(path.read_text()) == {name: [0.5, 0.52, 0.49] for name, _, _ in WHOLE}
-    assert [kept.name for kept in tmp_path.iterdir()] == ["rows.json"]
 
 
 def test_a_whole_flight_without_a_figure_fails():

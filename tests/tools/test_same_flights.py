@@ -1,30 +1,18 @@
-"""Which flights differ between two versions, and what is carried over then."""
-
-import gzip
-import json
+"""Which flights differ between two versions."""
 
 import pytest
 import same_flights
-from same_flights import carry_over, different, main, scenarios, without_state_crc
+from same_flights import different, main, scenarios, without_state_crc
 
 from fsw.wire.messages import TickDone
-from sim.campaign.code_digest import code_digest
-
-OLD, NEW = "0123456789abcdef", "fedcba9876543210"
 
 
-@pytest.fixture
-def records(tmp_path, monkeypatch):
-    """A repository with records by the old code and by another one."""
-    docs = tmp_path / "docs"
-    docs.mkdir()
-    text = json.dumps({"a": {"code": OLD}, "b": {"code": "another"}, "c": {"state": f"{OLD} 12345678"}})
-    (docs / "validation.json").write_text(text)
-    (docs / "faults.json.gz").write_bytes(gzip.compress(text.encode()))
-    monkeypatch.setattr(same_flights, "ROOT", tmp_path)
-    monkeypatch.setattr(same_flights, "exported", lambda commit, folder: None)
-    monkeypatch.setattr(same_flights, "run", lambda tree, *words: NEW if tree == tmp_path else OLD)
-    return docs
+@pytest.fixture(autouse=True)
+def no_export(monkeypatch):
+    if_real = same_flights.exported
+    monkeypatch.setattr(
+        same_flights, "exported", lambda commit, folder: None if commit == "HEAD" else if_real(commit, folder)
+    )
 
 
 def flights_of(before, now):
@@ -45,31 +33,14 @@ def test_a_flight_differs_by_its_digest_or_where_one_version_lacks_it(before, no
     assert different(before, now) == names
 
 
-def test_what_is_carried_over_are_the_digests_of_the_old_code_alone(records):
-    assert carry_over(records, {OLD: NEW}) == ["validation.json: 2", "faults.json.gz: 2"]
-    for text in (
-        (records / "validation.json").read_bytes(),
-        gzip.decompress((records / "faults.json.gz").read_bytes()),
-    ):
-        found = json.loads(text)
-        assert (found["a"]["code"], found["b"]["code"]) == (NEW, "another")
-        assert found["c"]["state"] == f"{NEW} 12345678"
-
-
-def test_flights_that_differ_are_named_and_nothing_is_carried_over(records, capsys):
-    before = (records / "validation.json").read_bytes()
+def test_flights_that_differ_are_named(capsys):
     fly = flights_of({"microsat": "1", "posat1": "1"}, {"microsat": "1", "posat1": "2"})
-    assert main(["HEAD", "--carry-over"], fly) == 1
+    assert main(["HEAD"], fly) == 1
     assert capsys.readouterr().out == "differs: posat1\n1 of 2 flights differ\n"
-    assert (records / "validation.json").read_bytes() == before
 
 
-def test_the_same_flights_are_carried_over_on_request(records, capsys):
-    before = (records / "validation.json").read_bytes()
+def test_the_same_flights_are_counted(capsys):
     assert main(["HEAD"], flights_of({"microsat": "1"}, {"microsat": "1"})) == 0
-    assert (records / "validation.json").read_bytes() == before
-    assert main(["HEAD", "--carry-over"], flights_of({"microsat": "1"}, {"microsat": "1"})) == 0
-    assert NEW in (records / "validation.json").read_text()
     assert "1 flight the same byte for byte as by HEAD" in capsys.readouterr().out
 
 
@@ -88,16 +59,6 @@ def test_the_fault_that_flips_bits_of_the_state_is_left_out_with_its_layout(monk
     found = same_flights.flights(tree, 1.0, 1, state_crc=False)
     assert "fault bit-flip" not in found
     assert found["fault open-coil"] == "3"
-
-
-def test_a_layout_of_another_kind_carries_nothing_over(capsys):
-    with pytest.raises(SystemExit):
-        main(["HEAD", "--but-state-crc", "--carry-over"])
-    assert "not allowed with" in capsys.readouterr().err
-
-
-def test_the_digests_are_read_from_a_tree(monkeypatch):
-    assert same_flights.run(same_flights.ROOT, "-c", same_flights.DIGESTS).split()[0] == code_digest()
 
 
 def test_every_scenario_that_ships_is_flown():
@@ -124,5 +85,5 @@ def test_a_fault_has_the_same_digest_again_and_is_not_another_one():
 
 
 def test_the_time_a_computer_takes_is_no_figure_at_any_depth():
-    row = {"cases": [{"wall_s": 1.5, "figures": {"worst step ms": 3.0, "pulses": 7}}], "code": OLD}
+    row = {"cases": [{"wall_s": 1.5, "figures": {"worst step ms": 3.0, "pulses": 7}}], "code": "0123"}
     assert same_flights.figures(row) == {"cases": [{"figures": {"pulses": 7}}]}

@@ -30,12 +30,6 @@ EXAMPLES = examples(
 @click.option("--out", type=click.Path(path_type=Path), help="Folder of faults.xml (JUnit), .html and .json.")
 @click.option("--workers", type=WholeNumber(min=1), help="Processes. Default: one a core.")
 @click.option("--slow", is_flag=True, help="Also rows that run real processes: minutes.")
-@click.option(
-    "--keep",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Keep each row here, as in faults.json; a run that was stopped flies those that are missing.",
-)
 @click.option("--write-docs", is_flag=True, help="Write docs/faults.md of the repository.")
 @JUNIT
 @JSON
@@ -48,13 +42,15 @@ def faults(
     out: Path | None,
     workers: int | None,
     slow: bool,
-    keep: Path | None,
     write_docs: bool,
     junit: Path | None,
 ) -> int:
-    """Inject every fault of the table, in several phases and with several seeds: a verdict per row."""
+    """Inject every fault of the table, in several phases and with several seeds: a verdict per row.
+
+    A run that was stopped goes on where it was.
+    """
     from sim.fault_table import command
 
     if listing:
         return command.list_rows(rows)
-    return command.faults(rows, phases, seeds, out, workers, write_docs, slow, keep, junit)
+    return command.faults(rows, phases, seeds, out, workers, write_docs, slow, junit)

@@ -10,8 +10,7 @@ from torquer.cli.options import JSON, JUNIT, examples, sentences
 EXAMPLES = examples(
     "torquer validate --quick",
     "torquer validate --only population --satellites 20",
-    "torquer validate --keep build/flights.jsonl --out validation.md",
-    "torquer validate --recorded docs/validation.json --out validation.md",
+    "torquer validate --out validation.md",
 )
 
 
@@ -49,18 +48,6 @@ EXAMPLES = examples(
     is_flag=True,
     help="Put the outcomes among those of validation.json, and write the page of all.",
 )
-@click.option(
-    "--keep",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Keep each flight here; a run that was stopped flies those that are missing.",
-)
-@click.option(
-    "--recorded",
-    metavar="FILE",
-    type=click.Path(path_type=Path),
-    help="Outcomes as --record writes them: flights that this code has flown and judged count from there.",
-)
 @JUNIT
 @JSON
 @sentences
@@ -74,15 +61,11 @@ def validate(
     out: Path | None,
     junit: Path | None,
     record: bool,
-    keep: Path | None,
-    recorded: Path | None,
 ) -> int:
     """Check every published figure and reference: claim, source, our figure, verdict.
 
-    All take some hours, most of it flights.
+    All take an hour or more, most of it flights. A run that was stopped goes on where it was.
     """
     from sim.validate.command import validate
 
-    return validate(
-        reference, only, out, quick, workers, satellites, junit, flight_data, record, keep, recorded
-    )
+    return validate(reference, only, out, quick, workers, satellites, junit, flight_data, record)

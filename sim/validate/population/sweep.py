@@ -52,16 +52,6 @@ def sweep_order(quantity: Quantity, size: float, seed: int) -> Order:
     return Order(POPULATIONS[KIND].scenario, overrides, seed, ORBITS, consistency_figures, name)
 
 
-def sweep_orders(sizes: int, seeds: Sequence[int]) -> list[Order]:
-    """The flights of all sweeps, the sizes of a satellite after each other."""
-    return [
-        sweep_order(quantity, size, seed)
-        for seed in seeds
-        for quantity in QUANTITIES
-        for size in quantity.sizes(sizes)
-    ]
-
-
 def _dipole(seed: int, drawn: Nested, size_am2: float) -> Nested:
     """Direction, and the part that points elsewhere in shadow, as drawn."""
     disturbance = drawn["disturbance"]

@@ -16,7 +16,6 @@ from sim.campaign.study import (
     Group,
     campaign,
     describe_order,
-    part_of,
     summary_number,
     summary_value,
 )
@@ -159,8 +158,6 @@ class TestFigures:
             assert [outcome.verdict.value for outcome in study.conclude(flights)] == verdicts
         few = study.conclude(flights)[0]
         assert (few.ours, few.where) == (2.0, "3 of the 4 satellites that it is claimed for")
-        part = part_of(study, lambda order: order.seed < 2)
-        assert part.conclude(flights[:2])[0].where == "2 of the 4 satellites that it is claimed for"
         flights[1] = FlightResult(orders[1], {}, {})
         assert {outcome.verdict for outcome in study.conclude(flights)} == {ClaimVerdict.FAIL}
 

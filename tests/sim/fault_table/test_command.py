@@ -7,10 +7,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from sim.campaign.code_digest import code_digest
 from sim.errors import HarnessError
-from sim.fault_table import command, earlier_rows, render
-from sim.fault_table.campaign import FAULT_CODE
+from sim.fault_table import command, render
 from sim.fault_table.row import CaseResult, CheckOutcome, CheckVerdict, FaultRow, RowFault, RowResult, Unseen
 from sim.fault_table.rows.table import ROWS, choose_rows
 from sim.faults.kinds import KINDS
@@ -52,7 +50,7 @@ def planted():
 
 def reporting(results):
     """Stands for ``fly_rows``: the rows are done, one after the other."""
-    return lambda rows, phases, seeds, workers, watch, report: [report(one) for one in results]
+    return lambda rows, phases, seeds, workers, watch, report: [report(one) or one for one in results]
 
 
 @pytest.mark.long
@@ -126,11 +124,6 @@ def test_the_list_names_every_row(capsys):
         (("--row", "gremlins"), "--row gremlins: there is no such row"),
         (("--phases", "0"), "--phases"),
         (("--row", "none", "--write-docs"), "--write-docs: the page is of all rows"),
-        (("--row", "none", "--keep", "Makefile"), "--keep Makefile: not the faults.json of a campaign"),
-        (
-            ("--row", "none", "--junit", "new", "--keep", "new"),
-            "--junit new and --keep new are the same file",
-        ),
     ],
 )
 def test_a_user_error_is_one_sentence(arguments, said, capsys):
@@ -140,130 +133,13 @@ def test_a_user_error_is_one_sentence(arguments, said, capsys):
     assert error.count("\n") == 1
 
 
-def test_rows_of_an_earlier_campaign_count(planted, monkeypatch, capsys, tmp_path):
-    (tmp_path / "faults.json").write_text(render.as_json(planted))
-    now = [RowResult(planted[0].row, planted[0].cases * 3)]
-    monkeypatch.setattr(command, "fly_rows", reporting(now))
-    assert run("--row", "none", "--keep", tmp_path / "faults.json", "--out", tmp_path / "both") == 1
-    assert "3 rows, 6 cases: 1 row passed, 1 failed, 1 not yet" in capsys.readouterr().out
-    both = earlier_rows.read(tmp_path / "both" / "faults.json")
-    assert both == {one.row.name: one for one in (*now, *planted[1:])}
-
-
-def of_this_code(result, phases=1, seeds=1):
-    """The row as flown now, in all phases with all seeds."""
-    (first, *_) = result.cases
-    cases = [replace(first, phase=phase, seed=seed + 1) for phase in range(phases) for seed in range(seeds)]
-    return RowResult(result.row, tuple(cases), code_digest(FAULT_CODE))
-
-
-def test_the_page_marks_the_rows_of_earlier_code_and_with_fewer_phases_or_seeds(planted):
-    now = [of_this_code(one, 2, 2) for one in planted]
-    assert "earlier" not in render.markdown(now, 2, 2)
-    assert "earlier" not in render.markdown([of_this_code(one, 3, 2) for one in planted], 2, 2)
-    for other in (replace(now[1], code="5eed"), of_this_code(planted[1], 2, 1), of_this_code(planted[1], 4)):
-        page = render.markdown([now[0], other, now[2]], 2, 2)
-        assert "flown by an earlier version, or in fewer phases or with fewer seeds" in page
-        assert [line for line in page.splitlines() if line.endswith("\\* |")] == [
-            line for line in page.splitlines() if line.startswith("| `loss-50`")
-        ]
-
-
-class TestARowOfOtherCode:
-    """Of three rows, ``none`` passed when other code flew it; the others are of the present code."""
-
-    @pytest.fixture
-    def results(self, planted):
-        return [replace(planted[0], code="5eed"), *map(of_this_code, planted[1:])]
-
-    @pytest.fixture
-    def other(self, results):
-        return render.otherwise_flown(results, 1, 1)
-
-    def test_is_marked_in_its_line_and_in_the_tally(self, results, other):
-        assert other == {"none"}
-        assert [render.line(one, other)[:10].strip() for one in results] == ["PASS *", "PASS", "not yet"]
-        assert render.tally(results, other).endswith(f"; * 1 row {render.OTHERWISE_FLOWN}")
-        assert "*" not in render.tally(results[1:], render.otherwise_flown(results[1:], 1, 1))
-
-    def test_is_marked_in_json(self, results, other):
-        values = json.loads(render.as_json(results, other))
-        assert [row["otherwise_flown"] for row in values["rows"]] == [True, False, False]
-        assert values["tally"] == render.tally(results, other)
-
-    def test_is_skipped_in_junit_with_the_reason_unless_it_has_failed(self, results, other):
-        (skipped,) = render.suites(results, other)["none"]
-        assert (skipped.failure, skipped.skipped) == ("", render.OTHERWISE_FLOWN)
-        assert render.suites(results, other)["loss-50"][0].skipped == ""
-        failed = replace(results[0], cases=(case("none", CheckVerdict.FAIL),))
-        (judged,) = render.suites([failed], other)["none"]
-        assert (judged.failure, judged.skipped) == ("check 0: said <0>", "")
-
-    def test_is_marked_on_the_page(self, results, other):
-        assert render.html(results, other).count("PASS *") == 1
-        assert render.OTHERWISE_FLOWN in render.html(results, other)
-
-    def test_is_marked_by_the_command(self, results, monkeypatch, tmp_path, capsys):
-        (tmp_path / "kept.json").write_text(render.as_json(results))
-        monkeypatch.setattr(command, "fly_rows", reporting([]))
-        arguments = ("--keep", tmp_path / "kept.json", "--out", tmp_path / "out")
-        assert run("--row", "second-sender", *arguments) == 0
-        assert f"* 1 row {render.OTHERWISE_FLOWN}" in capsys.readouterr().out
-        written = json.loads((tmp_path / "out" / "faults.json").read_text())
-        assert [row["otherwise_flown"] for row in written["rows"]] == [True, False, False]
-        assert (tmp_path / "out" / "faults.xml").read_text().count(render.OTHERWISE_FLOWN) == 1
-
-
-class TestAStoppedCampaign:
-    ROWS = ("--row", "none", "--row", "loss-50", "--phases", 2, "--seeds", 1)
-
-    @pytest.fixture
-    def flown(self, monkeypatch, planted):
-        """The names of the rows that are flown; nothing is."""
-        names = []
-
-        def fly(rows, phases, seeds, workers, watch, report):
-            by_name = {one.row.name: of_this_code(one, phases, seeds) for one in planted}
-            for row in rows:
-                names.append(row.name)
-                report(by_name[row.name])
-
-        monkeypatch.setattr(command, "fly_rows", fly)
-        return names
-
-    def test_goes_on_where_it_was(self, flown, planted, tmp_path, capsys):
-        file = tmp_path / "faults.json"
-        file.write_text(render.as_json([of_this_code(planted[0], 2)]))
-        for _ in range(2):
-            assert run(*self.ROWS, "--keep", file) == 0
-            assert flown == ["loss-50"]
-            assert "2 rows, 4 cases: 2 rows passed" in capsys.readouterr().out
-
-    @pytest.mark.parametrize("other", [{"code": "5eed"}, {"code": ""}, {"cases": slice(1)}])
-    def test_flies_again_what_other_code_or_fewer_phases_gave(self, flown, planted, tmp_path, other):
-        known = of_this_code(planted[0], 2)
-        changed = {"cases": known.cases[other["cases"]]} if "cases" in other else other
-        (tmp_path / "faults.json").write_text(render.as_json([replace(known, **changed)]))
-        assert run(*self.ROWS, "--keep", tmp_path / "faults.json") == 0
-        assert flown == ["none", "loss-50"]
-
-    def test_has_kept_each_row_that_was_done(self, monkeypatch, planted, tmp_path):
-        def fly(rows, phases, seeds, workers, watch, report):
-            report(of_this_code(planted[0]))
-            raise KeyboardInterrupt
-
-        monkeypatch.setattr(command, "fly_rows", fly)
-        with pytest.raises(KeyboardInterrupt):
-            command.faults((), 1, 1, None, 1, False, keep=tmp_path / "faults.json")
-        assert list(earlier_rows.read(tmp_path / "faults.json")) == ["none"]
-        assert [file.name for file in tmp_path.iterdir()] == ["faults.json"]
-
-
-def test_an_earlier_row_with_another_fault_is_refused(planted, tmp_path):
-    (tmp_path / "faults.json").write_text(render.as_json(planted).replace("part 0.5", "part 0.4"))
-    with pytest.raises(HarnessError, match="loss-50 was flown with another fault"):
-        earlier_rows.read(tmp_path / "faults.json", {"none"})
-    assert list(earlier_rows.read(tmp_path / "faults.json", {"loss-50"})) == ["none", "second-sender"]
+@pytest.mark.long
+def test_cases_that_were_flown_are_not_flown_again(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("TORQUER_CACHE", str(tmp_path))
+    words = ("--row", "queue-full", "--workers", 1)
+    assert run(*words) == 0
+    assert run(*words, "--phases", 2) == 0
+    assert f"{tmp_path}: 1 of 2 results known" in capsys.readouterr().err
 
 
 def test_junit_counts_failures_and_what_is_open(planted):

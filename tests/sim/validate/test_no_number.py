@@ -15,13 +15,13 @@ from sim.campaign.claim import Claim, ClaimVerdict
 from sim.campaign.flight import FlightResult, Order
 from sim.validate import optimal_pulses
 from sim.validate.consat import minimisers, posat1, prediction
+from sim.validate.guard import guarded
 from sim.validate.population.claims import quiet_and_honest
 from sim.validate.reference import elements_check, reference
 from sim.validate.reference.reference_table import DATA
 from sim.validate.review import damping, driven_wheel, effects, law_flight, regulators, wheel
 from sim.validate.review import feedback_gains as gains
 from sim.validate.review.figures import one_figure
-from sim.validate.running.guard import guarded
 
 VALIDATE = Path(__file__).parents[3] / "sim" / "validate"
 NO_FIGURES = {

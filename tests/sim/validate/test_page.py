@@ -4,7 +4,7 @@ import pytest
 
 from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Spread, Threshold
 from sim.campaign.runner import StudyResult
-from sim.validate.outcomes import as_record
+from sim.validate.outcomes import with_record
 from sim.validate.page import as_json, line, loose, render, suites, tally
 
 CLAIM = Claim("a.b", "Least | most", "Somebody 2001", "deg", low=1.0, high=2.0, threshold=Threshold.PAPER)
@@ -46,14 +46,6 @@ class TestPage:
         for threshold in Threshold:
             assert f"*{threshold.value}*:" in page, "each is explained"
 
-    def test_what_other_code_has_flown_is_marked(self, page):
-        assert "\\*" not in page
-        marked = render(self.outcomes(), [], 61.4, {"a.c"})
-        assert [row for row in marked.splitlines() if "\\*" in row] == [
-            "| Too much (`a.c`) | Her | 2e-09 at row 8 |  | <= 1e-09 (rounding) | own choice | FAIL \\* |",
-            "\\*: flown or judged by an earlier version, 1 of 4.",
-        ]
-
     def test_the_terminal_names_the_worst_row_and_whose_the_limit_is(self):
         texts = [line(outcome) for outcome in self.outcomes()]
         assert texts[1] == "FAIL   a.c: Too much: 2e-09 (<= 1e-09, own choice)  [row 8]"
@@ -85,7 +77,7 @@ class TestPage:
         assert "| 2 deg of 3 of the 30 satellites that it is claimed for |" in render([few], finished, 1.0)
         assert as_json(few)["verdict"] == "too few to judge"
         assert loose([few]) == []
-        assert as_record(finished, {}) == {}
+        assert with_record({}, finished, {"a"}) == {}
 
     def test_a_limit_of_one_s_own_far_from_the_figure_is_named_unless_it_says_why(self):
         outcomes = [

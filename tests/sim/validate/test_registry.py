@@ -6,6 +6,7 @@ import pytest
 
 from sim.campaign.flight import fly_order
 from sim.campaign.study import FlightStudy
+from sim.campaign.study_cache import task_digest
 from sim.errors import HarnessError
 from sim.validate.registry import all_studies, choose_studies, find_repository
 
@@ -19,7 +20,7 @@ class TestChoice:
             study("reference.tle", []),
             study("posat1", [], has_flights=True),
         )
-        return lambda *only, quick=False: [one.id for one in choose_studies(studies, only, quick, {})]
+        return lambda *only, quick=False: [one.id for one in choose_studies(studies, only, quick)]
 
     def test_all_by_default_and_first_words_by_only(self, ids):
         assert ids() == ["reference.igrf14", "reference.tle", "posat1"]
@@ -52,6 +53,13 @@ class TestChoice:
     def test_ids_are_unique_and_begin_with_their_study(self):
         studies = all_studies()
         assert len({s.id for s in studies}) == len(studies) > 10
+
+
+def test_every_task_with_flights_is_known_again():
+    tasks = [task for study in all_studies() if study.has_flights for task in study.tasks]
+    digests = [task_digest(task) for task in tasks]
+    assert [task for task, digest in zip(tasks, digests, strict=True) if digest is None] == []
+    assert len(set(digests)) == len({repr(task) for task in tasks}) > 500
 
 
 FLOWN = {study.id: study for study in all_studies() if isinstance(study, FlightStudy)}

@@ -6,7 +6,7 @@ import pytest
 from sim.campaign.consistency import consistency_figures
 from sim.campaign.population import satellite
 from sim.scenario.schema import flight_table, load
-from sim.validate.population.sweep import QUANTITIES, sweep_order, sweep_orders
+from sim.validate.population.sweep import QUANTITIES, sweep_order
 
 DIPOLE, INERTIA, TURNS = QUANTITIES
 KEYS = {
@@ -73,16 +73,23 @@ def test_both_sensors_turn_about_the_axes_that_were_drawn_to_the_same_part_of_th
         assert turn == pytest.approx(size_deg * axis / np.linalg.norm(axis))
 
 
-def test_what_is_declared_does_not_change():
-    tables = [
-        flight_table(load(order.scenario, order.overrides)).uncertainty for order in sweep_orders(2, [1, 2])
+def orders(sizes, seeds):
+    return [
+        sweep_order(quantity, size, seed)
+        for seed in seeds
+        for quantity in QUANTITIES
+        for size in quantity.sizes(sizes)
     ]
+
+
+def test_what_is_declared_does_not_change():
+    tables = [flight_table(load(order.scenario, order.overrides)).uncertainty for order in orders(2, [1, 2])]
     assert len(tables) == 12
     assert all(table == tables[0] for table in tables)
 
 
 def test_the_flights_are_those_of_every_size_and_satellite():
-    orders = sweep_orders(4, [1, 2, 3])
-    assert len({order.name for order in orders}) == len(orders) == 3 * 4 * 3
-    assert {order.orbits for order in orders} == {8.0}
-    assert all(order.measure is consistency_figures for order in orders)
+    flown = orders(4, [1, 2, 3])
+    assert len({order.name for order in flown}) == len(flown) == 3 * 4 * 3
+    assert {order.orbits for order in flown} == {8.0}
+    assert all(order.measure is consistency_figures for order in flown)

@@ -14,8 +14,8 @@ from sim.campaign.runner import run
 from sim.campaign.study import Figure, Group, campaign, figure_of
 from sim.design.theory.periodic_lqr import NotConvergedError
 from sim.errors import HarnessError
+from sim.validate.guard import Failed, attempt, claims_of, guarded
 from sim.validate.review.figures import judged, one_figure
-from sim.validate.running.guard import Failed, attempt, claims_of, guarded
 
 CLAIM = Claim("a.b", "Least", "Somebody", "deg", high=2.0)
 

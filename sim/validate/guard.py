@@ -12,6 +12,7 @@ from sim.campaign.claim import Claim, ClaimOutcome, Study, Task
 from sim.campaign.code_digest import PROJECT
 from sim.campaign.flight import fly_order
 from sim.campaign.study import FlightStudy, campaign, describe_order
+from sim.campaign.study_cache import CachedTask
 from sim.console import detail
 from sim.errors import HarnessError
 
@@ -85,6 +86,7 @@ def _all_failed(study: Study, failed: Failed, where: str) -> list[ClaimOutcome]:
 
 def _named(tasks: Sequence[Task], number: int) -> str:
     task = tasks[number]
+    task = task.task if isinstance(task, CachedTask) else task
     if isinstance(task, partial) and task.func is fly_order:
         return f"{describe_order(*task.args)}: "
     return f"task {number + 1} of {len(tasks)}: " if len(tasks) > 1 else ""

@@ -1,1 +1,0 @@
-"""How studies are run: what cannot be computed fails its claims alone, and what is done is not lost."""
