@@ -5,6 +5,7 @@ from importlib.metadata import version as installed
 from docutils.nodes import Element, SkipNode
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import SphinxTranslator
 
 project = "Torquer"
@@ -46,6 +47,19 @@ nitpick_ignore_regex = [  # documented elsewhere; a build needs no network, and 
     (r"py:.*", r"(sim|fsw|torquer\.api)\..*"),  # inner parts, which docs/design.md describes
 ]
 
+EVIDENCE = (
+    "validation",
+    "population",
+    "faults",
+    "methods",
+    "comparison",
+    "pulse-limits",
+    "performance",
+    "scaling",
+)
+EVIDENCE += ("soak", "mutation", "replay")
+"""Pages that evidence.md leads to; they are in no menu."""
+
 plot_gallery = "False"  # sphinx-gallery reads a text here
 sphinx_gallery_conf = {
     "examples_dirs": "../examples/gallery",
@@ -70,6 +84,12 @@ def _display(translator: SphinxTranslator, node: Element) -> None:
     raise SkipNode
 
 
+def _leave_out(app: Sphinx, env: BuildEnvironment) -> None:
+    for name in EVIDENCE:
+        env.metadata[name]["orphan"] = ""
+
+
 def setup(app: Sphinx) -> None:
     """Equations become MathML, which browsers show without scripts or a network."""
+    app.connect("env-updated", _leave_out)
     app.add_html_math_renderer("mathml", (_inline, None), (_display, None))

@@ -1,12 +1,15 @@
-"""Write the pages of docs that follow from code and data alone; with --check, exit 1 when one is stale."""
+"""Write the pages of docs that follow from code, data and other pages; with --check, 1 when one is stale."""
 
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import click
 
 from sim.fault_table import requirements
+from sim.fault_table.render import kinds_page
 from sim.methods import page as methods_page
 from sim.methods import read_methods
 from sim.record.whole_file import replace_text
@@ -60,10 +63,95 @@ def _cell(text: str) -> str:
     return " ".join(text.split()).replace("|", "\\|")
 
 
+class Evidence(NamedTuple):
+    """A page that a command writes from what it measures.
+
+    Attributes:
+        page: its name.
+        shows: of what it is evidence.
+        command: that writes it.
+        pattern: of what the verdict is read from; every match counts.
+        words: the verdict, with the groups of the first match, ``count`` of all, and ``total``, their sum.
+    """
+
+    page: str
+    shows: str
+    command: str
+    pattern: str
+    words: str
+
+    def verdict(self) -> str:
+        """What the page has come to."""
+        found = list(re.finditer(self.pattern, (DOCS / f"{self.page}.md").read_text(encoding="utf-8"), re.M))
+        numbers = [int(one[1]) for one in found if one[1].isdigit()]
+        return self.words.format(*found[0].groups(), count=len(found), total=sum(numbers))
+
+
+CLAIMS = r"^(\d+ claims met.*)\.$"
+EVIDENCE = (
+    Evidence("validation", "published figures, reference data", "make validate", CLAIMS, "{}"),
+    Evidence("population", "satellites that differ from their tables", "make population", CLAIMS, "{}"),
+    Evidence("faults", "injected faults", "make faults", r"^(\d+ rows, .*?)\. Phases", "{}"),
+    Evidence("methods", "the methods of the papers", "write_pages.py", r"Verdicts: (.*)\.$", "{}"),
+    Evidence(
+        "comparison",
+        "every law on six satellites",
+        "make comparison",
+        r"\| (kept) \|$",
+        "{count} flights, limits kept",
+    ),
+    Evidence(
+        "pulse-limits",
+        "pulses beside the best dipole",
+        "make pulse-limits",
+        r"^\| 100 \| ([\d.]+) \| [\d.]+ \| ([\d.]+) \|",
+        "`pulse_mpc` {1} deg, the bound {0} deg",
+    ),
+    Evidence(
+        "performance",
+        "speed of flights and campaigns",
+        "make bench",
+        r"^\| microsat, one process \| (\d+) \| ([\d.]+)",
+        "{0} times real time, {1} of Basilisk in C",
+    ),
+    Evidence(
+        "scaling",
+        "campaigns of many runs",
+        "make scaling",
+        r"^\| a run, flown and scored \| (.*) \|$",
+        "a run {}",
+    ),
+    Evidence("soak", "long runs", "make soak", r"\| (kept) \|$", "{count} budgets kept"),
+    Evidence(
+        "mutation",
+        "changed lines of code",
+        "make mutation",
+        r"\| (\d+) \|$",
+        "{total} that no test notices and no reason lists",
+    ),
+    Evidence(
+        "replay",
+        "replay on other machines",
+        "make replay-elsewhere",
+        r"\| (bit|command)-exact \|",
+        "{count} replays with the same commands",
+    ),
+)
+
+
+def evidence_page() -> str:
+    """evidence.md: of each page of evidence its verdict."""
+    rows = (f"| [{one.shows}]({one.page}.md) | {one.verdict()} | `{one.command}` |" for one in EVIDENCE)
+    head = (ROOT / "tools" / "evidence.md.in").read_text(encoding="utf-8")
+    return head.replace("{{rows}}", "\n".join(rows))
+
+
 PAGES: dict[str, Callable[[], str]] = {
     "cli.md": cli_page,
+    "evidence.md": evidence_page,
     "methods.md": lambda: methods_page(read_methods(), as_figures(read_record(DOCS / "validation.json"))),
     "requirements.md": requirements.document,
+    "scenario-faults.md": kinds_page,
     "scenario-keys.md": keys.page,
     "scenario.schema.json": editor_schema.as_text,
 }

@@ -35,14 +35,17 @@ process is killed or stopped, its steps and its state are not seen: there it is 
 """
 
 
-_KINDS_HEAD = """## Faults of files and processes
+_FILES = """## Faults of files and processes
 
 Faults that need no flight are tests: the plant killed (`tests/integration/test_sil_ended.py`), a full disk
 and logs that are cut, altered or of another version (`tests/integration/test_altered_runs.py`), wrong tables
 and scenarios (`tests/integration/test_sil_refuses.py`). `torquer faults --slow` adds two rows, which kill and
 stop a real process.
+"""
 
-## Faults in a scenario
+_KINDS_HEAD = """# Faults in a scenario
+
+Written by `tools/write_pages.py`; do not edit.
 
 A scenario schedules faults of its own; without `lasts_s` a fault is permanent. The log holds the frames on
 the bus of the flight software, so that such a run replays to the last bit. `torquer check` judges the log: a
@@ -171,7 +174,12 @@ def markdown(results: Sequence[RowResult], phases: int, seeds: int) -> str:
             )
             lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
         lines.append("")
-    return "\n".join([*lines, _KINDS_HEAD, *map(_kind_row, KINDS), ""])
+    return "\n".join([*lines, _FILES])
+
+
+def kinds_page() -> str:
+    """docs/scenario-faults.md: the kinds of faults that a scenario can schedule."""
+    return "\n".join([_KINDS_HEAD, *map(_kind_row, KINDS), ""])
 
 
 _THERE = {"": "yes", "sun": "with a Sun sensor", "cells": "with Sun cells"}

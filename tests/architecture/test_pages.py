@@ -40,7 +40,9 @@ def test_a_command_that_a_page_names_exists(page, command):
 
 @pytest.mark.parametrize(("page", "target"), each(r"`make ([a-z-]+)"))
 def test_a_make_target_that_a_page_names_exists(page, target):
-    assert re.search(rf"(?m)^(?:[a-z-]+ )*{target}(?: [a-z-]+)*:", (ROOT / "Makefile").read_text(encoding="utf-8"))
+    assert re.search(
+        rf"(?m)^(?:[a-z-]+ )*{target}(?: [a-z-]+)*:", (ROOT / "Makefile").read_text(encoding="utf-8")
+    )
 
 
 SOURCES = "\n".join(

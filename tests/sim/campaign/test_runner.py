@@ -27,19 +27,6 @@ class TestRunner:
         assert seen == [1, 2, 3, 4]
         assert sorted(told) == ["none", "one", "two"]
 
-    @pytest.mark.parametrize("workers", [1, 2])
-    def test_each_result_is_handed_over_before_it_is_counted(self, workers, study):
-        kept, counts = [], []
-        run(
-            [study("one", [1, 2]), study("two", [20])],
-            workers,
-            lambda done: counts.append((done, len(kept))),
-            lambda done: None,
-            kept.append,
-        )
-        assert sorted(kept) == [1.0, 2.0, 20.0]
-        assert counts == [(1, 1), (2, 2), (3, 3)]
-
     def test_what_a_task_refuses_ends_the_run(self):
         def refuse():
             raise HarnessError("no")
