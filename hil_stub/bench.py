@@ -183,7 +183,7 @@ class Bench:
         self._board = make_board()
         self._tick = 0
         self._synced_tick: int | None = None
-        self._strange_sync: int | None = None
+        self._unexpected_sync: int | None = None
         self._now_ms = self._synced_ms = 0
 
     @property
@@ -200,7 +200,7 @@ class Bench:
         """
         self._board = self._make_board()
         self._tick = tick
-        self._synced_tick = self._strange_sync = None
+        self._synced_tick = self._unexpected_sync = None
         self._now_ms = self._synced_ms = now_ms
         return self._enter()
 
@@ -235,18 +235,18 @@ class Bench:
         return min(due_ms, default=None)
 
     def _follow(self, tick: int) -> list[Frame]:
-        strange, self._strange_sync = self._strange_sync, None
+        unexpected, self._unexpected_sync = self._unexpected_sync, None
         if tick in (self._tick, self._tick + 1):
             if tick != self._synced_tick:
                 self._synced_tick, self._synced_ms = tick, self._now_ms
             frames = self._next_tick() if tick > self._tick else []
             self._board.sync()
             return frames
-        if strange is not None and tick in (strange, strange + 1):
+        if unexpected is not None and tick in (unexpected, unexpected + 1):
             frames = self.switch_on(tick, self._now_ms)
             self._synced_tick = tick
             return frames
-        self._strange_sync = tick
+        self._unexpected_sync = tick
         return []
 
     def _next_tick(self) -> list[Frame]:

@@ -306,21 +306,21 @@ class Progress:
 
     def __init__(self) -> None:
         self._began_s = time.monotonic()
-        self._told = False
+        self._is_shown = False
 
     def __call__(self, words: str) -> None:
         """Take what is done now."""
         if sys.stderr.isatty():
             print(f"\r\033[KCompiling the flight code: {words}", end="", file=sys.stderr, flush=True)
-        elif not self._told and time.monotonic() - self._began_s > PATIENCE_S:
+        elif not self._is_shown and time.monotonic() - self._began_s > PATIENCE_S:
             print("Compiling the flight code (some minutes the first time)", file=sys.stderr, flush=True)
         else:
             return
-        self._told = True
+        self._is_shown = True
 
     def end(self, words: str) -> None:
         """The last words."""
-        print(f"\r\033[K{words}" if self._told and sys.stderr.isatty() else words, file=sys.stderr)
+        print(f"\r\033[K{words}" if self._is_shown and sys.stderr.isatty() else words, file=sys.stderr)
 
     @property
     def elapsed_s(self) -> float:

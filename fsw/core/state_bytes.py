@@ -148,7 +148,7 @@ def _write_wheel_view(out: BytesWriter, value: WheelView) -> None:
     write_f64_le(out, value.change_nms)
     write_f64_le(out, value.requested_nm)
     write_i64_le(out, value.refused)
-    write_i64_le(out, value.known)
+    write_i64_le(out, value.has_speed)
 
 
 def _write_sync_watch(out: BytesWriter, value: SyncWatch) -> None:

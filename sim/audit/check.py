@@ -79,7 +79,7 @@ class _Versions:
     def __init__(self, log: Path, channel: str | None) -> None:
         self._log = log
         self._channel = channel
-        self._known: set[int] = set()  # identifiers of boot messages of this version
+        self._booted: set[int] = set()  # identifiers of boot messages of this version
         self._foreign: dict[int, tuple[int, int]] = {}  # first line and version of the others, by identifier
         self._count = 0
 
@@ -90,7 +90,7 @@ class _Versions:
             if can_id in _BOOTS and intact(entry.frame):
                 version = _BOOTS[can_id].decode(entry.frame.data).version
                 if version == CONTRACT_VERSION:
-                    self._known.add(can_id)
+                    self._booted.add(can_id)
                 else:
                     self._count += 1
                     self._foreign.setdefault(can_id, (entry.line, version))
@@ -105,9 +105,9 @@ class _Versions:
         if not self._foreign:
             return ""
         line, version = min(self._foreign.values())
-        if CoilBoot.ID in self._foreign and CoilBoot.ID not in self._known:
+        if CoilBoot.ID in self._foreign and CoilBoot.ID not in self._booted:
             line, version = self._foreign[CoilBoot.ID]
-        elif self._known:
+        elif self._booted:
             many = f"{self._count} boot messages are" if self._count > 1 else "a boot message is"
             return f"{many} of another version of the bus contract, first line {line}, of version {version}"
         raise HarnessError(

@@ -18,7 +18,7 @@ class DriverJudge:
         self._continuous = continuous
         self._statuses = self._any = self._broken = 0
         self._driven = [0, 0, 0]
-        self._strange = False
+        self._is_off = False
         self._found: list[tuple[int, str]] = []
 
     @property
@@ -66,7 +66,7 @@ class DriverJudge:
         found, self._found = self._found, []
         return found
 
-    def _take(self, strange: bool, line: int, sentence: str) -> None:
-        if strange and not self._strange:
+    def _take(self, is_off: bool, line: int, sentence: str) -> None:
+        if is_off and not self._is_off:
             self._found.append((line, sentence))
-        self._strange = strange
+        self._is_off = is_off

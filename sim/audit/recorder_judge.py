@@ -41,11 +41,11 @@ class _Pulse:
     line: int
     begun: int  # no sooner: the SYNC before its first status
     shown: int  # no later: the stamp of its first status
-    known: int  # on until then at least
+    on_until: int  # on until then at least
     latest: int  # until then at most, on a board that counts ticks alone
     announced: int  # until then by a clock of the board's own
     remaining: int
-    told: int  # tick of its last status
+    status_tick: int  # of its last status
 
 
 class RecorderJudge:
@@ -202,25 +202,25 @@ class RecorderJudge:
     def _go_on(self, pulse: _Pulse, status: CoilStatus, tick: int, stamp: int) -> None:
         now, remaining = self._at(tick), self._units(status.remaining_ms)
         if remaining:
-            pulse.known = max(pulse.known, stamp)
+            pulse.on_until = max(pulse.on_until, stamp)
             pulse.latest = max(pulse.latest, now)
         elif pulse.remaining:
-            by_ticks = pulse.remaining - (tick - pulse.told) * MICRO
-            before = self._at(pulse.told)
+            by_ticks = pulse.remaining - (tick - pulse.status_tick) * MICRO
+            before = self._at(pulse.status_tick)
             if by_ticks > self._units(1):  # ended by a clock of the board's own
-                pulse.latest = min(pulse.latest, max(pulse.known, pulse.announced))
-            elif now - before > (tick - pulse.told) * MICRO + self._tolerance:
+                pulse.latest = min(pulse.latest, max(pulse.on_until, pulse.announced))
+            elif now - before > (tick - pulse.status_tick) * MICRO + self._tolerance:
                 pulse.latest = max(pulse.latest, now)
             else:
                 pulse.latest = max(pulse.latest, before + pulse.remaining)
-        pulse.remaining, pulse.told = remaining, tick
+        pulse.remaining, pulse.status_tick = remaining, tick
 
     def _stop(self, pulse: _Pulse) -> None:
         del self._pulses[pulse.coil]
-        self._ended[pulse.coil] = min(pulse.latest, max(pulse.known, pulse.announced)), pulse.latest
+        self._ended[pulse.coil] = min(pulse.latest, max(pulse.on_until, pulse.announced)), pulse.latest
         limit = seconds_text(self._clock.seconds(self._longest))
-        if pulse.known - pulse.shown > self._most:
-            length = seconds_text(self._clock.seconds(pulse.known - pulse.shown))
+        if pulse.on_until - pulse.shown > self._most:
+            length = seconds_text(self._clock.seconds(pulse.on_until - pulse.shown))
             sentence = f"by the recorder's clock the pulse of {length} s exceeds {limit} s"
             self._add(ViolationKind.PULSE, pulse.tick, pulse.coil, pulse.line, sentence)
         elif pulse.latest - pulse.begun > self._most:

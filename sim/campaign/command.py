@@ -31,7 +31,7 @@ from sim.progress import note, progress
 from sim.record.destination import check_folder
 from sim.scenario.schema import flight_table, scenario_of
 from sim.signals import EndedBySignal
-from sim.sizing.doubts import doubts
+from sim.sizing.scenario_warnings import scenario_warnings
 
 PAGE, PARQUET = "campaign.html", "results.parquet"
 LINE_EVERY_S = 60.0
@@ -116,7 +116,7 @@ def campaign(
     nominal = scenario_of(chosen.base, source)
     if nominal.own_law is not None:
         flight_config(flight_table(nominal), source)  # a fault of it would be that of every run
-    for doubt in doubts(nominal):
+    for doubt in scenario_warnings(nominal):
         warn(doubt)
     folder = out or Path("campaigns") / f"{chosen.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
     check_folder(folder, (FILE, SCENARIO, RESULTS, LOCK, PAGE, *([PARQUET] if parquet else [])))

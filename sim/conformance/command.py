@@ -39,12 +39,12 @@ def lost_count(board: BoardUnderTest) -> None:
         link.step()
     for first, second in ((1000, 1001), (1000, 1000), (-3, -2), (-3, -3)):
         now = link.tick
-        _strange(link, now + first)
+        _send_unexpected_sync(link, now + first)
         link.step()  # a good one between them: they are not in a row
-        _strange(link, now + second + 1)
+        _send_unexpected_sync(link, now + second + 1)
         link.step()
         now = link.tick
-        _strange(link, now + first)
+        _send_unexpected_sync(link, now + first)
         reply = link.sync(now + second)
         if not reply.only(link.kind.boot):
             raise NonconformanceError(
@@ -57,7 +57,7 @@ def lost_count(board: BoardUnderTest) -> None:
             link.step()
 
 
-def _strange(link: BoardLink, tick: int) -> None:
+def _send_unexpected_sync(link: BoardLink, tick: int) -> None:
     if link.sync(tick).messages:
         raise NonconformanceError("one strange SYNC alone made it answer")
 

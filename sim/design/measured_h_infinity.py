@@ -57,10 +57,10 @@ class Measured:
 
 
 class Controller(NamedTuple):
-    """xi+ = motion xi + told y, m = gains xi, of each step: (n, 6, 6), (n, 6, 3), (n, 3, 6)."""
+    """xi+ = motion xi + feedback y, m = gains xi, of each step: (n, 6, 6), (n, 6, 3), (n, 3, 6)."""
 
     motion: Array
-    told: Array
+    feedback: Array
     gains: Array
 
 
@@ -154,7 +154,7 @@ def norm(case: Measured, controller: Controller, frequencies: int = FREQUENCIES)
         step = np.block(
             [
                 [problem.free[:, :6], pushes[k] @ controller.gains[k]],
-                [controller.told[k] @ sees[k], controller.motion[k]],
+                [controller.feedback[k] @ sees[k], controller.motion[k]],
             ]
         )
         seen = np.zeros((9, 12))
@@ -164,7 +164,7 @@ def norm(case: Measured, controller: Controller, frequencies: int = FREQUENCIES)
         step = step * scale / scale[:, None]
         state, reach = step @ state, step @ reach
         reach[:6, 6 * k : 6 * k + 3] = case.torque_nm * problem.free[:, 6:] / scale[:6, None]
-        reach[6:, 6 * k + 3 : 6 * k + 6] = case.error_t * controller.told[k] / scale[6:, None]
+        reach[6:, 6 * k + 3 : 6 * k + 6] = case.error_t * controller.feedback[k] / scale[6:, None]
     if np.abs(np.linalg.eigvals(state)).max() >= 1.0:
         raise UnstableLoopError("the loop is not stable")
     largest = 0.0

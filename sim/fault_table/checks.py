@@ -16,7 +16,7 @@ from sim.fault_table.isolation import (
     enters_safe,
     isolates_faulty_unit,
     isolates_no_healthy_unit,
-    isolates_or_doubts_faulty_unit,
+    isolates_or_disputes_faulty_unit,
     isolations,
     monitor_trips,
     monitor_trips_for_silent_board,
@@ -258,7 +258,7 @@ CHECKS: dict[str, Check] = {
     "board names": board_identifies_unit,
     "silence named": monitor_trips_for_silent_board,
     "named": isolates_faulty_unit,
-    "named or doubted": isolates_or_doubts_faulty_unit,
+    "named or doubted": isolates_or_disputes_faulty_unit,
     "used again": uses_unit_again,
     "stuck": enters_safe,
 }

@@ -150,7 +150,7 @@ def isolates_faulty_unit(row: FaultRow, record: FaultFlightRecord, bounds: Bound
     return _isolates(row, record, lambda fault: isolation_s(fault, record))
 
 
-def isolates_or_doubts_faulty_unit(
+def isolates_or_disputes_faulty_unit(
     row: FaultRow, record: FaultFlightRecord, bounds: Bounds
 ) -> tuple[bool | None, str]:
     """Likewise, but where the faulty sensor is not observable it is enough to report that they disagree.

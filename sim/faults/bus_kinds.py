@@ -232,7 +232,7 @@ class RandomFrames(Fault):
     def __init__(self, rng: Random, parameters: Parameters) -> None:
         super().__init__(rng, parameters)
         taken = {Sync.ID} | (set() if parameters["as_fsw"] else _OF_FSW)
-        self._known = [can_id for can_id in CLASSES if can_id not in taken]
+        self._can_ids = [can_id for can_id in CLASSES if can_id not in taken]
         self._any = [can_id for can_id in range(IDS) if can_id not in taken]
 
     def strangers(self, tick: int) -> list[Frame]:
@@ -243,7 +243,7 @@ class RandomFrames(Fault):
         rng = self.rng
         data = rng.randbytes(rng.randint(0, FULL))
         if rng.random() < 0.5:  # half of them on identifiers of the contract
-            return Frame(rng.choice(self._known), data)
+            return Frame(rng.choice(self._can_ids), data)
         match rng.choice((0, 0, EXTENDED_FLAG, REMOTE_FLAG, ERROR_FLAG)):
             case 0:
                 return Frame(rng.choice(self._any), data)

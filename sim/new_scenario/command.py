@@ -12,15 +12,15 @@ from fsw.input.toml_text import parse_toml
 from fsw.table.ordinary import TORQUE_NM, ordinary_dipole_am2, relative_volume
 from sim.console import answer, say, warn
 from sim.errors import HarnessError, writing
-from sim.new_scenario.figure_doubts import figure_doubts, in_options
+from sim.new_scenario.figure_warnings import figure_warnings, in_options
 from sim.new_scenario.satellite import NewSatellite, gains_for
 from sim.record.destination import check_file
 from sim.scenario.names import ALLOWED, is_name
 from sim.scenario.schema import Scenario, scenario_of, shipped_names
 from sim.sizing.command import points
-from sim.sizing.doubts import doubts
 from sim.sizing.expectation import expect
 from sim.sizing.levels import levels_against, two_digits
+from sim.sizing.scenario_warnings import scenario_warnings
 
 TORQUE_PART, DIPOLE_PART = 0.1, 0.03
 """Parts of the bounds that the satellite is assumed to have: one that was built magnetically clean."""
@@ -49,7 +49,7 @@ def new(satellite: NewSatellite, out: Path | None) -> int:
     scenario = scenario_made(text)
     with writing(file), file.open("x", encoding="utf-8") as target:
         target.write(text)
-    for doubt in (*figure_doubts(satellite, scenario), *doubts(scenario)):
+    for doubt in (*figure_warnings(satellite, scenario), *scenario_warnings(scenario)):
         warn(doubt)
     expectation = expect(scenario)
     pointing_deg = expectation.pointing_deg if points(expectation) else None

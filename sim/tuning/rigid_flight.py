@@ -153,29 +153,29 @@ def _fly(
     before, mode = FieldSample(), Mode.ACQUIRE
     rows: list[tuple[Quaternion, Quaternion, Vec3, Vec3, Vec3]] = []
     for tick, reference in enumerate(path.references):
-        seen = law_input(motion, reference, tick, before, config).replace(
+        inputs = law_input(motion, reference, tick, before, config).replace(
             torque_body_nm=disturbing.torque_nm, dipole_body_am2=disturbing.residual_dipole_am2
         )
-        before = seen.sample
-        mode = _mode(mode, seen.attitude, config)
+        before = inputs.sample
+        mode = _mode(mode, inputs.attitude, config)
         waits = wait_ticks(scheduler, view, REPORTED, tick, coils.timing, NO_FAULTS)
-        demand = by_mode.demand(mode, seen.replace(wait_ticks=waits), memory, control.setpoint, control)
+        demand = by_mode.demand(mode, inputs.replace(wait_ticks=waits), memory, control.setpoint, control)
         assert demand is not None
         memory = demand.memory
         if coils.continuous is not None:
-            asked = dipoles.request(scheduler, demand, seen.b_body_t, tick, coils.continuous, coils.timing)
+            asked = dipoles.request(scheduler, demand, inputs.b_body_t, tick, coils.continuous, coils.timing)
             share = 1.0 if demand.impulse_body_nms is None else coils.share
             m_am2 = scale(share * coils.continuous.full_scale_am2, (asked.m_x, asked.m_y, asked.m_z))
         else:
-            request = actuate(scheduler, view, demand, seen.b_body_t, REPORTED, tick, driver, NO_FAULTS)
+            request = actuate(scheduler, view, demand, inputs.b_body_t, REPORTED, tick, driver, NO_FAULTS)
             if isinstance(request, CoilFire):
                 size = coils.share * pulses.dipole_am2(request.level, coils.timing.levels_am2)
                 m_am2 = scale(size, AXES[request.coil])
             elif tick >= scheduler.busy_until:
                 m_am2 = ZERO
         omega = motion.omega_body_radps
-        relative = seen.attitude.omega_body_orbit_radps
-        rows.append((motion.q_body_from_eci, seen.attitude.q_body_from_orbit, omega, relative, m_am2))
+        relative = inputs.attitude.omega_body_orbit_radps
+        rows.append((motion.q_body_from_eci, inputs.attitude.q_body_from_orbit, omega, relative, m_am2))
         dipole_am2 = add(m_am2, disturbing.residual_dipole_am2)
         acting = BodyTorque(control.inertia_kgm2, dipole_am2, disturbing.torque_nm)
         motion = body.step(motion, acting, step_s, *path.around[2 * tick : 2 * tick + 3])

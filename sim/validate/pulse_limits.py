@@ -52,7 +52,7 @@ def both_deg(law: str, overrides: Nested) -> list[float]:
     scenario, start = load(SCENARIO, overrides), STARTS_RAD[0]
     initial = {"axis": list(start), "angle_deg": degrees(hypot(*start)), "rate_degps": [0.0] * 3}
     order = Order(SCENARIO, merge(overrides, {"initial": initial}), orbits=ORBITS, measure=rms_deg)
-    linear = [fly(scenario, theta_rad, orbits().of(scenario), told=False) for theta_rad in STARTS_RAD]
+    linear = [fly(scenario, theta_rad, orbits().of(scenario), torque_known=False) for theta_rad in STARTS_RAD]
     return [fly_order(order).figures["rms_deg"], *(flight.rms_deg() for flight in linear)]
 
 

@@ -71,7 +71,7 @@ class Publisher:
         self._scene = SceneUpdateChannel("/scene", context=context)
         self._events = LogChannel("/events", context=context)
         self._state = Channel("/state", schema=STATE_SCHEMA, context=context)
-        self._told = 0
+        self._last_sent = 0
 
     def publish(self, view: FlightView) -> None:
         """Everything of this moment, and what has happened since the last one; from the first SYNC on.
@@ -99,11 +99,11 @@ class Publisher:
         self._state.log(state(view), log_time=now_ns)
         levels = {Weight.WARNING: LogLevel.Warning, Weight.ERROR: LogLevel.Error}
         for one in view.happenings:
-            if one.number > self._told:
+            if one.number > self._last_sent:
                 then_ns = (one.unix_s or view.unix_s) * 10**9
                 level = levels.get(one.weight, LogLevel.Info)
-                left_out = one.number - self._told - 1
+                left_out = one.number - self._last_sent - 1
                 words = f"{one.words}; {left_out} before it are left out" if left_out else one.words
                 log = Log(timestamp=stamp_of(then_ns), level=level, message=words, name="bus")
                 self._events.log(log, log_time=then_ns)
-                self._told = one.number
+                self._last_sent = one.number

@@ -140,28 +140,28 @@ class LogSource:
         yield Batch(frames, before_s or 0.0)
 
 
-def batches(source: FrameSource, seen: FlightView) -> Iterator[None]:
+def batches(source: FrameSource, view: FlightView) -> Iterator[None]:
     """Hand on the frames of a source as they come.
 
     Stops after each batch, and within it before anything that happened since the last stop is forgotten.
     """
     for batch in source.batches():
-        yield from _parts(seen, batch)
+        yield from _parts(view, batch)
         yield
 
 
-def take_batch(seen: FlightView, batch: Batch) -> None:
+def take_batch(view: FlightView, batch: Batch) -> None:
     """Take the frames of a batch."""
-    for _ in _parts(seen, batch):
+    for _ in _parts(view, batch):
         pass
 
 
-def _parts(seen: FlightView, batch: Batch) -> Iterator[None]:
+def _parts(view: FlightView, batch: Batch) -> Iterator[None]:
     """Take the frames of a batch; stops whenever as much has happened as is kept."""
-    told = seen.happened
+    reported = view.happened
     for frame, time_s in batch.frames:
-        seen.take(frame, time_s)
-        if seen.happened - told == MOST_HAPPENINGS:
-            told = seen.happened
+        view.take(frame, time_s)
+        if view.happened - reported == MOST_HAPPENINGS:
+            reported = view.happened
             yield
-    seen.load.pass_time(batch.now_s)
+    view.load.pass_time(batch.now_s)

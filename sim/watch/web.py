@@ -39,7 +39,7 @@ class LiveView:
 
     def __init__(self, source: FrameSource, view: FlightView) -> None:
         self.source = source
-        self._seen = view
+        self._view = view
         self._lock = threading.Lock()
         self.failure: BaseException | None = None
 
@@ -48,14 +48,14 @@ class LiveView:
         try:
             for batch in self.source.batches():
                 with self._lock:
-                    take_batch(self._seen, batch)
+                    take_batch(self._view, batch)
         except Exception as error:  # it ends another thread, which raises it
             self.failure = error
 
     def snapshot(self, after: int, sampled: int) -> dict[str, object]:
         """As of ``sim.watch.snapshot``."""
         with self._lock:
-            return snapshot(self._seen, after, sampled)
+            return snapshot(self._view, after, sampled)
 
 
 def application(view: LiveView) -> "Starlette":

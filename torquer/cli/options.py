@@ -211,9 +211,9 @@ def load_scenario(
 
 def warn_of(scenario: "Scenario", ticks: int | None = None) -> None:
     """Say what is most likely wrong in a scenario of which a run takes so many ticks."""
-    from sim.sizing.doubts import doubts
+    from sim.sizing.scenario_warnings import scenario_warnings
 
-    for doubt in doubts(scenario, ticks):
+    for doubt in scenario_warnings(scenario, ticks):
         warn(doubt)
 
 

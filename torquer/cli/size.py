@@ -35,10 +35,10 @@ def size(
     """
     from sim.console import warn
     from sim.new_scenario.command import scenario_made, scenario_text
-    from sim.new_scenario.figure_doubts import figure_doubts, in_options
+    from sim.new_scenario.figure_warnings import figure_warnings, in_options
     from sim.scenario.schema import parse_settings
     from sim.sizing.command import size as command
-    from sim.sizing.doubts import doubts
+    from sim.sizing.scenario_warnings import scenario_warnings
 
     given = [name for name, value in {"tle": tle, **figures}.items() if value is not None]
     if scenario is not None and given:
@@ -47,6 +47,6 @@ def size(
         return command(load_scenario(scenario, settings))
     new_satellite = satellite("satellite", tle, figures)
     given_here = scenario_made(scenario_text(new_satellite, "satellite.toml"), parse_settings(settings))
-    for doubt in (*figure_doubts(new_satellite, given_here), *doubts(given_here)):
+    for doubt in (*figure_warnings(new_satellite, given_here), *scenario_warnings(given_here)):
         warn(in_options(doubt))
     return command(given_here)

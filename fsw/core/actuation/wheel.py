@@ -45,7 +45,7 @@ class WheelView:
     change_nms: float = 0.0
     requested_nm: float = 0.0
     refused: int = 0
-    known: bool = False
+    has_speed: bool = False
     """Whether there has been a report since boot."""
 
 
@@ -60,9 +60,9 @@ def update_view(view: WheelView, measurements: Measurements, tick: int, wheel: W
     if not status.valid or not _possible(status.speed_radps, view, tick, wheel):
         view.refused = min(view.refused + 1, MOST_REFUSED)
         return
-    if view.known:
+    if view.has_speed:
         view.change_nms = wheel.inertia_kgm2 * (status.speed_radps - view.speed_radps)
-    view.speed_radps, view.tick, view.known = status.speed_radps, tick, True
+    view.speed_radps, view.tick, view.has_speed = status.speed_radps, tick, True
 
 
 def _possible(speed_radps: float, view: WheelView, tick: int, wheel: Wheel) -> bool:

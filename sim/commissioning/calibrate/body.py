@@ -29,7 +29,7 @@ class BodyFit(NamedTuple):
         ratios: principal moments, those nearest to the body axes x, y, z.
         turn_deg: rotation vector that turns the body axes into the principal axes.
         axis_sigma_deg: of the axis of greatest inertia.
-        ratio_sigma: of the ratios; ``told``: whether the motion tells each, (3).
+        ratio_sigma: of the ratios; ``determined``: whether the motion tells each, (3).
     """
 
     inertia: Array
@@ -37,7 +37,7 @@ class BodyFit(NamedTuple):
     turn_deg: Array
     axis_sigma_deg: float
     ratio_sigma: Array
-    told: NDArray[np.bool_]
+    determined: NDArray[np.bool_]
 
 
 def declared_axes(ratios: Array, axis: Array) -> Array:

@@ -34,7 +34,7 @@ class CellFit(NamedTuple):
     rows: int
 
     @property
-    def told(self) -> bool:
+    def determined(self) -> bool:
         """Whether the data tell it."""
         return (
             self.face_sigma_deg <= DETERMINED_DEG

@@ -38,13 +38,13 @@ def as_toml(found: RecordedCalibration, ratios: Array) -> str:
         "[calibration.magnetometer]",
         f"# field in body axes = matrix (raw - offset); |B| is left off by {fit.rms_nt:.0f} nT RMS",
         f"offset_nt = {_numbers(fit.offset_nt, 1)}"
-        f"  # +- {_plain(fit.sigma[:3], 0)}{_inconclusive(fit.told[:3])}",
+        f"  # +- {_plain(fit.sigma[:3], 0)}{_inconclusive(fit.determined[:3])}",
         f"matrix = [{', '.join(_numbers(row, 6) for row in fit.matrix)}]",
-        f"# xx, yy, zz, xy, xz, yz +- {_plain(fit.sigma[3:], 4)}{_inconclusive(fit.told[3:])}",
+        f"# xx, yy, zz, xy, xz, yz +- {_plain(fit.sigma[3:], 4)}{_inconclusive(fit.determined[3:])}",
         "# a common turn of the axes is not told: it changes no |B|",
     ]
     for cell in found.cells:
-        lines += _cell(cell) if cell.told else []
+        lines += _cell(cell) if cell.determined else []
     if found.body is not None:
         lines += _body(found.body, ratios)
     return "\n".join([*lines, "", "[uncertainty]", *_bounds(fit, found.drift.largest_nt)]) + "\n"
@@ -62,7 +62,7 @@ def _cell(cell: CellFit) -> list[str]:
 
 
 def _body(body: BodyFit, declared: Array) -> list[str]:
-    shown = ", ".join("told" if told else "as declared" for told in body.told)
+    shown = ", ".join("told" if told else "as declared" for told in body.determined)
     return [
         "",
         "[recorded.body]",
@@ -141,7 +141,7 @@ def calibrate_recorded(
     _say(found, parameters)
     say(f"written: {out}" + (f", {page}" if page is not None else ""))
     answer({**_as_json(found, parameters), "out": out, "page": page})
-    return int(not found.magnetometer.told.all())
+    return int(not found.magnetometer.determined.all())
 
 
 def _say(found: RecordedCalibration, parameters: int) -> None:
@@ -149,14 +149,14 @@ def _say(found: RecordedCalibration, parameters: int) -> None:
     if left_out := found.around.recorded.said_left_out():
         say(left_out)
     say(f"{len(fit.residual_nt)} samples; |B| after the fit {fit.rms_nt:.0f} nT RMS")
-    for name, value, sigma, told in zip(NAMES, fit.values, fit.sigma, fit.told, strict=True):
+    for name, value, sigma, told in zip(NAMES, fit.values, fit.sigma, fit.determined, strict=True):
         digits, unit = (0, " nT") if name.startswith("b_") else (4, "")
         said = "" if told else "   cannot be told from these samples"
         say(f"  {name:5} {value:10.{digits}f} +- {sigma:.{digits}f}{unit}{said}")
     if parameters == PARAMETERS[1]:
         for name in TURN_NAMES:
             say(f"  {name:5} {0.0:10.2f} deg   cannot be told by |B|, which no turn changes")
-    if not fit.told.all():
+    if not fit.determined.all():
         x, y, z = fit.weakest_axis
         say(f"  the offset is told least along ({x:.2f}, {y:.2f}, {z:.2f}), to {fit.weakest_nt:.0f} nT")
     say(f"bias moves by up to {drift.largest_nt:.0f} nT within the pass")
@@ -168,7 +168,7 @@ def _say(found: RecordedCalibration, parameters: int) -> None:
         face = ", ".join(f"{part:.3f}" for part in cell.face_body)
         digits = cell.decimals
         scale = f"full scale {cell.full_scale:.{digits}f} +- {cell.full_scale_sigma:.{digits}f}"
-        said = "" if cell.told else "; cannot be told"
+        said = "" if cell.determined else "; cannot be told"
         say(f"cell {cell.name}: face ({face}) +- {cell.face_sigma_deg:.1f} deg, {scale}{said}")
     if found.body is not None:
         ratios = " : ".join(f"{ratio:.5f}" for ratio in found.body.ratios)
@@ -187,7 +187,7 @@ def _as_json(found: RecordedCalibration, parameters: int) -> dict[str, object]:
     fit = found.magnetometer
     numbers: dict[str, dict[str, float | bool | None]] = {
         name: {"value": value, "sigma": float(sigma), "told": bool(told)}
-        for name, value, sigma, told in zip(NAMES, fit.values, fit.sigma, fit.told, strict=True)
+        for name, value, sigma, told in zip(NAMES, fit.values, fit.sigma, fit.determined, strict=True)
     }
     if parameters == PARAMETERS[1]:
         numbers |= {name: {"value": 0.0, "sigma": None, "told": False} for name in TURN_NAMES}
@@ -198,7 +198,8 @@ def _as_json(found: RecordedCalibration, parameters: int) -> dict[str, object]:
         "magnetometer": numbers,
         "bias_moves_nt": found.drift.largest_nt,
         "cells": [
-            one._asdict() | {"face_body": one.face_body.tolist(), "told": one.told} for one in found.cells
+            one._asdict() | {"face_body": one.face_body.tolist(), "told": one.determined}
+            for one in found.cells
         ],
         "inertia_ratios": None if found.body is None else found.body.ratios.tolist(),
         "principal_axes_turn_deg": None if found.body is None else found.body.turn_deg.tolist(),

@@ -37,7 +37,7 @@ class MagnetometerFit(NamedTuple):
         offset_nt: b, sensor axes, (3).
         matrix: M, symmetric and positive, (3, 3).
         sigma: of the offset, nT, then of xx, yy, zz, xy, xz, yz of M, (9).
-        told: whether the data tell each, (9).
+        determined: whether the data tell each, (9).
         residual_nt: |M (m - b)| - |B|, of the rows that lack no number, (n).
         weakest_axis: direction along which the offset is told least, (3); ``weakest_nt``: its deviation.
         correlation_rows: how many neighbouring residuals count as one.
@@ -46,7 +46,7 @@ class MagnetometerFit(NamedTuple):
     offset_nt: Array
     matrix: Array
     sigma: Array
-    told: NDArray[np.bool_]
+    determined: NDArray[np.bool_]
     residual_nt: Array
     weakest_axis: Array
     weakest_nt: float
@@ -187,7 +187,7 @@ def _as_positive(
         offset_nt=x[:3] / UT_PER_NT,
         matrix=matrix,
         sigma=sigma,
-        told=moved_nt <= DETERMINED_NT,
+        determined=moved_nt <= DETERMINED_NT,
         residual_nt=residual_nt,
         weakest_axis=weakest,
         weakest_nt=float(np.sqrt(values[-1])) / UT_PER_NT,

@@ -25,15 +25,15 @@ def calibration_page(found: RecordedCalibration, text: str) -> str:
     finite = np.isfinite(around.recorded.mag_nt).all(axis=1)
     time = pass_time(around)
     t_s = around.t_s[finite]
-    told = fit.told.sum()
+    told = fit.determined.sum()
     header = PageHeader(
         "Calibration",
         around.recorded.name,
         (f"{len(fit.residual_nt)} samples in {around.t_s[-1]:.0f} s",),
         [
             ("good", "✓ magnetometer told")
-            if told == len(fit.told)
-            else ("bad", f"✗ {told} of {len(fit.told)} told")
+            if told == len(fit.determined)
+            else ("bad", f"✗ {told} of {len(fit.determined)} told")
         ],
         [
             Tile("|B| after the fit", f"{fit.rms_nt:.0f} nT", "RMS over the pass"),
@@ -71,7 +71,7 @@ def _residuals(found: RecordedCalibration, time: TimeAxis, t_s: Array) -> Chart:
 
 def _numbers(fit: MagnetometerFit) -> Table:
     rows = []
-    for name, value, sigma, told in zip(NAMES, fit.values, fit.sigma, fit.told, strict=True):
+    for name, value, sigma, told in zip(NAMES, fit.values, fit.sigma, fit.determined, strict=True):
         digits = 0 if name.startswith("b_") else 4
         rows.append(
             (name, f"{value:.{digits}f}", f"{sigma:.{digits}f}", "told" if told else "cannot be told")
@@ -92,7 +92,9 @@ def _others(found: RecordedCalibration) -> list[Table]:
         body = found.body
         rows = [
             (axis, f"{ratio:.5f}", f"{sigma:.5f}", "told" if told else "as declared")
-            for axis, ratio, sigma, told in zip("xyz", body.ratios, body.ratio_sigma, body.told, strict=True)
+            for axis, ratio, sigma, told in zip(
+                "xyz", body.ratios, body.ratio_sigma, body.determined, strict=True
+            )
         ]
         caption = f"Moments of inertia; axes turned by ({_triple(body.turn_deg, 2)})°"
         tables.append(Table(("axis", "ratio", "standard deviation", "verdict"), rows, caption))
@@ -107,7 +109,7 @@ def _cell(one: CellFit) -> tuple[str, ...]:
         *face,
         *(f"{figure:.{one.decimals}f}" for figure in figures),
         str(one.rows),
-        "told" if one.told else "cannot be told",
+        "told" if one.determined else "cannot be told",
     )
 
 

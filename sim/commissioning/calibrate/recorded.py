@@ -122,7 +122,9 @@ class RecordedCalibration:
     @property
     def calibration(self) -> PassCalibration:
         """The values, for the filter; only of cells that are told."""
-        cells = tuple(KnownCell(one.name, one.face_body, one.full_scale) for one in self.cells if one.told)
+        cells = tuple(
+            KnownCell(one.name, one.face_body, one.full_scale) for one in self.cells if one.determined
+        )
         inertia = np.eye(3) if self.body is None else self.body.inertia
         return PassCalibration(self.magnetometer.offset_nt, self.magnetometer.matrix, cells, inertia)
 
@@ -139,7 +141,7 @@ def calibrate_pass(around: Along, ratios: Array, noise: Noise) -> RecordedCalibr
     drift = bias_drift(around, magnetometer)
     first = PassCalibration(magnetometer.offset_nt, magnetometer.matrix, (), np.eye(3))
     rows = sampled(around)
-    if not magnetometer.told[:3].all() or float(np.ptp(around.t_s[rows])) < LEAST_FOLLOWED_S:
+    if not magnetometer.determined[:3].all() or float(np.ptp(around.t_s[rows])) < LEAST_FOLLOWED_S:
         return RecordedCalibration(around, magnetometer, drift, None, None, ())
     axis = spin_axis(first.field_nt(around.recorded.mag_nt)[rows])
     if np.ptp(ratios) > 0.0:

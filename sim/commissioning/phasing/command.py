@@ -139,7 +139,7 @@ def _judge(log: Path, table: FlightTable, known: Known) -> int:
     except HarnessError as error:
         raise HarnessError(f"{log}: {error}") from None
     _say(found, table)
-    return int(found.told is None or found.told != words.of_table(table))
+    return int(found.wiring is None or found.wiring != words.of_table(table))
 
 
 def _with_table(known: Known, table: FlightTable) -> Known:
@@ -155,7 +155,7 @@ def _with_table(known: Known, table: FlightTable) -> Known:
 def _say(found: Phasing, table: FlightTable) -> None:
     for line in words.lines(found, table):
         say(line)
-    failed = found.told is None or found.told != words.of_table(table)
+    failed = found.wiring is None or found.wiring != words.of_table(table)
     say(words.verdict(found, table), failed=failed)
     answer(words.as_json(found, table))
 

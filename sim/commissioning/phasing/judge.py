@@ -166,7 +166,7 @@ class Phasing:
     missing: tuple[str, ...]
 
     @property
-    def told(self) -> tuple[Wiring, Wiring] | None:
+    def wiring(self) -> tuple[Wiring, Wiring] | None:
         """The wirings, if one pair alone is admitted."""
         return self.pairs[0] if len(self.pairs) == 1 else None
 

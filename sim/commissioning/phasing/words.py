@@ -41,8 +41,8 @@ def of_table(table: FlightTable) -> Pair:
 def verdict(found: Phasing, table: FlightTable) -> str:
     """One sentence: what is wired how, or that it cannot be told."""
     said = of_table(table)
-    if found.told is not None:
-        return sentence(found.told, said)
+    if found.wiring is not None:
+        return sentence(found.wiring, said)
     dead = [f"coil {number} does nothing" for number, one in enumerate(found.outputs, 1) if one.dead]
     if dead:
         return "; ".join(dead)
@@ -102,7 +102,7 @@ def lines(found: Phasing, table: FlightTable) -> list[str]:
         text.append(f"offset of the magnetometer's channels: {parts} uT")
     listed = alternatives(found, table)
     text += ["cannot be told apart:", *(f"  {one}" for one in listed)] if listed else []
-    text += [f"not used: {reason}" for reason in found.missing] if found.told is None else []
+    text += [f"not used: {reason}" for reason in found.missing] if found.wiring is None else []
     return text
 
 
@@ -124,8 +124,8 @@ def as_json(found: Phasing, table: FlightTable) -> Json:
     late, sigma = response.delay_ticks, response.delay_sigma
     return {
         "verdict": verdict(found, table),
-        "told": found.told is not None,
-        "as_table": found.told == of_table(table),
+        "told": found.wiring is not None,
+        "as_table": found.wiring == of_table(table),
         "pairs": [{"magnetometer": list(sensor), "coils": list(wired)} for sensor, wired in found.pairs],
         "table": dict(zip(("magnetometer", "coils"), map(list, of_table(table)), strict=True)),
         "response_nt_per_am2": response.nt_per_am2.tolist(),

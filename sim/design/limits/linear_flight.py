@@ -98,18 +98,20 @@ def _path(model: EphemerisModel, ticks: int) -> Iterator[Passed]:
         before = reference
 
 
-def fly(scenario: Scenario, theta_rad: Vec3, met: Sequence[Passed], told: bool = True) -> LinearFlight:
+def fly(
+    scenario: Scenario, theta_rad: Vec3, met: Sequence[Passed], torque_known: bool = True
+) -> LinearFlight:
     """Fly a scenario's body, coils, torque and residual dipole by its law, in POINT.
 
     Args:
         scenario: what is flown; its sensors do not count.
         theta_rad: attitude at first, at rest.
         met: the orbit, for as long as is flown.
-        told: whether the law is told torque and residual dipole; with ``knowledge = "perfect"`` it is not.
+        torque_known: whether the law knows torque and residual dipole; not with ``knowledge = "perfect"``.
     """
     config = flight_config(flight_table(scenario))
     torque_nm, residual_am2 = scenario.disturbance.torque_nm, scenario.disturbance.residual_dipole_am2
-    known = (torque_nm, residual_am2) if told else (ZERO, ZERO)
+    known = (torque_nm, residual_am2) if torque_known else (ZERO, ZERO)
     body, timing = LinearBody(config, torque_nm), config.coils.pulses
     scheduler, view = pulses.boot(0, timing), CoilView(lockout_ms=(0, 0, 0))  # the board bars no coil
     x, m_am2, until = np.array([*ZERO, *theta_rad]), ZERO, 0
@@ -117,19 +119,19 @@ def fly(scenario: Scenario, theta_rad: Vec3, met: Sequence[Passed], told: bool =
     errors: list[float] = []
     fired: list[Fired] = []
     for tick, passed in enumerate(met):
-        seen = law_input(x, passed, tick, config, known)
+        inputs = law_input(x, passed, tick, config, known)
         waits = wait_ticks(scheduler, view, REPORTED, tick, timing, NO_FAULTS)
         demand = by_mode.demand(
-            Mode.POINT, seen.replace(wait_ticks=waits), memory, config.control.setpoint, config.control
+            Mode.POINT, inputs.replace(wait_ticks=waits), memory, config.control.setpoint, config.control
         )
         memory = demand.memory if demand is not None else ()
-        request = actuate(scheduler, view, demand, seen.b_body_t, REPORTED, tick, config.coils, NO_FAULTS)
+        request = actuate(scheduler, view, demand, inputs.b_body_t, REPORTED, tick, config.coils, NO_FAULTS)
         if isinstance(request, CoilFire):
             fired.append(Fired(tick, request.coil, request.level))
             m_am2 = scale(pulses.dipole_am2(request.level, timing.levels_am2), AXES[request.coil])
             until = tick + timing.pulse_ticks
         driven = add(residual_am2, m_am2) if tick < until else residual_am2
-        x = body.moved(x, cross(driven, seen.b_body_t), passed.rate_change_radps2)
+        x = body.moved(x, cross(driven, inputs.b_body_t), passed.rate_change_radps2)
         errors.append(degrees(sqrt(x[3:] @ x[3:])))
         if errors[-1] > LOST_DEG:
             break

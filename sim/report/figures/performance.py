@@ -101,7 +101,7 @@ class _Convergence:
     length: int
     first: int | None = None
     found: bool = False
-    honesty: _Consistency = field(default_factory=_Consistency)
+    consistency: _Consistency = field(default_factory=_Consistency)
 
     def take(self, truth: Histories, estimates: Estimates, begin: int) -> None:
         error_deg = np.degrees(angle_rad(estimate_error(truth, estimates)))
@@ -111,22 +111,22 @@ class _Convergence:
                 return
         else:
             since = 0
-        self.honesty.take(truth, estimates, error_deg, since)
+        self.consistency.take(truth, estimates, error_deg, since)
 
     def _search(self, error_deg: Array, begin: int) -> int | None:
         """The row from which this block counts; None if it does not."""
         small = spans(error_deg < CONVERGED_DEG)
         if self.first is not None and not (small and small[0][0] == 0):
-            self.first, self.honesty = None, _Consistency()
+            self.first, self.consistency = None, _Consistency()
         for row, past in small:
             goes_on = self.first is not None and row == 0
             first = self.first if goes_on and self.first is not None else begin + row
             self.found = begin + past - first >= self.length
             if self.found or past == len(error_deg):
                 if not goes_on:
-                    self.first, self.honesty = first, _Consistency()
+                    self.first, self.consistency = first, _Consistency()
                 return 0 if goes_on else row
-            self.first, self.honesty = None, _Consistency()
+            self.first, self.consistency = None, _Consistency()
         return None
 
 
@@ -207,7 +207,7 @@ class Performance:
             "axis1_deg": axis1,
         }
         if self._convergence.found and self._convergence.first is not None:
-            result |= self._convergence.honesty.figures()
+            result |= self._convergence.consistency.figures()
             result["converged_at_s"] = self._convergence.first / self._hz
         result["parameters"] = parameters.parameter_figures(self._scenario, truth, self.last_estimate)
         result["mode_final"] = Mode(int(estimates.mode[len(truth["t_s"]) - 1])).name

@@ -107,7 +107,7 @@ class _Remembered:
     """``coil_axes``, asked once for the same field in body axes, to which each right wiring leads."""
 
     def __init__(self) -> None:
-        self._known: list[tuple[Array, CoilAxes | None]] = []
+        self._found: list[tuple[Array, CoilAxes | None]] = []
 
     def __call__(
         self,
@@ -117,11 +117,11 @@ class _Remembered:
         along: Expected,
         table: FlightTable,
     ) -> CoilAxes | None:
-        for known, found in self._known:
+        for known, found in self._found:
             if np.allclose(known[usable], b_body_nt[usable], rtol=0.0, atol=SAME_NT):
                 return found
         found = coil_axes(samples, b_body_nt, usable, along, table)
-        self._known.append((b_body_nt, found))
+        self._found.append((b_body_nt, found))
         return found
 
 
@@ -134,12 +134,12 @@ def studies() -> list[Study]:
 def conclude(tallies: Sequence[Any]) -> list[ClaimOutcome]:
     """No verdict is wrong, and most tell both wirings."""
     wrong = [(sensor, one.coils) for one in tallies for sensor in one.wrong]
-    count = sum(one.told + one.among + len(one.wrong) for one in tallies)
+    count = sum(one.wiring + one.among + len(one.wrong) for one in tallies)
     where = f"magnetometer {wrong[0][0]}, coils {wrong[0][1]}" if wrong else f"of {count}"
-    untold = [one.coils for one in tallies if one.told < one.told + one.among]
+    untold = [one.coils for one in tallies if one.wiring < one.wiring + one.among]
     none_wrong = Claim("phasing.wrong", "Pairs of wirings that are told wrong", SOURCE, "1", high=0.0)
-    told = Claim("phasing.told", TOLD, SOURCE, "1", low=LEAST_DETERMINED)
-    part = sum(one.told for one in tallies) / count
+    told = Claim("phasing.wiring", TOLD, SOURCE, "1", low=LEAST_DETERMINED)
+    part = sum(one.wiring for one in tallies) / count
     return [
         none_wrong.judge(float(len(wrong)), where),
         told.judge(part, f"not told: coils {untold}" if untold else ""),

@@ -36,7 +36,7 @@ FAILED = LawFlight(
     orbits=6.0,
     step_s=8.0,
     most_am2=5.0,
-    known=False,
+    attitude_known=False,
 )
 """It tumbles, and nothing is known but the field and the orbit."""
 POINTED = replace(
@@ -45,7 +45,7 @@ POINTED = replace(
     rotation_rad=(0.2, -0.2, 0.2),
     omega_body_radps=(0.0, 0.0, 0.0),
     orbits=3.0,
-    known=True,
+    attitude_known=True,
     near=True,
     igrf=True,
     gains=WEIGHTS,

@@ -107,7 +107,7 @@ class LawFlight:
     altitude_km: float = 800.0
     inclination_deg: float = 98.6
     extra: Extra | None = None
-    known: bool = True
+    attitude_known: bool = True
     k_i: float = 0.0
     schedules: dict[str, Schedule] = field(default_factory=dict)
     igrf: bool = False
@@ -216,7 +216,10 @@ def _inputs(
         q_orbit_from_eci=q_orbit,
         orbit_rate_radps=rate,
     )
-    attitude, sample = Attitude(from_orbit, relative, 0.0, 0.0, case.known), FieldSample(b_body, tick)
+    attitude, sample = (
+        Attitude(from_orbit, relative, 0.0, 0.0, case.attitude_known),
+        FieldSample(b_body, tick),
+    )
     return LawInput(attitude, b_body, sample, before, sun, reference, tick=tick), relative, from_orbit
 
 

@@ -59,7 +59,7 @@ SHUTTLECOCK = LawFlight(
     altitude_km=400.0,
     inclination_deg=80.0,
     extra=Feathers(),
-    known=False,
+    attitude_known=False,
 )
 """A 3U satellite with four feathers, its long axis 2 ahead."""
 

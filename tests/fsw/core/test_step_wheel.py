@@ -129,4 +129,4 @@ def test_its_view_counts_in_the_checksum(acting):
 def test_after_a_restart_of_the_plant_its_momentum_is_not_known(acting):
     state = altered(acting.state, wheel=replace(acting.state.wheel, refused=3))
     begin_count(state, 5, acting.config)
-    assert (state.wheel.tick, state.wheel.known, state.wheel.refused) == (-1, False, 3)
+    assert (state.wheel.tick, state.wheel.has_speed, state.wheel.refused) == (-1, False, 3)

@@ -54,19 +54,19 @@ def test_the_faulty_unit_must_be_isolated_and_no_other(bounds):
 def test_a_sensor_that_is_not_named_may_be_doubted_with_the_other_but_a_coil_must_be_named(bounds):
     doubted = ReportedEvent(140, Number.SENSORS_DISAGREE, 0)
     sensor, coil = (FaultRow("planted", "", "none", unit=unit) for unit in ("magnetometer", "coil 1"))
-    assert checks.isolates_or_doubts_faulty_unit(sensor, record(doubted), bounds) == (
+    assert checks.isolates_or_disputes_faulty_unit(sensor, record(doubted), bounds) == (
         True,
         "found after 40 s",
     )
     assert checks.isolates_faulty_unit(sensor, record(doubted), bounds)[0] is False
-    assert checks.isolates_or_doubts_faulty_unit(sensor, record(), bounds)[0] is False
+    assert checks.isolates_or_disputes_faulty_unit(sensor, record(), bounds)[0] is False
     early = ReportedEvent(99, Number.SENSORS_DISAGREE, 0)
-    assert checks.isolates_or_doubts_faulty_unit(sensor, record(early), bounds)[0] is False
+    assert checks.isolates_or_disputes_faulty_unit(sensor, record(early), bounds)[0] is False
     wrong = isolated(125, Sensor.SUN_SENSOR)
-    assert checks.isolates_or_doubts_faulty_unit(sensor, record(wrong, doubted), bounds)[0] is False
+    assert checks.isolates_or_disputes_faulty_unit(sensor, record(wrong, doubted), bounds)[0] is False
     pulsed = record(doubted)
     pulsed.request_ticks, pulsed.request_coils = list(range(101, 110)), [1] * 9
-    assert checks.isolates_or_doubts_faulty_unit(coil, pulsed, bounds)[0] is False
+    assert checks.isolates_or_disputes_faulty_unit(coil, pulsed, bounds)[0] is False
 
 
 @pytest.mark.parametrize(
@@ -89,7 +89,7 @@ def test_the_only_sensor_that_is_left_need_not_be_named_if_its_attitude_is_given
     flown = record(*later)
     flown.lit = [lit] * 500
     flown.error_deg = [0.3] * 120 + [0.3 if valid else None] * 380
-    assert checks.isolates_or_doubts_faulty_unit(row, flown, bounds)[0] is accepted
+    assert checks.isolates_or_disputes_faulty_unit(row, flown, bounds)[0] is accepted
     assert checks.isolates_faulty_unit(row, flown, bounds)[0] is False, "where it must be named"
 
 
@@ -290,9 +290,9 @@ def test_no_coil_need_be_isolated_once_a_faulty_sensor_makes_them_disagree(bound
     flown.request_ticks, flown.request_coils = list(range(101, 130)), [1] * 29
     coil = RowFault("coil_wired", {}, inf, "coil 1")
     row = FaultRow("planted", "", "none", unit="magnetometer", then=(coil,))
-    assert checks.isolates_or_doubts_faulty_unit(row, flown, bounds)[0] is False, "nine before"
+    assert checks.isolates_or_disputes_faulty_unit(row, flown, bounds)[0] is False, "nine before"
     flown.request_ticks = list(range(107, 136))
-    assert checks.isolates_or_doubts_faulty_unit(row, flown, bounds)[0] is None, "three before"
+    assert checks.isolates_or_disputes_faulty_unit(row, flown, bounds)[0] is None, "three before"
     alone = FaultRow("planted", "", "none", unit="coil 1")
     assert checks.isolates_faulty_unit(alone, flown, bounds)[0] is False, "no sensor is faulty"
 

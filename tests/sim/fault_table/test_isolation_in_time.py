@@ -66,7 +66,7 @@ class TestGivenUp:
             flown.error_deg[tick] = None
         for tick in lit:
             flown.lit[tick] = True
-        return isolation.isolates_or_doubts_faulty_unit(MAG, flown, bounds)[0]
+        return isolation.isolates_or_disputes_faulty_unit(MAG, flown, bounds)[0]
 
     def test_it_is_the_last_tick_of_the_fault_that_counts(self, bounds):
         assert self.judged(bounds, [339]) is True
@@ -80,7 +80,7 @@ class TestGivenUp:
         row = replace(MAG, lasts_s=100.25)
         flown = record(lit=False)
         flown.error_deg = [None] * 500
-        assert isolation.isolates_or_doubts_faulty_unit(row, flown, bounds)[0] is False
+        assert isolation.isolates_or_disputes_faulty_unit(row, flown, bounds)[0] is False
 
 
 class TestSilentBoard:

@@ -13,8 +13,8 @@ from sim.errors import HarnessError
 from sim.new_scenario.command import check_new, new, scenario_text
 from sim.new_scenario.satellite import NewSatellite
 from sim.scenario.schema import load, scenario_of
-from sim.sizing.doubts import doubts
 from sim.sizing.expectation import expect
+from sim.sizing.scenario_warnings import scenario_warnings
 
 TLE = (
     "1 22826U 93061D   15086.11593543  .00000251  00000-0  11414-3 0  9992",
@@ -37,7 +37,7 @@ def written(satellite):
 def test_a_new_scenario_is_valid_and_not_doubted(satellite):
     scenario = written(satellite)
     assert scenario.name == satellite.name
-    told = doubts(scenario)
+    told = scenario_warnings(scenario)
     assert all("asks for coils of" in doubt for doubt in told)
     assert len(told) == (satellite is SATELLITES["tons"])
     assert expect(scenario).pointing_deg < 5.0

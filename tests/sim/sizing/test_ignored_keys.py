@@ -3,7 +3,7 @@
 import pytest
 
 from sim.scenario.schema import load, shipped
-from sim.sizing.doubts import doubts, ignored_keys
+from sim.sizing.scenario_warnings import ignored_keys, scenario_warnings
 
 TLE = load("microsat").orbit.tle
 CONTINUOUS = {"driver": "continuous", "max_dipole_am2": 1.0, "on_fraction": 0.5}
@@ -36,4 +36,4 @@ def test_shipped_scenarios_have_none():
 def test_a_key_that_is_ignored_is_told_unless_it_is_the_default(scenario, values, told):
     found = ignored_keys(load(scenario, values))
     assert [sentence.startswith(told) for sentence in found] == [True] * bool(told)
-    assert set(found) <= set(doubts(load(scenario, values)))
+    assert set(found) <= set(scenario_warnings(load(scenario, values)))

@@ -7,7 +7,7 @@ from sim.faults.section import make_plant
 from sim.flight.record_flight import ticks_of
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import load
-from sim.sizing.doubts import doubts, unbegun_faults
+from sim.sizing.scenario_warnings import scenario_warnings, unbegun_faults
 
 TIMES_S = (0.0, 3.3, 4.0, 4.01, 1e9)
 
@@ -37,6 +37,6 @@ def test_it_says_when_the_run_ends():
 
 def test_a_scenario_that_is_shorter_than_its_faults_is_doubted():
     ticks = ticks_of(scenario_with(), None)
-    assert doubts(scenario_with(ticks - 1.0)) == []
-    (doubt,) = doubts(scenario_with(float(ticks)))
+    assert scenario_warnings(scenario_with(ticks - 1.0)) == []
+    (doubt,) = scenario_warnings(scenario_with(float(ticks)))
     assert doubt.startswith("fault[0], mag_frozen at ")

@@ -40,19 +40,19 @@ class Directions:
         self.earth = earth
 
 
-def directions(estimate: Estimate, seen: Light, config: MekfConfig) -> Directions:
+def directions(estimate: Estimate, light: Light, config: MekfConfig) -> Directions:
     """Where the cells should see Sun and Earth."""
     q, omega, known = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
-    s, s_sensitivity = sun_prediction(q, omega, known, seen.s_eci, config)
-    e, e_sensitivity = sun_prediction(q, omega, known, seen.e_eci, config)
-    return Directions(s, s_sensitivity, e, e_sensitivity, seen.earth)
+    s, s_sensitivity = sun_prediction(q, omega, known, light.s_eci, config)
+    e, e_sensitivity = sun_prediction(q, omega, known, light.e_eci, config)
+    return Directions(s, s_sensitivity, e, e_sensitivity, light.earth)
 
 
 def prediction(
-    estimate: Estimate, cell: int, seen: Light, config: MekfConfig, cells: CellSet
+    estimate: Estimate, cell: int, light: Light, config: MekfConfig, cells: CellSet
 ) -> CellPrediction:
     """What a cell, clear of the edge of its view, should show, and how that depends on the error state."""
-    return shown_by(cell, directions(estimate, seen, config), estimate.parameters, config, cells)
+    return shown_by(cell, directions(estimate, light, config), estimate.parameters, config, cells)
 
 
 def shown_by(
@@ -80,9 +80,9 @@ def shown_by(
     return shown, row
 
 
-def sunlit(q_body_from_eci: Quaternion, seen: Light, cells: CellSet) -> list[int]:
+def sunlit(q_body_from_eci: Quaternion, light: Light, cells: CellSet) -> list[int]:
     """The cells that certainly see the Sun."""
-    s = rotate(q_body_from_eci, seen.s_eci)
+    s = rotate(q_body_from_eci, light.s_eci)
     return [
         cell
         for cell, normal in enumerate(cells.normals_body)
@@ -90,17 +90,17 @@ def sunlit(q_body_from_eci: Quaternion, seen: Light, cells: CellSet) -> list[int
     ]
 
 
-def earthlit(q_body_from_eci: Quaternion, seen: Light, cells: CellSet) -> list[int]:
+def earthlit(q_body_from_eci: Quaternion, light: Light, cells: CellSet) -> list[int]:
     """The cells that face away from the Sun and that the Earth alone lights."""
-    s = rotate(q_body_from_eci, seen.s_eci)
+    s = rotate(q_body_from_eci, light.s_eci)
     return [
         cell
         for cell, normal in enumerate(cells.normals_body)
-        if dot(normal, s) < -LEAST_COSINE and _by_earth(q_body_from_eci, normal, seen) > BRIGHT * cells.dark
+        if dot(normal, s) < -LEAST_COSINE and _by_earth(q_body_from_eci, normal, light) > BRIGHT * cells.dark
     ]
 
 
-def most_behind(estimate: Estimate, normal: Vec3, seen: Light, cells: CellSet) -> float:
+def most_behind(estimate: Estimate, normal: Vec3, light: Light, cells: CellSet) -> float:
     """The most that a cell facing away from the Sun can show, by the Earth's light and its excess.
 
     The Earth is as bright as the table has it, or brighter where the cells together have shown that it is.
@@ -108,9 +108,9 @@ def most_behind(estimate: Estimate, normal: Vec3, seen: Light, cells: CellSet) -
     known = estimate.parameters.earth_light
     brighter = max(0.0, known[0]) / cells.albedo if known and cells.albedo > 0.0 else 0.0
     most = SIGMAS * hypot(cells.excess_sigma, cells.light_sigma)
-    return cells.dark + (1.0 + brighter) * _by_earth(estimate.q_body_from_eci, normal, seen) + most
+    return cells.dark + (1.0 + brighter) * _by_earth(estimate.q_body_from_eci, normal, light) + most
 
 
-def _by_earth(q_body_from_eci: Quaternion, normal: Vec3, seen: Light) -> float:
-    view = 0.5 * (1.0 + dot(normal, rotate(q_body_from_eci, seen.e_eci)))
-    return seen.earth * view * view
+def _by_earth(q_body_from_eci: Quaternion, normal: Vec3, light: Light) -> float:
+    view = 0.5 * (1.0 + dot(normal, rotate(q_body_from_eci, light.e_eci)))
+    return light.earth * view * view

@@ -43,13 +43,13 @@ class Linear:
     include bias and excess.
     """
 
-    __slots__ = ("about", "b_eci_t", "by_earth", "by_sun", "rows", "seen", "values")
+    __slots__ = ("about", "b_eci_t", "by_earth", "by_sun", "light", "rows", "values")
 
     def __init__(
         self,
         about: Estimate,
         b_eci_t: Vec3,
-        seen: Light | None,
+        light: Light | None,
         by_sun: tuple[int, ...],
         by_earth: tuple[int, ...],
         values: Matrix,
@@ -57,7 +57,7 @@ class Linear:
     ) -> None:
         self.about = about
         self.b_eci_t = b_eci_t
-        self.seen = seen
+        self.light = light
         self.by_sun = by_sun
         self.by_earth = by_earth
         self.values = values
@@ -65,27 +65,27 @@ class Linear:
 
 
 def linear_about(
-    estimate: Estimate, b_eci_t: Vec3, seen: Light | None, config: MekfConfig, cells: CellSet
+    estimate: Estimate, b_eci_t: Vec3, light: Light | None, config: MekfConfig, cells: CellSet
 ) -> Linear:
     """The linear equations of a tick.
 
     Args:
         estimate: predicted to this tick.
         b_eci_t: field as modelled, where it was sampled.
-        seen: the light; None: no cell is lit.
+        light: the light; None: no cell is lit.
         config: the filter.
         cells: the cells.
     """
     q = estimate.q_body_from_eci
-    by_sun, by_earth = (sunlit(q, seen, cells), earthlit(q, seen, cells)) if seen else ([], [])
-    values, rows = _shown(estimate, b_eci_t, seen, (*by_sun, *by_earth), config, cells)
-    return Linear(estimate.copy(), b_eci_t, seen, tuple(by_sun), tuple(by_earth), values, rows)
+    by_sun, by_earth = (sunlit(q, light, cells), earthlit(q, light, cells)) if light else ([], [])
+    values, rows = _shown(estimate, b_eci_t, light, (*by_sun, *by_earth), config, cells)
+    return Linear(estimate.copy(), b_eci_t, light, tuple(by_sun), tuple(by_earth), values, rows)
 
 
 def _shown(
     estimate: Estimate,
     b_eci_t: Vec3,
-    seen: Light | None,
+    light: Light | None,
     lit: tuple[int, ...],
     config: MekfConfig,
     cells: CellSet,
@@ -94,8 +94,8 @@ def _shown(
         estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters, b_eci_t, config
     )
     values, rows = list(sub(field, estimate.parameters.mag_bias_t)), [field_rows]
-    if seen is not None and lit:
-        towards = directions(estimate, seen, config)
+    if light is not None and lit:
+        towards = directions(estimate, light, config)
         for cell in lit:
             value, row = shown_by(cell, towards, estimate.parameters, config, cells)
             values.append(value)
@@ -132,7 +132,7 @@ def relinearise(
     numbers, places = _uncertain(estimate, lit, config)
     if not places or frozen:
         return
-    values, rows = _shown(estimate, known.b_eci_t, known.seen, lit, config, cells)
+    values, rows = _shown(estimate, known.b_eci_t, known.light, lit, config, cells)
     moved = correction(known.about, estimate, config)
     left = np.zeros(len(moved))
     left[places] = (known.values - values + product(known.rows, moved[:, None])[:, 0])[numbers] - moved[

@@ -78,10 +78,10 @@ def update_cells(
 
 
 def take_cell(
-    estimate: Estimate, cell: int, current: float, seen: Light, config: MekfConfig, cells: CellSet
+    estimate: Estimate, cell: int, current: float, light: Light, config: MekfConfig, cells: CellSet
 ) -> bool:
     """Take the current of a cell; False when the gate refuses it."""
-    shown, row = prediction(estimate, cell, seen, config, cells)
+    shown, row = prediction(estimate, cell, light, config, cells)
     innovation = current - shown - estimate.parameters.cell_excess[cell]
     return _take(estimate, innovation, row, config, cells, False, ZERO)
 

@@ -10,7 +10,7 @@ from fsw.table.table import FlightTable
 from sim.commissioning.calibrate.flown.run_fit import RunCalibration, calibrated
 from sim.commissioning.calibrate.flown.samples import read_samples
 from sim.commissioning.calibrate.flown.tables import tables
-from sim.commissioning.calibrate.flown.verdicts import sentences, turn_rad, turn_sigma_rad, untold
+from sim.commissioning.calibrate.flown.verdicts import list_undetermined, sentences, turn_rad, turn_sigma_rad
 from sim.console import answer, say, warn
 from sim.errors import HarnessError
 from sim.record import run_dir
@@ -41,7 +41,7 @@ def calibrate(
         found = calibrated(samples, table)
     except HarnessError as error:
         raise HarnessError(f"{log}: {error}") from None
-    missing = untold(found)
+    missing = list_undetermined(found)
     for line in sentences(found, tick_s):
         say(line)
     for line in missing:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from sim.commissioning.calibrate.flown.run_fit import RunCalibration
-from sim.commissioning.calibrate.flown.verdicts import sentences, untold
+from sim.commissioning.calibrate.flown.verdicts import list_undetermined, sentences
 from sim.drawing.canvas import AXES_COLOURS, INK, TimeAxis, style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import PageHeader, PageSection, Tile, sections_page
@@ -22,7 +22,7 @@ def calibration_page(
         start_unix_s: time of the log's first tick.
         tables: both tables as TOML; empty where none could be written.
     """
-    missing = untold(found)
+    missing = list_undetermined(found)
     badges = [("bad", f"✗ {len(missing)} not told")] if missing else [("good", "✓ everything told")]
     t_s = tick_s * (found.tick - found.tick[0]).astype(float)
     axis = TimeAxis("seconds from the start", 1.0, 0.0, float(t_s[-1]))

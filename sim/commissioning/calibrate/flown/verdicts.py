@@ -57,7 +57,7 @@ def are_coils(matrix: Array) -> bool:
     return True
 
 
-def untold(found: RunCalibration) -> list[str]:
+def list_undetermined(found: RunCalibration) -> list[str]:
     """What the log does not tell, a sentence each; none: everything."""
     text = []
     values, directions = np.linalg.eigh(found.field.covariance[9:, 9:])

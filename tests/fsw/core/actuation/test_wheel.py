@@ -49,7 +49,7 @@ def test_a_report_gives_momentum_and_its_change():
 
 def test_the_first_report_is_no_change():
     view = after(300.0)
-    assert (view.change_nms, view.known) == (0.0, True)
+    assert (view.change_nms, view.has_speed) == (0.0, True)
 
 
 @pytest.mark.parametrize(
@@ -71,7 +71,7 @@ def test_what_is_missed_is_taken_with_the_next_report():
 @pytest.mark.parametrize("speed_radps", [nan, inf, 751.0, -751.0])
 def test_a_report_beyond_the_range_is_refused(speed_radps):
     view = after(speed_radps)
-    assert (view.tick, view.refused, view.known) == (-1, 1, False)
+    assert (view.tick, view.refused, view.has_speed) == (-1, 1, False)
     assert momentum_nms(view, WHEEL) is None
 
 

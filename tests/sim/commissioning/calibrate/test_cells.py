@@ -24,7 +24,7 @@ def test_face_and_full_scale_are_found_within_their_deviations():
     fits = [fit_cell("a", *sunlit(seed=seed)) for seed in range(20)]
     assert np.mean([off_deg(fit) < 3.0 * fit.face_sigma_deg for fit in fits]) > 0.9
     assert np.mean([abs(fit.full_scale - 420.0) < 3.0 * fit.full_scale_sigma for fit in fits]) > 0.9
-    assert all(fit.told for fit in fits)
+    assert all(fit.determined for fit in fits)
 
 
 def test_light_of_the_earth_on_the_dark_side_and_wild_rows_do_not_count():
@@ -51,4 +51,4 @@ def test_too_few_rows_give_none_and_few_are_not_told():
     one_way = fit_cell(
         "a", 420.0 * (along @ FACE) + sunlit(LEAST_ROWS)[0] * 0.02, along, np.ones(len(along), bool)
     )
-    assert not one_way.told
+    assert not one_way.determined

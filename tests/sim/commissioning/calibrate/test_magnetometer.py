@@ -31,7 +31,7 @@ def test_the_true_numbers_are_within_their_deviations():
 
 def test_all_nine_are_told_and_the_residual_is_the_noise():
     fit = fit_magnetometer(*samples())
-    assert fit.told.all()
+    assert fit.determined.all()
     assert fit.rms_nt == pytest.approx(200.0, rel=0.1)
     assert fit.correlation_rows < 2.0
 
@@ -75,10 +75,10 @@ def test_a_bias_along_the_spin_axis_cannot_be_seen_in_a_minute(tmp_path):
     """The field along the axis stands still, and so may the bias."""
     short, long = (made_up(seconds, noise_nt=300.0, seed=4).along(tmp_path) for seconds in (60, 900))
     fits = [fit_magnetometer(one.recorded.mag_nt, one.strength_nt) for one in (short, long)]
-    assert fits[0].told[:3].tolist() == [True, False, True]
+    assert fits[0].determined[:3].tolist() == [True, False, True]
     assert fits[0].weakest_nt > 1500.0
     assert fits[0].weakest_axis @ AXES[:, 1] > 0.98
-    assert fits[1].told.all()
+    assert fits[1].determined.all()
     assert fits[1].weakest_nt < 0.3 * fits[0].weakest_nt
 
 
@@ -88,7 +88,7 @@ def test_what_is_told_of_a_spin_is_true(tmp_path):
     for seed in range(6):
         around = made_up(200, noise_nt=300.0, seed=seed).along(tmp_path)
         fit = fit_magnetometer(around.recorded.mag_nt, around.strength_nt)
-        off += deviations(fit)[fit.told].tolist()
+        off += deviations(fit)[fit.determined].tolist()
     assert len(off) > 20
     assert np.mean(np.abs(off) < 3.0) > 0.9
     assert np.max(np.abs(off)) < 5.0

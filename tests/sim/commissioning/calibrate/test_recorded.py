@@ -38,7 +38,7 @@ def calibrated(tmp_path_factory):
 @pytest.mark.long
 def test_the_magnetometer_is_found(calibrated):
     fit = calibrated.magnetometer
-    assert fit.told.all()
+    assert fit.determined.all()
     assert np.abs((fit.offset_nt - OFFSET_NT) / fit.sigma[:3]).max() < 4.0
     np.testing.assert_allclose(fit.matrix, MATRIX, atol=0.02)
     assert fit.rms_nt == pytest.approx(150.0, rel=0.15)
@@ -65,7 +65,7 @@ def test_the_file_says_what_was_found(calibrated, tmp_path):
     np.testing.assert_allclose(known.offset_nt, calibrated.magnetometer.offset_nt, atol=0.1)
     np.testing.assert_allclose(known.matrix, calibrated.magnetometer.matrix, atol=1e-6)
     np.testing.assert_allclose(known.inertia, calibrated.body.inertia, atol=1e-3)
-    assert [cell.name for cell in known.cells] == [cell.name for cell in calibrated.cells if cell.told]
+    assert [cell.name for cell in known.cells] == [cell.name for cell in calibrated.cells if cell.determined]
     bounds = tomllib.loads(path.read_text())["uncertainty"]
     assert bounds["magnetometer_bias_nt"] >= 3.0 * calibrated.magnetometer.sigma[:3].max() * 0.99
     assert 0.0 < bounds["magnetometer_scale_percent"] <= 10.0
@@ -82,7 +82,7 @@ def test_full_scales_keep_their_digits_in_any_unit(calibrated, tmp_path, unit):
     found = replace(calibrated, cells=tuple(map(in_unit, calibrated.cells)))
     path = tmp_path / "c.toml"
     path.write_text(as_toml(found, DECLARED))
-    told = [cell for cell in found.cells if cell.told]
+    told = [cell for cell in found.cells if cell.determined]
     assert told
     for known, cell in zip(read_calibration(path).cells, told, strict=True):
         assert known.full_scale == pytest.approx(cell.full_scale, rel=1e-3)
@@ -115,7 +115,7 @@ def test_a_ratio_that_the_wobble_shows_is_corrected(tmp_path):
     off = DECLARED * (1.004, 1.0, 1.0)
     found = fit_body(around, known, off, AXES[:, 1], start, NOISE)
     assert found.ratios[1] == 1.0
-    assert abs(found.ratios[0] - RATIOS[0]) < 0.5 * abs(off[0] - RATIOS[0]) or not found.told[0]
+    assert abs(found.ratios[0] - RATIOS[0]) < 0.5 * abs(off[0] - RATIOS[0]) or not found.determined[0]
     np.testing.assert_allclose(declared_axes(DECLARED, AXES[:, 1])[:, 1], AXES[:, 1], atol=1e-12)
 
 

@@ -19,7 +19,7 @@ def found(flown):
 
 
 def test_both_wirings_are_told(found, wired):
-    assert found.told == wired
+    assert found.wiring == wired
 
 
 def test_the_verdict_is_in_words(found, flown):
@@ -61,7 +61,7 @@ def test_the_wiring_of_the_magnetometer_changes_nothing_but_the_channels(flown, 
 def test_in_the_dark_the_wiring_of_the_magnetometer_is_not_told_and_no_verdict_is_wrong(flown, wired):
     _, samples, table = flown()
     dark = phasing(replace(samples, sun=np.full_like(samples.sun, np.nan)), table, Known())
-    assert dark.told is None
+    assert dark.wiring is None
     assert wired in dark.pairs
     assert any("Sun" in reason for reason in dark.missing)
 
@@ -73,7 +73,7 @@ def test_a_sun_sensor_that_lies_is_told_as_a_thing_that_no_wiring_explains(flown
     sun = draw.normal(size=samples.sun.shape)
     sun /= np.linalg.norm(sun, axis=1)[:, None]
     lost = phasing(replace(samples, sun=sun), table, Known())
-    assert lost.told is None
+    assert lost.wiring is None
     assert any("no wiring explains field and Sun" in reason for reason in lost.missing)
 
 
@@ -85,7 +85,7 @@ def test_at_rest_the_coils_field_tells_the_product_alone(flown, wired):
     assert (tuple(-x for x in wired[0]), tuple(-x for x in wired[1])) in at_rest.pairs
     listed = words.lines(at_rest, table)
     assert "cannot be told apart:" in listed
-    assert at_rest.told is None
+    assert at_rest.wiring is None
 
 
 def test_a_known_field_without_a_sample_of_it_is_missing_evidence_and_no_contradiction(flown, wired):

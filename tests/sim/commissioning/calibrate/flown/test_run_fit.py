@@ -13,7 +13,7 @@ from sim.commissioning.calibrate.flown.expected import expected
 from sim.commissioning.calibrate.flown.run_fit import calibrated, field_sigma_nt_per_am2
 from sim.commissioning.calibrate.flown.samples import Samples
 from sim.commissioning.calibrate.flown.tables import tables
-from sim.commissioning.calibrate.flown.verdicts import sentences, turn_rad, untold
+from sim.commissioning.calibrate.flown.verdicts import list_undetermined, sentences, turn_rad
 from sim.commissioning.calibrate.flown.wiring import channels_from_body
 from sim.errors import HarnessError
 
@@ -147,7 +147,7 @@ def test_it_is_said_in_words(found):
 
 
 def test_without_pulses_field_and_delay_are_not_told():
-    text = untold(calibrated(replace_delay(log(pulses=False)), TABLE))
+    text = list_undetermined(calibrated(replace_delay(log(pulses=False)), TABLE))
     assert sum("gave no pulse" in one for one in text) == 3
     assert any("delay is not known" in one for one in text)
 
@@ -162,7 +162,7 @@ def replace_delay(samples):
 @pytest.mark.long
 def test_a_short_log_of_a_body_that_turns_about_one_axis_leaves_an_offset_and_gives_no_table():
     short = calibrated(log(ticks=420, rate=(0.0, 0.001, 0.003)), TABLE)
-    assert any("the offset along" in one for one in untold(short))
+    assert any("the offset along" in one for one in list_undetermined(short))
     with pytest.raises(HarnessError, match="no table is written"):
         tables(short, TABLE)
 
@@ -176,7 +176,7 @@ def test_one_that_hardly_turns_does_not_even_tell_the_wiring():
 def test_dipoles_that_are_none_of_coils_are_not_written(found):
     """The pulses of this log turned nothing."""
     assert "matrix" not in tables(found, TABLE)["calibration"]["coils"]
-    assert any("no dipoles of coils" in one for one in untold(found))
+    assert any("no dipoles of coils" in one for one in list_undetermined(found))
 
 
 def test_in_the_dark_nothing_is_claimed():

@@ -22,7 +22,7 @@ OPTIONS = {
 """The option that gives each key of a scenario."""
 
 
-def figure_doubts(satellite: NewSatellite, scenario: Scenario) -> list[str]:
+def figure_warnings(satellite: NewSatellite, scenario: Scenario) -> list[str]:
     """The doubts, each a sentence; ``scenario`` is what was made of the figures."""
     return [*_density(satellite), *_drag(satellite, scenario)]
 

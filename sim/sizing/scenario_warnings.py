@@ -88,7 +88,7 @@ SAME_AT_ANY_TIME = (TcLaw, TcGain, TcSpin, TcOrbitElement, TcParameter)
 """Telecommands that are refused for what they say, not for the state of the satellite."""
 
 
-def doubts(scenario: Scenario, ticks: int | None = None) -> list[str]:
+def scenario_warnings(scenario: Scenario, ticks: int | None = None) -> list[str]:
     """The doubts, in the order of the sections of a scenario; none for one that is plausible.
 
     A run of it takes so many ticks; None: as the scenario says.

@@ -4,7 +4,7 @@ import pytest
 
 from fsw.input.toml_text import parse_toml
 from sim.new_scenario.command import scenario_text
-from sim.new_scenario.figure_doubts import figure_doubts, in_options
+from sim.new_scenario.figure_warnings import figure_warnings, in_options
 from sim.new_scenario.satellite import NewSatellite
 from sim.scenario.schema import scenario_of
 
@@ -12,7 +12,7 @@ from sim.scenario.schema import scenario_of
 def told(**figures):
     usual = {"altitude_km": 700.0, "inclination_deg": 97.6, "mass_kg": 4.0, "size_m": (0.34, 0.1, 0.1)}
     satellite = NewSatellite("mine", **(usual | figures))
-    return figure_doubts(satellite, scenario_of(parse_toml(scenario_text(satellite, "x.toml")), "x.toml"))
+    return figure_warnings(satellite, scenario_of(parse_toml(scenario_text(satellite, "x.toml")), "x.toml"))
 
 
 def test_a_cubesat_is_not_doubted():

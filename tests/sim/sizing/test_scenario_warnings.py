@@ -4,16 +4,16 @@ import pytest
 
 from sim.flight.record_flight import ticks_of
 from sim.scenario.schema import load, parse_settings, shipped
-from sim.sizing.doubts import doubts
+from sim.sizing.scenario_warnings import scenario_warnings
 
 
 def found(name, *settings):
-    return doubts(load(name, parse_settings(settings)))
+    return scenario_warnings(load(name, parse_settings(settings)))
 
 
 @pytest.mark.parametrize("scenario", shipped(), ids=lambda scenario: scenario.name)
 def test_no_scenario_that_ships_is_doubted(scenario):
-    assert doubts(scenario) == []
+    assert scenario_warnings(scenario) == []
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_an_inclination_that_was_left_out():
     del values["orbit"]["inclination_deg"]
     from sim.scenario.schema import scenario_of
 
-    (doubt,) = doubts(scenario_of(values, "mine"))
+    (doubt,) = scenario_warnings(scenario_of(values, "mine"))
     assert "where the key is left out it is 0" in doubt
 
 
@@ -161,7 +161,7 @@ def telecommand(**content):
     ids=lambda value: value["message"] if isinstance(value, dict) else "",
 )
 def test_a_telecommand_that_will_be_refused(content, answer):
-    (doubt,) = doubts(load("microsat", telecommand(**content)))
+    (doubt,) = scenario_warnings(load("microsat", telecommand(**content)))
     assert doubt.startswith(f"telecommand[1], {content['message']} at 600 s, will be answered {answer}")
 
 
@@ -176,7 +176,7 @@ def test_a_telecommand_that_will_be_refused(content, answer):
     ids=lambda content: content["message"],
 )
 def test_one_that_may_be_carried_out_is_not_doubted(content):
-    assert doubts(load("microsat", telecommand(**content))) == []
+    assert scenario_warnings(load("microsat", telecommand(**content))) == []
 
 
 def with_telecommands(*times_s):
@@ -186,15 +186,15 @@ def with_telecommands(*times_s):
 
 def test_a_scenario_that_is_shorter_than_its_telecommands_is_doubted():
     ticks = ticks_of(with_telecommands(), None)
-    assert doubts(with_telecommands(ticks - 1.0)) == []
-    (doubt,) = doubts(with_telecommands(float(ticks)))
+    assert scenario_warnings(with_telecommands(ticks - 1.0)) == []
+    (doubt,) = scenario_warnings(with_telecommands(float(ticks)))
     assert "will not be sent" in doubt
 
 
 def test_what_counts_is_how_long_the_run_is():
     asked = with_telecommands(600.0)
-    assert doubts(asked, 601) == []
-    (doubt,) = doubts(asked, 600)
+    assert scenario_warnings(asked, 601) == []
+    (doubt,) = scenario_warnings(asked, 600)
     assert "at 600 s, will not be sent: the last tick is at 599 s" in doubt
     late = with_telecommands(float(ticks_of(asked, None)))
-    assert doubts(late, 2 * ticks_of(asked, None)) == []
+    assert scenario_warnings(late, 2 * ticks_of(asked, None)) == []
