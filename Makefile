@@ -1,8 +1,8 @@
 # make sil    make the environment .venv and fly the default scenario
-# make test   the tests, but for the long ones: some eight minutes; by the compiled flight code, those that replace parts of it interpreted
+# make test   the tests, but for the long ones: some three minutes; by the compiled flight code, those that replace parts of it interpreted
 # make compiled   does the flight code run compiled? if not, why not, and an error
 # make test-interpreted   the tests, but for the long ones, all interpreted
-# make test-long   those of over a second: many orbits, processes, waits in real time; on a CAN interface where there is one: a quarter of an hour
+# make test-long   those of over a sixth of a second: many orbits, processes, waits in real time; on a CAN interface where there is one: twenty minutes
 # make test-paced   of the long ones, those that keep deadlines in real time: they want a core for themselves
 # make test-unpaced   the other long ones
 # make lint   style, types, layers, generated code, pages and pictures

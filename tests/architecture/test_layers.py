@@ -247,6 +247,7 @@ def lint(folder):
     return done.returncode, done.stdout + done.stderr
 
 
+@pytest.mark.long
 def test_the_contracts_are_kept():
     code, said = lint(ROOT)
     assert code == 0, said
@@ -293,6 +294,7 @@ def test_every_contract_has_a_planted_import():
     assert [contract["name"] for contract in contracts if "ignore_imports" in contract] == []
 
 
+@pytest.mark.long
 def test_the_contracts_catch_planted_imports(tmp_path):
     for package in PACKAGES:
         shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))

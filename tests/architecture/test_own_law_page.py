@@ -20,6 +20,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.long
 def test_its_law_flies_with_the_gain_of_the_page(folder):
     run = torquer.fly("microsat", law="my_law.py:damp", orbits=0.04, out=folder / "run", set=GAIN)
     assert run.ok
@@ -38,6 +39,7 @@ def test_its_effects_fly(folder):
     assert [effect.parameters for effect in run.scenario.effect] == [{"torque_nm": 2e-6}, {}]
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("folder")
 def test_its_test_holds_on_a_short_flight(fly):
     (code,) = re.findall(r"```python\n(def test_my_law.*?)```", PAGE, re.S)

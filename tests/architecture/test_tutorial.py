@@ -83,6 +83,7 @@ def _around(told):
     return told[:place], told[place + 1 :]
 
 
+@pytest.mark.long
 def test_the_python_of_the_quick_start_runs(folder):
     (code,) = re.findall(r"```python\n(.*?)```", (DOCS / "quickstart.md").read_text(encoding="utf-8"), re.S)
     exec(code.replace("orbits=4", "orbits=0.02"), {})

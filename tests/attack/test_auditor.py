@@ -17,6 +17,8 @@ from hil_stub.coils.coil_driver import CoilLimits
 from sim.audit.auditor import AuditLimits, audit
 from sim.record.candump import LogEntry
 
+pytestmark = pytest.mark.long
+
 LOGS = int(os.environ.get("TORQUER_ATTACK_LOGS", "40"))
 SEED = int(os.environ.get("TORQUER_ATTACK_SEED", "20150327"))
 PULSE_MS, BACKOFF_MS = 3000, 20_000

@@ -71,6 +71,7 @@ def rewrite(tree, **values):
 
 @needs_build
 class TestWhatIsBuilt:
+    @pytest.mark.long
     def test_flies_compiled(self, tree):
         assert answer(tree) == (f"compiled: {len(manifest_of(tree)['modules'])} modules", "compiled")
 
@@ -113,6 +114,7 @@ class TestWhatIsBuilt:
         assert said.startswith("interpreted: built for .cpython-39-other.so, and this Python loads ")
         assert loader == "SourceFileLoader"
 
+    @pytest.mark.long
     @pytest.mark.parametrize(
         "damage",
         [lambda whole: whole[:-1], lambda whole: whole[: len(whole) // 2].ljust(len(whole), b"\0")],

@@ -42,6 +42,7 @@ def test_nothing_is_stale_where_one_of_the_two_is_missing(missing, folder):
     assert KERNEL not in sys.modules
 
 
+@pytest.mark.long
 def test_a_flight_with_a_stale_kernel_is_by_filterpy(tmp_path):
     """A whole copy of the package, its source changed by a comment."""
     shutil.copytree(FOLDER.parents[1], tmp_path / "fsw")

@@ -50,6 +50,7 @@ def moments(ticks):
     return on[0], on[0] + 60
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_a_flip_is_detected_or_harmless(flight):
     config, ticks = flight

@@ -247,6 +247,7 @@ def no_sync(frame):
     return frame.can_id != Sync.ID
 
 
+@pytest.mark.long
 def test_noise_brings_the_flight_loop_to_nothing_but_safe(config):
     random, node = Random(SEED + 20), FlightNode(config)
     for tick, frames in in_ticks(random, noise):
@@ -257,6 +258,7 @@ def test_noise_brings_the_flight_loop_to_nothing_but_safe(config):
     assert node.state.gate.rejected > FRAMES // 3
 
 
+@pytest.mark.long
 def test_false_messages_of_every_node_break_no_limit_of_the_scheduler(config):
     """Each message there is, telecommands among them, with any content."""
     random, node = Random(SEED + 21), FlightNode(config)

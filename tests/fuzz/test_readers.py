@@ -194,6 +194,7 @@ NUMBERS = st.sampled_from([
 ])  # fmt: skip
 
 
+@pytest.mark.long
 @fuzzed
 @given(
     st.lists(st.tuples(st.sampled_from(KEYS), st.sampled_from([1, 1, 3, 9]), NUMBERS), min_size=1, max_size=3)
@@ -266,6 +267,7 @@ def test_a_campaign_of_which_a_run_flies_again(mutated, scenario_file, tmp_path,
     mutate()
 
 
+@pytest.mark.long
 def test_a_flight_table(mutated, tmp_path):
     whole = (ROOT / "fsw" / "flight.toml").read_bytes()
 
@@ -292,6 +294,7 @@ sun = [0.0, 0.6, 0.8]
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["script.toml", "bus.log"])
 @pytest.mark.parametrize("sensor", ["magnetometer", "sun"])
 def test_a_stimulus(mutated, flown, tmp_path, name, sensor):
@@ -310,6 +313,7 @@ def write(path, text):
     return path
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("pattern", [*CHECKS, ELEMENTS])
 def test_reference_data(mutated, tmp_path, pattern):
     """The first rows of each file; the header is of the check, so that it is altered too."""

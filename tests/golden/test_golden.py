@@ -44,6 +44,7 @@ def test_there_are_logs():
     assert len(NAMES) >= 4
 
 
+@pytest.mark.long
 def test_commands_are_those_recorded(shown):
     assert shown.ended
     assert shown.first_command_difference is None
@@ -57,6 +58,7 @@ def test_every_bit_is_as_recorded_on_the_same_platform(golden, shown):
         assert shown.command_exact
 
 
+@pytest.mark.long
 def test_the_filter_by_filterpy_gives_the_same_commands(golden):
     scenario = load(str(golden / run_dir.SCENARIO), {"flight": {"estimator": {"algebra": "filterpy"}}})
     shown = replay(golden / run_dir.BUS_LOG, flight_config(flight_table(scenario)))

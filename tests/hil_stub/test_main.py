@@ -74,6 +74,7 @@ BOARDS = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("arguments", "boot", "sample"), BOARDS, ids=["coil", "magnetometer", "sun", "cells"]
 )
@@ -93,6 +94,7 @@ def test_it_follows_the_bus_whatever_end_a_plant_tells_of(bus, start, arguments,
     assert process.poll() is None
 
 
+@pytest.mark.long
 def test_it_says_which_bus_it_is_on_and_ctrl_c_ends_it_cleanly(bus, start, spec):
     process = start("coil")
     hear(bus, 2)
@@ -102,6 +104,7 @@ def test_it_says_which_bus_it_is_on_and_ctrl_c_ends_it_cleanly(bus, start, spec)
     assert errors == f"on {spec}\n"
 
 
+@pytest.mark.long
 def test_a_bus_that_goes_away_ends_it_with_one_sentence(bus, start, spec):
     process = start("sun")
     hear(bus, 2)
@@ -112,6 +115,7 @@ def test_a_bus_that_goes_away_ends_it_with_one_sentence(bus, start, spec):
     assert "Traceback" not in sentence
 
 
+@pytest.mark.long
 def test_a_board_whose_starter_is_gone_ends(bus, spec):
     command = [sys.executable, "-m", "hil_stub", "--parent", "1", "sun", "--bus", spec]
     process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
@@ -128,6 +132,7 @@ def exchange(bus, tick):
     return hear(bus, 1)[0]
 
 
+@pytest.mark.long
 def test_a_sensor_shows_a_recorded_run_and_a_script(bus, start, tmp_path):
     log = [format_line(format_time(0), "vcan0", frame) for frame in recorded_frames()]
     (tmp_path / "bus.log").write_text("".join(log))
@@ -148,6 +153,7 @@ def recorded_frames():
         yield Sync(tick, 0).encode()
 
 
+@pytest.mark.long
 def test_the_dead_man_wakes_when_the_bus_falls_silent(bus, start):
     start("coil", "--deadman-s", "0.2", "--clock", "ticks")
     hear(bus, 2)
@@ -160,6 +166,7 @@ def test_the_dead_man_wakes_when_the_bus_falls_silent(bus, start):
     assert (status.lockout_ms, type(event)) == (99_000, CoilEvent)
 
 
+@pytest.mark.long
 def test_with_a_clock_of_its_own_fast_ticks_do_not_end_the_lockout(bus, start):
     start("coil")
     hear(bus, 2)

@@ -32,6 +32,7 @@ def judged(torquer, run):
         yield done
 
 
+@pytest.mark.long
 def test_as_flown_all_is_well(run, torquer):
     for done in judged(torquer, run):
         assert (done.code, done.err) == (0, "")

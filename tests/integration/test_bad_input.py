@@ -259,6 +259,7 @@ def test_a_complete_run_without_its_outcome_contradicts_itself(run, torquer, com
     assert "run.json: complete is true, but flown, which every complete run has, is missing" in done.sentence
 
 
+@pytest.mark.long
 def test_keys_of_a_later_version_are_kept(run, torquer):
     content = json.loads((run / "run.json").read_text())
     (run / "run.json").write_text(json.dumps({**content, "weather": {"sky": "clear"}, "complete": False}))

@@ -90,6 +90,7 @@ def read_only(folder):
         folder.chmod(0o755)
 
 
+@pytest.mark.long
 def test_a_report_in_a_folder_that_is_read_only(run, torquer):
     assert torquer("report", run).code == 0  # everything is imported, which nobody may not do
     with tempfile.TemporaryDirectory(dir="/tmp") as place:

@@ -54,6 +54,7 @@ def snapshot(run):
 # --- exchanged or edited
 
 
+@pytest.mark.long
 def test_the_log_of_another_run_with_its_index(run, sil_run, torquer):
     for name in ("bus.log", "bus.log.index"):
         shutil.copy(sil_run(*OTHER) / name, run / name)
@@ -233,6 +234,7 @@ def test_a_kill_before_any_step_leaves_a_run_that_contradicts_nothing(tmp_path, 
     assert torquer("check", tmp_path / f"run{last[0]}").code == 0
 
 
+@pytest.mark.long
 def test_a_kill_while_the_summary_is_replaced_leaves_none_that_is_wrong(run, torquer, monkeypatch):
     """As when another version of the program makes another summary of the same flight."""
     from sim.record import run_dir

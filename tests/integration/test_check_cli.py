@@ -86,6 +86,7 @@ def test_a_bare_log_is_judged_by_the_back_off_named(flight, torquer, tmp_path):
     assert "--backoff" in done.sentence
 
 
+@pytest.mark.long
 def test_a_pulse_of_3_1_s(at_10hz, torquer):
     coil, level, first, last = pulses(at_10hz)[0]
     after = statuses(at_10hz, last, 1)
@@ -96,6 +97,7 @@ def test_a_pulse_of_3_1_s(at_10hz, torquer):
     assert any("3.100 s" in sentence for _, _, sentence in found)
 
 
+@pytest.mark.long
 def test_a_gap_of_99_9_s(at_10hz, torquer):
     """The second pulse as it was flown, but sooner."""
     (_, _, _, last), (coil, _, first, end) = pulses(at_10hz)[:2]
@@ -114,6 +116,7 @@ def test_a_gap_of_99_9_s(at_10hz, torquer):
     assert "99.900 s" in found[2]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("level", [4, -4, 7, -8])
 def test_a_level_there_is_not(level, flight, copy_of, torquer):
     run, tick_hz = flight
@@ -131,6 +134,7 @@ def test_a_level_there_is_not(level, flight, copy_of, torquer):
     )
 
 
+@pytest.mark.long
 def test_two_coils_at_once(flight, copy_of, torquer):
     run, tick_hz = flight
     copy = copy_of(run)
@@ -144,6 +148,7 @@ def test_two_coils_at_once(flight, copy_of, torquer):
     assert "two coils" in torquer("check", copy.folder).out
 
 
+@pytest.mark.long
 def test_a_status_that_fails_its_crc(flight, copy_of, torquer):
     copy = copy_of(flight[0])
     index = pulses(copy)[0][2]
@@ -154,6 +159,7 @@ def test_a_status_that_fails_its_crc(flight, copy_of, torquer):
     assert "CRC" in done.out
 
 
+@pytest.mark.long
 def test_a_log_without_its_end_is_incomplete(flight, copy_of, torquer):
     copy = copy_of(flight[0])
     assert copy.entries.pop()[2].can_id == PlantEnd.ID
@@ -163,6 +169,7 @@ def test_a_log_without_its_end_is_incomplete(flight, copy_of, torquer):
     assert "incomplete" in done.out.splitlines()[-1]
 
 
+@pytest.mark.long
 def test_what_the_controller_says_is_no_evidence(flight, copy_of, torquer):
     """Judged is what was driven: without the frames of fsw the verdict and its figures are the same."""
     run, _ = flight

@@ -57,6 +57,7 @@ def test_the_tools_say_of_it_what_they_say_of_a_plain_one(run, sil_run, torquer,
     assert ours.code == 0
 
 
+@pytest.mark.long
 def test_it_is_reported_again(run, torquer):
     summary = (run / run_dir.SUMMARY).read_bytes()
     assert torquer("report", run).code == 0

@@ -63,6 +63,7 @@ def test_what_is_asked_in_a_tick_is_told_at_the_next_and_has_flowed(flight, copy
     assert flowed == pytest.approx(9.6 * np.array(reported) @ axes, rel=1e-7, abs=1e-7)
 
 
+@pytest.mark.long
 def test_the_audit_judges_what_the_dipole_status_reports(flight, torquer, copy_of):
     done = torquer("check", flight)
     assert (done.code, done.err) == (0, "")
@@ -82,6 +83,7 @@ def test_the_same_log_without_its_scenario_breaks_the_limits_of_a_pulsed_driver(
     assert "a pulsed driver reports" in done.out
 
 
+@pytest.mark.long
 def test_the_summary_has_what_was_driven_and_for_how_long(flight, torquer):
     summary = json.loads((flight / "summary.json").read_text())
     dipoles = summary["dipoles"]

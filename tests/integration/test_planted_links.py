@@ -37,6 +37,7 @@ def planted(run, elsewhere):
     return content(elsewhere)
 
 
+@pytest.mark.long
 def test_a_report_replaces_links_and_leaves_what_they_lead_to(run, elsewhere, torquer):
     before = planted(run, elsewhere)
     assert torquer("report", run).code == 0
@@ -45,6 +46,7 @@ def test_a_report_replaces_links_and_leaves_what_they_lead_to(run, elsewhere, to
     assert (run / run_dir.REPORT).read_text().startswith("<!DOCTYPE html>")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", [run_dir.REPORT, run_dir.SUMMARY])
 def test_a_link_to_nothing_makes_nothing_elsewhere(name, run, elsewhere, torquer):
     (run / name).unlink()
@@ -82,6 +84,7 @@ def campaign():
     return load_campaign("microsat", {"runs": 2, "orbits": 0.002}, {})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("end", ["", "-wal", "-shm", "-journal"])
 @pytest.mark.parametrize("name", [RESULTS, LOCK])
 def test_no_database_is_written_through_a_link(name, end, campaign, elsewhere, tmp_path):

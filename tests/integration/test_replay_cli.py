@@ -55,6 +55,7 @@ def test_an_untouched_log_is_bit_exact(copy, torquer):
         assert re.fullmatch(r"bit-exact: 302 ticks, \d+ frames, every state CRC equal\n", done.out)
 
 
+@pytest.mark.long
 def test_a_bare_log_needs_a_scenario(copy, torquer, tmp_path):
     bare = copy.log.rename(tmp_path / "bare.log")
     done = torquer("replay", bare)
@@ -300,6 +301,7 @@ def test_what_is_no_run_is_named(command, name, torquer, tmp_path):
 # --- through the plant
 
 
+@pytest.mark.long
 def test_recorded_commands_through_the_plant_give_its_frames(copy, torquer):
     done = torquer("replay", copy.folder, "--plant")
     assert (done.code, done.out) == (0, "plant reproduced: 302 ticks, every frame equal\n")

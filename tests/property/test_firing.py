@@ -11,6 +11,7 @@ SHARED_OR_NOT = pytest.mark.parametrize("shared", [True, False], ids=["shared", 
 DEMANDS = st.tuples(st.tuples(*[st.floats(-50.0, 50.0)] * 3), st.tuples(*[st.floats(-5e-5, 5e-5)] * 3))
 
 
+@pytest.mark.long
 @settings(max_examples=60)
 @given(
     tick_hz=st.one_of(st.sampled_from(RATES), st.integers(1, 128)),

@@ -106,6 +106,7 @@ def test_the_walk_finds_what_can_be_changed():
     assert [path for _, path in changeable(((1,), [2], {3: [4]}))] == [".1", ".2", ".2.3"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SATELLITES)
 def test_a_step_of_a_copy_is_that_of_the_original(name):
     config = table(name)
@@ -119,6 +120,7 @@ def test_a_step_of_a_copy_is_that_of_the_original(name):
         assert pack(state) == pack(copied)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SATELLITES)
 def test_what_can_be_changed_belongs_to_one_part_of_one_state(name):
     """Not to its copy, to the inbox, the answer or the tables, nor to another part."""

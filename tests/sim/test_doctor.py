@@ -48,6 +48,7 @@ def test_who_switched_compiled_code_off_is_told_how_to_switch_it_on(monkeypatch)
     assert {finding.name: finding for finding in examine()}["flight code"].remedy == f"unset {SWITCH}"
 
 
+@pytest.mark.long
 def test_the_filters_kernel_is_there_or_how_to_get_it(monkeypatch):
     for spec, presence in ((ModuleSpec(KERNEL, None), Presence.OK), (None, Presence.OPTIONAL)):
         monkeypatch.setattr(doctor, "find_spec", {KERNEL: spec}.get)

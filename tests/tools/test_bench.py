@@ -59,6 +59,7 @@ def test_plans_are_timed_in_a_flight():
     assert 0.1 < figures["mean_ms"] <= figures["percentile_99_ms"] < 1000.0
 
 
+@pytest.mark.long
 def test_a_flight_too_short_for_a_plan_is_one_sentence():
     with pytest.raises(SystemExit, match=r"^microsat: pulse_mpc made no plan in 0\.01 orbits[^\n]*$"):
         bench.plans_of("microsat", 0.01)
@@ -69,6 +70,7 @@ def test_a_command_that_fails_ends_the_benchmark():
         bench.run([bench.sys.executable, "-c", "raise SystemExit(3)"], lambda output, wall_s: 1.0)
 
 
+@pytest.mark.long
 def test_a_command_is_measured():
     words = [bench.sys.executable, "-c", "import time; time.sleep(0.2); print(7)"]
     measured = bench.run(words, lambda output, wall_s: float(output))

@@ -73,6 +73,7 @@ def test_the_table_of_a_satellite_has_every_law_best_first():
     assert "| pd | pulsed | best | 1.50 | 1.25 | 2.50 | 0.0010 | 4000 | 70 | 2.00 | POINT | kept |" in text
 
 
+@pytest.mark.long
 def test_all_satellites_are_flown_and_drawn(out, flown):
     assert main(["--out", str(out)]) == 0
     assert flown == list(SATELLITES)
@@ -80,6 +81,7 @@ def test_all_satellites_are_flown_and_drawn(out, flown):
         assert out.with_name(f"comparison-{name}.svg").read_text().count("lqr") == 1
 
 
+@pytest.mark.long
 def test_broken_limits_are_exit_code_1(out, monkeypatch):
     monkeypatch.setattr(
         comparison, "fly", lambda name, workers: record_of(name, replace(GOOD, limits_ok=False))

@@ -106,11 +106,13 @@ class TestWithoutWhatItNeeds:
             "The flight code is not compiled, and runs interpreted: there is no C compiler no-such-compiler\n"
         )
 
+    @pytest.mark.long
     def test_mypyc(self, monkeypatch, capsys):
         monkeypatch.setitem(sys.modules, "mypyc.build", None)
         assert "runs interpreted: mypyc is not there" in self.said(capsys)
 
 
+@pytest.mark.long
 @needs_compiler
 class TestCompiling:
     @pytest.fixture

@@ -39,6 +39,7 @@ def test_the_mode_diagram_has_every_mode_and_transition_of_the_table(draw):
     assert len(arrows(draw.modes())) == len({(row.source, row.target) for row in TABLE})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("package", ["fsw", "hil_stub", "sim"])
 def test_the_house_has_every_room_of_a_package(draw, package):
     rooms = {path.stem for path in (ROOT / package).iterdir() if path.name[0] not in "._"}
@@ -51,6 +52,7 @@ def test_an_import_that_a_longer_path_implies_is_left_out(draw):
     assert list(draw.implied_left_out(imports)) == [("a", "b"), ("b", "c")]
 
 
+@pytest.mark.long
 def test_a_picture_that_does_not_fit_the_source_is_stale(draw, monkeypatch, capsys):
     monkeypatch.setattr(draw, "modes", lambda: "<svg/>\n")
     assert draw.main(["--check"]) == 1

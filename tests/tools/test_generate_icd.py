@@ -42,6 +42,7 @@ def copy(tmp_path):
     return tmp_path
 
 
+@pytest.mark.long
 def test_the_page_is_fresh():
     done = generate(ROOT, "--check")
     assert done.returncode == 0, done.stdout + done.stderr
@@ -75,6 +76,7 @@ CHANGES = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "old", "new"), CHANGES.values(), ids=CHANGES)
 def test_a_stale_page_is_noticed(copy, name, old, new):
     changed = copy / name
@@ -84,6 +86,7 @@ def test_a_stale_page_is_noticed(copy, name, old, new):
     assert (done.returncode, "stale" in done.stdout) == (1, True), done.stderr
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("old", "new"), [("wrong_tick", "wrong_tock"), ('[state]\nREADY = "', '[state]\nX = "')]
 )

@@ -23,6 +23,7 @@ def check(root):
     )
 
 
+@pytest.mark.long
 def test_what_is_committed_is_not_stale():
     shown = check(ROOT)
     assert shown.returncode == 0, shown.stdout + shown.stderr

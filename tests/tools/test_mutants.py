@@ -160,6 +160,7 @@ def test_every_module_and_test_that_is_named_is_there():
             assert name.startswith("-") or (ROOT / name).exists(), name
 
 
+@pytest.mark.long
 def test_every_survivor_that_is_listed_is_a_mutant_that_there_is_and_has_a_reason():
     listed = tomllib.loads((ROOT / "tests/mutation/survivors.toml").read_text()).get("survivor", [])
     for one in listed:
@@ -169,6 +170,7 @@ def test_every_survivor_that_is_listed_is_a_mutant_that_there_is_and_has_a_reaso
         assert len(one["reason"]) > 20
 
 
+@pytest.mark.long
 def test_the_command_counts_mutants():
     done = subprocess.run(
         [sys.executable, str(ROOT / "tools" / "mutate.py"), "--list", "interlock"],

@@ -119,6 +119,7 @@ def test_tests_that_have_been_added_are_tried_on_what_survived(repository):
     assert repository.row == "| limits | `fsw/limit.py` | 5 | 5 | 0 | 0 | 0 |"
 
 
+@pytest.mark.long
 def test_a_module_that_has_changed_since_is_told_and_is_a_failure(repository):
     list_survivor(repository)
     repository.write("fsw/limit.py", MODULE.replace("LIMIT = 3", "LIMIT = 4"))
@@ -144,6 +145,7 @@ def test_a_file_that_is_cut_short_is_told_in_a_sentence_and_left(repository, nam
     assert (repository.root / "tests/mutation" / name).read_text() == '[limits\nx = "'
 
 
+@pytest.mark.long
 def test_a_module_that_has_never_been_measured_is_a_failure(repository):
     repository.write("tests/mutation/results.json", "{}")
     assert repository.mutate("--page").returncode == 1

@@ -22,12 +22,14 @@ def run(tmp_path, monkeypatch):
     return of
 
 
+@pytest.mark.long
 def test_a_page_is_written_beside_its_picture(run, tmp_path):
     assert run(ROWS) == 0
     assert "![Pointing error" in (tmp_path / "page.md").read_text(encoding="utf-8")
     assert (tmp_path / "page.svg").exists()
 
 
+@pytest.mark.long
 def test_a_law_better_than_the_bound_fails(run, capsys):
     better = next(order.key for order in all_orders() if order.law == "mpc")
     assert run(ROWS | {better: [0.1]}) == 1

@@ -57,6 +57,7 @@ def broken(part):
     return [line.name for line in part.lines if not line.kept]
 
 
+@pytest.mark.long
 def test_a_flight_keeps_all_and_says_how_fast_it_was(flight):
     part = soak.flight_part(flight, 50.0)
     assert broken(part) == []

@@ -94,6 +94,7 @@ def test_what_was_said_is_told_of_a_run_that_broke_off(tmp_path, program, code, 
     assert (verdict.code, verdict.failed, verdict.error) == (code, failed, error)
 
 
+@pytest.mark.long
 def test_a_run_that_hangs_notices_nothing(tmp_path):
     hung = validate_planted.validate(package_with(tmp_path, "time.sleep(60)"), ["a"], 0.2)
     assert hung == Verdict(TOO_LONG, [], 0.2, "not done after 0.2 s")

@@ -1,8 +1,10 @@
 """tools/write_pages.py: the committed pages are as the code says; a stale one is named and written again."""
 
+import pytest
 import write_pages as tool
 
 
+@pytest.mark.long
 def test_what_is_committed_is_not_stale(monkeypatch):
     monkeypatch.setattr("sys.argv", ["write_pages.py", "--check"])
     assert tool.run() == 0

@@ -138,6 +138,7 @@ class TestRequirementsOfTheScenario:
         with pytest.raises(ExpressionError, match="no such requirement in the scenario, of none"):
             required([]).expect("requirements == met")
 
+    @pytest.mark.long
     def test_of_a_real_flight(self, fly):
         flight = fly("microsat", orbits=0.005)
         flight.expect("requirements == not judged", "requirements.ake != met")
@@ -151,6 +152,7 @@ def test_a_flight_as_a_fixture(fly):
     assert "k_w = 5000000.0" in (flight.run.path / "scenario.toml").read_text()
 
 
+@pytest.mark.long
 def test_a_flight_that_fails_fails_the_test(fly, monkeypatch):
     monkeypatch.setattr(
         "sim.report.conclude.failures", lambda *args, **named: {"limits": "the limits are broken"}
@@ -164,6 +166,7 @@ def test_a_flight_that_cannot_be_flown_is_an_error(fly):
         fly("microsat", orbits=1e9)
 
 
+@pytest.mark.long
 def test_the_plugin_is_light(pytester_process):
     assert pytester_process("import torquer.testing, sys; print('numpy' in sys.modules)") == "False"
 

@@ -81,7 +81,7 @@ class LawFlight:
         sun_eci: direction of the Sun; None: no Sun sensor.
         gravity: whether the gravity gradient acts.
         extra: a further torque.
-        known: whether attitude and rate are.
+        attitude_known: whether the law knows attitude and rate.
         schedules: by law, of the periodic laws.
         igrf: whether the field is the true one, else the direct dipole's.
         wheel: a wheel that the law may drive; its friction is not compensated.

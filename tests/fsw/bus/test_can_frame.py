@@ -10,6 +10,7 @@ from fsw.wire.frame import Frame
 frames = st.builds(Frame, st.integers(0, 2**32 - 1), st.binary(max_size=8))
 
 
+@pytest.mark.long
 @given(st.lists(frames))
 def test_frames_survive_packing(sent):
     assert list(can_frame.unpack(can_frame.pack_all(sent))) == sent

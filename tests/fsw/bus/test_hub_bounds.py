@@ -186,6 +186,7 @@ class TestMemory:
             gone = f"hub: the client on port {port_of(client)} is dropped"
             assert [line.startswith(gone) for line in reports].count(True) == 1
 
+    @pytest.mark.long
     def test_the_slowest_is_dropped_and_told(self, hub, messages, monkeypatch, wait_until):
         monkeypatch.setattr(hub_module, "BACKLOG_LIMIT", 48 * MIB)
         sender, reader, sleeper, late = (come(hub.port) for _ in range(4))
@@ -204,6 +205,7 @@ class TestMemory:
         for client in (sender, reader, sleeper, late):
             client.close()
 
+    @pytest.mark.long
     def test_what_has_been_taken_is_forgotten(self, hub, messages, monkeypatch):
         monkeypatch.setattr(hub_module, "BACKLOG_LIMIT", 12 * MIB)
         sender, reader, late = (come(hub.port) for _ in range(3))
@@ -246,6 +248,7 @@ class TestRoom:
         refusal = f"the loop bus on port {hub.port} accepts no more clients ({why})"
         assert messages == [f"{refusal}: {count} refused" for count in (1, 10, 100)]
 
+    @pytest.mark.long
     def test_a_stopped_standard_error_stops_no_client(self, serve):
         process, port = serve()
         process.process.stderr.close()
@@ -275,6 +278,7 @@ class TestDescriptors:
         assert process.cpu_s() - before < 0.3
         assert "Too many open files" in process.end().splitlines()[0]
 
+    @pytest.mark.long
     def test_a_door_that_cannot_be_answered_rests(self, monkeypatch, messages):
         """The whole machine can be out of descriptors, too: then not even a refusal is possible."""
 
@@ -302,6 +306,7 @@ class TestDescriptors:
                 assert waiting.recv(len(GREETING)) == GREETING
         hub.close()
 
+    @pytest.mark.long
     def test_a_client_without_a_descriptor_says_so(self, serve, run):
         _, port = serve()
         opener = run(

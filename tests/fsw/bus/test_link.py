@@ -24,6 +24,7 @@ PATIENCE_S = 10.0
 
 
 class TestDelivery:
+    @pytest.mark.long
     def test_a_frame_goes_to_all_but_its_sender(self, open_link, take):
         sender, first, second = open_link(), open_link(), open_link()
         frame = Frame(0x7FF, b"\x01\x02\x03\x04\x05\x06\x07\x08")
@@ -50,6 +51,7 @@ class TestDelivery:
             assert reader.receive(PATIENCE_S) == frame
             reader.close()
 
+    @pytest.mark.long
     @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
     @given(
         bursts=st.lists(st.tuples(st.integers(0, 2), st.integers(0, 3000)), max_size=20),
@@ -83,6 +85,7 @@ class TestDelivery:
             assert take(late, len(flood)) == flood
         assert late.receive(0.05) is None
 
+    @pytest.mark.long
     def test_all_talk_at_once_and_all_hear_all(self, open_link, numbered, take):
         links = [open_link() for _ in range(6)]
         mine = [numbered(2000, can_id) for can_id in range(6)]
@@ -290,6 +293,7 @@ class TestOpening:
                 node.wait()
             link.close()
 
+    @pytest.mark.long
     def test_a_guest_waits_for_its_hub(self, free_port):
         hubs = []
         later = threading.Timer(0.2, lambda: hubs.append(Hub(free_port)) or hubs[0].start())
@@ -316,6 +320,7 @@ class TestOpening:
                 LoopLink(server.getsockname()[1], timeout_s=1.0)
             thread.join()
 
+    @pytest.mark.long
     def test_a_port_of_a_silent_program_is_given_up(self):
         with (
             socket.create_server(("127.0.0.1", 0)) as server,

@@ -184,6 +184,7 @@ class TestFrozenParameters:
         for number in first:
             assert first[number] < last[number] < 1.01 * first[number] + 1e-9
 
+    @pytest.mark.long
     def test_are_reported_as_they_were_loaded(self, frozen_flight):
         _, _, messages = frozen_flight
         reported = {(m.component, m.exponent, m.value) for m in of(NavParameter, messages)}
@@ -234,6 +235,7 @@ def random_telecommand(random, counter, digits):
     return message
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("seed", "settings"),
     [

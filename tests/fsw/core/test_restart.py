@@ -79,6 +79,7 @@ class TestOneStrange:
         assert len([one for one in reports(replies) if one[0] is Event.STRANGE_SYNC]) == 3
         assert world.state.estimator.restarts == 0
 
+    @pytest.mark.long
     @pytest.mark.parametrize("first", [FAR, 3])
     def test_in_each_tick_changes_no_request(self, make_world, first):
         """From boot on, though they go on tick by tick."""

@@ -45,7 +45,7 @@ def run(make_world):
     assert state.estimator.estimate.trace is not None
     first, batch = state.estimator.estimate.parameters, search_under_way()
     state = altered(state, estimator=replace(state.estimator, first=first, batch=batch))
-    state = altered(state, wheel=WheelView(123.5, 229, 2e-4, -3e-4, 2, known=True))
+    state = altered(state, wheel=WheelView(123.5, 229, 2e-4, -3e-4, 2, has_speed=True))
     by_field, by_sun = Displacement((3e-7, -2e-7, 1e-7), 4e-9), Displacement((0.002, 0.003, -0.001), 5e-5)
     motion = ReadingMotion(by_field, by_sun)
     state = altered(state, health=with_motion(state.health, motion))

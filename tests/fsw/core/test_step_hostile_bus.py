@@ -185,6 +185,7 @@ def test_false_samples_from_one_sensor(make_world, seed):
     assert watch.fires > 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(12))
 def test_saboteur(make_world, seed):
     """From boot on, and again once the attitude is proven, which it is late where samples are lost."""

@@ -57,6 +57,7 @@ def test_a_growing_file_is_read_on(tmp_path):
     assert read == LINES
 
 
+@pytest.mark.long
 def test_a_cut_file_is_read_as_far_as_it_goes(tmp_path):
     path, whole = tmp_path / "a.log.gz", members(LINES[:6000], 2000)
     read = []

@@ -156,6 +156,7 @@ class TestLimitsOfThePair:
         assert config.start.max_field_error_t == limits.field_t + limits.field_part * 5e-5
         assert config.start.max_angle_error_rad == limits.angle_rad + limits.field_t / 2e-5
 
+    @pytest.mark.long
     def test_every_pair_within_the_bounds_passes_them(self):
         """Drawn at the bounds: biased, scaled, turned sensors and a field from elsewhere on the orbit."""
         limits, random = (
@@ -210,6 +211,7 @@ def test_inertia_and_wheel_are_the_table_s():
     assert rotor.wheel_body_nms == (0.01, -0.02, 0.03)
 
 
+@pytest.mark.long
 def test_no_bound_is_left_unread():
     """Each changes the estimator's configuration."""
     for key in UncertaintyTable.model_fields:

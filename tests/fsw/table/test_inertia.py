@@ -19,6 +19,7 @@ def tensor(principal, turn=(0.0, 0.0, 0.0), size=1.0):
     return tuple(map(tuple, (0.5 * (j + j.T)).tolist()))
 
 
+@pytest.mark.long
 @given(
     st.lists(st.tuples(component, component, component), min_size=4, max_size=9),
     st.floats(1e-6, 1e6),
@@ -51,6 +52,7 @@ def test_possible_in_any_axes_and_of_any_size(size, turn):
         check_inertia(tensor(principal, turn, size))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e8])
 @given(turn=turns)
 def test_impossible_in_any_axes_and_of_any_size(size, turn):
@@ -67,6 +69,7 @@ def test_a_tensor_is_symmetric(row, column):
         check_inertia(tuple(map(tuple, j.tolist())))
 
 
+@pytest.mark.long
 @given(turn=turns, size=st.floats(1e-6, 1e6))
 def test_a_tensor_that_was_turned_in_floating_point_is_symmetric_up_to_rounding(turn, size):
     c = Rotation.from_rotvec(turn).as_matrix()

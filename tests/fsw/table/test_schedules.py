@@ -42,6 +42,7 @@ def test_each_law_has_its_own_weights():
     assert np.abs(found["mpc"].gains).max() < np.abs(found["lqr"].gains).max()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("inclination_deg", [0.0, 1e-9, 3.0, 90.0, 180.0])
 @pytest.mark.parametrize("inertia", [(1.02, 1.85, 1.95), (1.0, 139.0, 139.0), (1.95, 1.85, 1.02)])
 def test_every_orbit_and_body_has_a_finite_schedule(inclination_deg, inertia):
@@ -53,6 +54,7 @@ def test_every_orbit_and_body_has_a_finite_schedule(inclination_deg, inertia):
         assert np.abs(found.gains).max() > 0.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("momentum_nms", [0.15, 1.0, 20.0])
 def test_the_momentum_of_an_ordinary_wheel_keeps_no_table_from_loading(momentum_nms):
     found = schedules(body={"wheel_nms": [0.0, 0.0, momentum_nms]})

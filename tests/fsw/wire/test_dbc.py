@@ -206,11 +206,13 @@ def generate(root, *arguments):
     )
 
 
+@pytest.mark.long
 def test_the_generated_codec_is_fresh():
     shown = generate(ROOT, "--check")
     assert shown.returncode == 0, shown.stdout + shown.stderr
 
 
+@pytest.mark.long
 def test_a_stale_codec_is_noticed(tmp_path):
     for name in (
         "tools/generate_messages.py",

@@ -51,6 +51,7 @@ class TestCrc:
     def test_the_identifier_counts_as_two_bytes_before_the_data(self, can_id, data):
         assert crc8(data, id_register(can_id)) == crc8_by_bits(can_id.to_bytes(2, "big") + data)
 
+    @pytest.mark.long
     @given(st.integers(0, 0x7FF), st.binary(min_size=1, max_size=7), st.data())
     @settings(max_examples=300)
     def test_one_or_two_flipped_bits_never_pass(self, can_id, data, draw):

@@ -63,6 +63,7 @@ EXTREMES = (0, 2**64 - 1, 0x5555_5555_5555_5555, 0xAAAA_AAAA_AAAA_AAAA)
 class TestAgainstCantools:
     """Two implementations of one contract; each random word is tried on every message."""
 
+    @pytest.mark.long
     @given(word=WORDS | st.sampled_from(EXTREMES))
     @settings(max_examples=150, deadline=None)
     def test_what_we_encode_cantools_decodes(self, dbc, word):
@@ -75,6 +76,7 @@ class TestAgainstCantools:
             decoded.pop("crc", None)
             assert decoded == values, message.name
 
+    @pytest.mark.long
     @given(word=WORDS | st.sampled_from(EXTREMES))
     @settings(max_examples=150, deadline=None)
     def test_what_cantools_encodes_we_decode(self, dbc, word):

@@ -95,6 +95,7 @@ class TestRefusals:
         assert report.level == 0
         assert (refused.reason, refused.tick) == (Reason.WRONG_TICK, 0)
 
+    @pytest.mark.long
     def test_a_flood_is_not_answered_by_a_flood(self, rig):
         rig.step(*[rig.fire(level=0, seq=seq & 0xFF) for seq in range(10_000)])
         assert [len(rig.step().refused) for _ in range(2)] == [64, 0]

@@ -242,6 +242,7 @@ def alterations():
     )
 
 
+@pytest.mark.long
 @given(st.lists(st.tuples(st.lists(alterations(), max_size=4), st.booleans()), max_size=20))
 def test_whatever_comes_only_the_first_intact_dipole_of_a_tick_is_driven(ticks):
     """Against a model: what is open, what was asked, what is told."""

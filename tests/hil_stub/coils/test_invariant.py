@@ -234,6 +234,7 @@ def test_whatever_happens_the_limits_hold_and_what_may_be_fired_is():
     assert SEEN["reboot in a pulse"]
 
 
+@pytest.mark.long
 @SETTINGS
 @given(
     frames=st.lists(

@@ -93,6 +93,7 @@ class Line:
         assert self.driven <= self.sent
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("demands", SEQUENCES, ids=" ".join)
 def test_nothing_is_sent_to_a_board_that_is_off_and_nothing_driven_unasked(demands):
     driven = 0

@@ -311,6 +311,7 @@ def test_a_foreign_log_without_end_mark_is_only_noted(run, bus_log):
     assert "note: the log has no end mark" in render(report)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scenario", ["", None])
 def test_a_log_cut_at_any_byte_is_judged_as_far_as_it_goes(run, bus_log, fired, scenario):
     folder = run(bus_log(1, 3, [fired(0, 1, 1000)]), scenario)
@@ -342,6 +343,7 @@ def test_violations_before_the_cut_are_found(run, bus_log, fired):
 # --- what is printed
 
 
+@pytest.mark.long
 def test_a_violation_is_printed_with_time_tick_coil_and_line(run, bus_log, fired):
     report = check(run(bus_log(10, 13_000, [fired(1, 12_340, 3100)])), None)
     expected = "VIOLATION t=1234.000 s (tick 12340) coil 1: pulse of 3.100 s exceeds 3.000 s [line 37024]"
@@ -382,6 +384,7 @@ def test_the_limits_are_printed(run, bus_log, limits, text):
     assert text in render(report)
 
 
+@pytest.mark.long
 def test_thousands_of_violations_are_not_all_printed(run, bus_log, fired):
     report = check(run(bus_log(1, 400, [fired(0, start, 1000) for start in range(0, 400, 2)])), None)
     assert len(report.violations) == 199

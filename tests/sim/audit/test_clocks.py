@@ -71,6 +71,7 @@ def test_one_microsecond_off_simulated_time_is_named_once(judge, bus_log):
     assert found(judge(log)) == [(ViolationKind.TIMESTAMP, 5, 50, None)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["COIL_STATUS", "SYNC"])
 @pytest.mark.parametrize("first", [0, 1200])
 def test_a_single_frame_off_simulated_time_is_named(bus_log, name, first):
@@ -298,6 +299,7 @@ def test_lost_sync_frames_change_neither_the_tick_rate_nor_a_pulse(bus_log, fire
     assert (report.pulses[0].start_s, report.pulses[0].end_s) == (Fraction("123.4"), Fraction("126.4"))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("late", [{1234}, {1235}, {1264}, {1265}, {1233, 1236, 1263}, set(range(1230, 1270))])
 def test_statuses_that_come_after_their_sync_belong_to_their_tick(bus_log, fired, late):
     log = bus_log(10, 1500, [fired(1, 1234), fired(2, 1234 + 1030)], late=late)

@@ -56,6 +56,7 @@ def planted(bus_log, fired):
     )
 
 
+@pytest.mark.long
 def test_a_pulse_that_is_too_long_is_found(bus_log, fired):
     @given(planted(bus_log, fired), st.integers(3001, 3500))
     def check(case, duration_ms):
@@ -94,6 +95,7 @@ def test_a_pulse_too_soon_after_a_boot_is_found(bus_log, fired):
     check()
 
 
+@pytest.mark.long
 def test_a_bad_level_is_found(bus_log, fired):
     @given(planted(bus_log, fired), st.sampled_from([-8, -7, -6, -5, -4, 4, 5, 6, 7]))
     def check(case, level):
@@ -118,6 +120,7 @@ def test_a_second_coil_is_found(bus_log, fired):
     check()
 
 
+@pytest.mark.long
 def test_an_announcement_of_too_much_is_found(bus_log, fired):
     @given(planted(bus_log, fired), st.data())
     def check(case, data):
@@ -131,6 +134,7 @@ def test_an_announcement_of_too_much_is_found(bus_log, fired):
     check()
 
 
+@pytest.mark.long
 def test_any_flipped_bit_of_any_status_is_found(bus_log, fired):
     @given(trains(bus_log, fired), st.data())
     def check(train, data):
@@ -145,6 +149,7 @@ def test_any_flipped_bit_of_any_status_is_found(bus_log, fired):
     check()
 
 
+@pytest.mark.long
 def test_any_shifted_timestamp_is_found(bus_log, fired):
     @given(trains(bus_log, fired), st.data())
     def check(train, data):

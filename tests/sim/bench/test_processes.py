@@ -4,10 +4,13 @@ import os
 import signal
 import time
 
+import pytest
+
 from sim.bench import processes
 from sim.bench.processes import BenchProcesses, hub_of
 
 
+@pytest.mark.long
 def test_a_hub_that_does_not_react_is_killed(monkeypatch):
     monkeypatch.setattr(processes, "GRACE_S", 0.5)
     began = time.monotonic()

@@ -10,6 +10,8 @@ from sim.bench.command import NoLog
 from sim.bench.realtime_loop import RealtimeLoop
 from sim.bench.tick_source import SyncOnly
 
+pytestmark = pytest.mark.long
+
 TICKS, TICK_HZ = 3, 100
 
 

@@ -134,6 +134,7 @@ def test_a_flight_imports_nothing_that_is_not_counted():
     assert imported - set(loaded_files("sim.fault_table.case")) == set()
 
 
+@pytest.mark.long
 def test_scenarios_that_ship_the_bus_and_the_kernel_are_counted():
     names = {file.name for file in loaded_files("sim.campaign.flight")}
     assert {"microsat.toml", "torquer.dbc", "kalman_kernel.c"} <= names

@@ -35,11 +35,13 @@ def meta(folder, statement):
     connection.close()
 
 
+@pytest.mark.long
 def test_by_the_same_code(begun, capsys):
     assert resume(begun) == "continued"
     assert capsys.readouterr().err == ""
 
 
+@pytest.mark.long
 def test_by_other_code_of_the_same_version_it_is_refused(begun):
     meta(begun, f"UPDATE meta SET value = '0123' WHERE key = '{CODE}'")
     with pytest.raises(HarnessError, match=r"begun by other code of torquer .*, of digest 0123") as caught:
@@ -48,6 +50,7 @@ def test_by_other_code_of_the_same_version_it_is_refused(begun):
     assert "choose another --out" in str(caught.value)
 
 
+@pytest.mark.long
 def test_by_other_code_it_is_still_shown_where_no_run_is_missing(begun, small, row_of):
     meta(begun, f"UPDATE meta SET value = '0123' WHERE key = '{CODE}'")
     with open_results(begun, small) as results:
@@ -89,6 +92,7 @@ def test_why_a_run_failed_is_told(small, monkeypatch):
     assert "run 3 failed (the first: the wheel is too fast); --retry flies again" in flown.complaints
 
 
+@pytest.mark.long
 def test_results_of_before_the_digest_are_continued_with_a_warning(begun, capsys):
     meta(begun, f"DELETE FROM meta WHERE key = '{CODE}'")
     assert resume(begun) == "continued"

@@ -102,6 +102,7 @@ def test_nees_compares_the_error_with_its_covariance_after_convergence(made):
     assert made.figures()["nees"] == pytest.approx((0.5 / 0.3) ** 2, rel=1e-4)
 
 
+@pytest.mark.long
 def test_after_the_first_tick_in_point_honesty_is_counted_again_by_itself(made):
     """A tumble, in which the filter is surer than it may be, comes before; what follows later counts."""
     tumble, out, quarter = slice(0, ORBIT), slice(2 * ORBIT, 3 * ORBIT), TICKS // 4

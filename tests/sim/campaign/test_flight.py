@@ -54,6 +54,7 @@ def test_the_summary_is_that_of_the_run_directory(flown, fly_run):
     assert expected["events"]
 
 
+@pytest.mark.long
 def test_its_audit_sees_what_the_board_drove(flown, fly_run):
     assert flown.summary["limits_ok"] is True
     fast = fly_order(

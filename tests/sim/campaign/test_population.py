@@ -59,6 +59,7 @@ def test_the_truth_fills_its_bounds_and_stays_within(kind, twice, factor):
         assert 0.9 * factor < most <= factor * (1.0 + 1e-9), name
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", POPULATIONS)
 @pytest.mark.parametrize(("twice", "factor"), [(False, 1.0), (True, 2.0)])
 def test_no_axis_of_the_magnetometer_is_turned_and_skewed_by_more_than_its_bound(kind, twice, factor):
@@ -80,6 +81,7 @@ def test_no_axis_of_the_magnetometer_is_turned_and_skewed_by_more_than_its_bound
     assert 0.9 * most_deg < max(angles_deg) <= most_deg * (1.0 + 1e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", POPULATIONS)
 @pytest.mark.parametrize(("twice", "factor"), [(False, 1.0), (True, 2.0)])
 def test_the_dipole_changes_but_stays_within_its_bound(kind, twice, factor):

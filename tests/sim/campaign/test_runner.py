@@ -17,6 +17,7 @@ from sim.errors import HarnessError
 
 
 class TestRunner:
+    @pytest.mark.long
     @pytest.mark.parametrize("workers", [1, 2])
     def test_results_are_in_order_however_they_came(self, workers, study):
         studies = [study("one", [1, 2, 3]), study("none", []), study("two", [20])]
@@ -57,6 +58,7 @@ if __name__ == "__main__":
         with ProcessPoolExecutor(1, worker_context()) as pool:
             assert "sim.campaign.flight" in pool.submit(names_of_modules).result()
 
+    @pytest.mark.long
     def test_do_not_look_for_packages_in_the_working_directory(self, tmp_path):
         script, here = tmp_path / "script" / "run.py", tmp_path / "here"
         for folder in (script.parent, here):
@@ -96,6 +98,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("error", ["OSError(38, 'Function not implemented')", "PermissionError(13, 'no')"])
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_machine_without_semaphores_runs_all_tasks_in_one_process_and_says_so(error, workers, tmp_path):

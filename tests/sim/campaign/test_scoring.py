@@ -36,6 +36,7 @@ def test_the_turn_of_axis_1_leads_to_the_vertical():
     assert Rotation.from_rotvec(found).apply([1.0, 0.0, 0.0]) == pytest.approx(vertical_body)
 
 
+@pytest.mark.long
 def test_the_indices_of_the_whole_flight_are_those_of_its_summary(flight):
     found = score(flight, StatisticsSection(last_orbits=1.0))
     assert found.figures["ape_deg_rms"] == pytest.approx(flight.summary()["pointing_deg"]["rms_last_orbit"])

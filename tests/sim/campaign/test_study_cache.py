@@ -150,6 +150,7 @@ def of(*arguments):
     return task_digest(partial(fly_order, *arguments))
 
 
+@pytest.mark.long
 def test_equal_tasks_have_one_digest_whatever_the_order_of_their_keys():
     turned = {"coils": {"levels": 1, "backoff": "shared"}}
     assert of(turned) == of({"coils": {"backoff": "shared", "levels": 1}})
@@ -165,6 +166,7 @@ DIFFERENT = (
 )
 
 
+@pytest.mark.long
 def test_other_tasks_have_others():
     digests = [of(value) for value in DIFFERENT] + [task_digest(partial(consistency_figures, ORDER))]
     assert None not in digests

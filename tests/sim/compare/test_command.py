@@ -21,6 +21,7 @@ def torquer(tmp_path, monkeypatch):
     return lambda *words: CliRunner().invoke(main, ["compare", *map(str, words)])
 
 
+@pytest.mark.long
 def test_two_laws_with_perfect_knowledge(torquer, tmp_path):
     result = torquer("posat1", *SHORT, "--out", tmp_path / "a")
     assert result.exit_code == 0, result.output
@@ -58,6 +59,7 @@ def test_the_same_again_is_the_same_to_the_byte(torquer, tmp_path):
     assert (tmp_path / "a" / "compare.json").read_bytes() == (tmp_path / "b" / "compare.json").read_bytes()
 
 
+@pytest.mark.long
 def test_a_flight_that_breaks_the_limits_is_no_result(torquer, monkeypatch):
     judge = score.judge
     monkeypatch.setattr(score, "judge", lambda *given: replace(judge(*given), limits_ok=False))
@@ -96,6 +98,7 @@ def test_what_a_folder_holds_is_not_mixed_with_a_comparison(torquer, tmp_path, f
     assert [path.name for path in (tmp_path / "old").iterdir()] == [file]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("lost", "words"),
     [({"predictive"}, SHORT), ({"predictive", "rate_damping"}, ("--laws", "rate", *SHORT[2:]))],
@@ -124,6 +127,7 @@ def test_two_comparisons_in_one_second_have_a_folder_each(tmp_path, monkeypatch)
     assert all(folder.is_dir() for folder in folders)
 
 
+@pytest.mark.long
 def test_finished_flights_are_written_when_the_rest_is_given_up(torquer, tmp_path, monkeypatch):
     fly = command.fly_case
 

@@ -41,6 +41,7 @@ def results():
     return [*both, Result(failure, None)]
 
 
+@pytest.mark.long
 def test_it_names_the_best_and_what_did_not_fly(tmp_path, results):
     page = written(tmp_path / "compare.html", results)
     for words in (

@@ -47,6 +47,7 @@ def names(panel):
     return [text.get_text().split()[0] for text in panel.texts if text.get_text().endswith("°")][1:]
 
 
+@pytest.mark.long
 def test_a_panel_a_driver_with_a_named_line_a_law(drawn):
     results = [result(law, 0.5 + number) for number, law in enumerate(("pd", "lqr", "sliding"))]
     results.append(result("pd", 0.3, Driver.CONTINUOUS))
@@ -65,6 +66,7 @@ def test_names_stand_within_the_picture_however_long(drawn):
     assert name.get_window_extent(FigureCanvasAgg(figure).get_renderer()).x1 <= figure.bbox.x1
 
 
+@pytest.mark.long
 def test_spins_are_told_apart_by_their_rate(drawn):
     (panel,), _ = drawn([result("spin_up", 0.02)], SPIN)
     assert panel.get_ylabel() == "error of the spin rate about axis 1 [deg/s]"
@@ -108,6 +110,7 @@ def test_names_stay_in_the_panel_and_apart(heights):
     assert np.diff(places).min() >= 0.05 - 1e-12
 
 
+@pytest.mark.long
 def test_the_figure_at_the_end_of_a_line_is_where_it_ends(drawn):
     error = 0.5 + 40.0 * np.exp(-T_S / 6000.0)
     score = Score("pd", LAWS["pd"].aim, Driver.PULSED, error_rms=17.0)

@@ -35,6 +35,7 @@ def test_what_is_small_only_at_the_last_has_not_been_seen_to_stay(plant_record, 
     assert judge(case_of(), plant_record(errors), ATTITUDE).settle_orbits is None
 
 
+@pytest.mark.long
 def test_pointing_is_of_the_last_orbit_alone(plant_record, case_of):
     orbit = round(ORBIT_S)
     score = judge(case_of(), plant_record([90.0] * 50 + [3.0] * (orbit - 1000) + [4.0] * 1000), ATTITUDE)
@@ -101,6 +102,7 @@ def test_limits_that_were_broken_are_told(plant_record, case_of):
     assert judge(case_of(), too_soon, ATTITUDE).pulses == 2
 
 
+@pytest.mark.long
 def test_history_is_the_mean_square_over_a_quarter_of_an_orbit_about_each_time(plant_record):
     ticks, half = round(1.5 * ORBIT_S), ORBIT_S / 8
     errors = np.where(np.arange(ticks) < 4000, 3.0, 1.0)

@@ -37,6 +37,7 @@ def test_the_stub_conforms(link_to, hz, shared, has_clock, failures):
     assert set(found) == (set() if has_clock else {"own_clock", "held_tick"})
 
 
+@pytest.mark.long
 def test_a_board_has_a_whole_tick_for_its_answer(link_to, slow_bus, failures):
     """Also when ticks come early: they come no sooner than it answers."""
     link = link_to(lambda: CoilBoard(CoilLimits(10)), 10, bus=slow_bus)

@@ -28,6 +28,7 @@ def test_multipliers_are_those_of_the_best_gains(searched):
     assert analysis.chosen.degree == pytest.approx(np.log(abs(analysis.multipliers[0])) / (2.0 * np.pi))
 
 
+@pytest.mark.long
 def test_json_says_what_the_analysis_holds(searched):
     _, analysis, _ = searched
     result = json.loads(json.dumps(as_json(analysis), allow_nan=False))

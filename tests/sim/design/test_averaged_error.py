@@ -63,6 +63,7 @@ def test_the_degree_is_that_of_the_motion(law):
     assert degree(BODY, law) == pytest.approx(np.log(largest) / (2.0 * pi), abs=0.005)
 
 
+@pytest.mark.long
 def test_the_search_finds_gains_that_hold_and_none_better_nearby():
     found = search(BODY, 1.0)
     assert found.degree < -0.15

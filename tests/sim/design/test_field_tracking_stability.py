@@ -20,6 +20,7 @@ MICROSAT = Body("50 kg", diagonal((1.02, 1.85, 1.95)), 800.0, 98.6)
 GAINS = Gains(1.2e6, 800.0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("body", [BOOM, MICROSAT], ids=lambda body: body.name)
 def test_a_flight_of_the_law_ends_where_the_map_of_an_orbit_says(body):
     """From a small turn; the flight samples the field every 2 s and begins with one sample alone."""
@@ -48,12 +49,14 @@ def test_over_the_equator_it_is_the_pd_law():
     np.testing.assert_array_equal(tracking_loop(body, GAINS)(u), closed_loop(body, GAINS)(u))
 
 
+@pytest.mark.long
 def test_a_boom_is_stabilised_and_a_body_without_one_hardly():
     """Hardly: by a factor e in more than 25 orbits."""
     assert best_tracking(BOOM).degree < -0.2
     assert best_tracking(MICROSAT).degree > -0.0063
 
 
+@pytest.mark.long
 def test_the_best_gains_are_those_of_a_positive_grid():
     found, w0 = best_tracking(BOOM), BOOM.rate_radps
     unit = (0.3 + 2.0 + 2.2) / 3.0 * w0 / BOOM.field_t**2

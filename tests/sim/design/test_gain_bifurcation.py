@@ -11,6 +11,7 @@ from sim.design.theory.linear import Gains, closed_loop
 FIFTY, BEST = BODIES[2], Gains(6.2694e6, 1614.9)
 
 
+@pytest.mark.long
 def test_below_it_the_loop_is_stable_and_above_it_not():
     found = bifurcation(FIFTY, BEST)
     degrees = [
@@ -20,6 +21,7 @@ def test_below_it_the_loop_is_stable_and_above_it_not():
     assert degrees[0] < 0.0 < degrees[1]
 
 
+@pytest.mark.long
 def test_the_multiplier_that_leaves_is_the_one_named():
     found = bifurcation(FIFTY, BEST)
     first = multipliers(monodromy(closed_loop(FIFTY, Gains(BEST.k_w, found.k_a))))[0]

@@ -18,6 +18,7 @@ def test_with_ever_shorter_holds_it_comes_to_the_continuous_loop():
     assert missing[2] == pytest.approx(0.5 * missing[1], rel=0.2)
 
 
+@pytest.mark.long
 def test_weaker_gains_withstand_a_longer_hold():
     """The claim of the source."""
     best = Gains(6.2694e6, 1614.9)
@@ -26,6 +27,7 @@ def test_weaker_gains_withstand_a_longer_hold():
     assert longest[1] > 1.8 * longest[0]
 
 
+@pytest.mark.long
 def test_very_weak_gains_withstand_the_longest_hold_that_is_tried():
     weak = weaker(Gains(6.2694e6, 1614.9), 0.02)
     assert longest_hold_s(FIFTY, weak) == pytest.approx(2.0 * np.pi / FIFTY.rate_radps / LEAST_HOLDS)

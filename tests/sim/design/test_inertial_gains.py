@@ -57,6 +57,7 @@ def test_weak_gains_decay_as_averaging_says(stiffness):
     assert inertial_degree(SPHERE, gains) == pytest.approx(max(roots), rel=0.02)
 
 
+@pytest.mark.long
 def test_the_best_of_the_line_is_near_the_best_of_all():
     """The claim of the source: a simple scheme will do."""
     (_, line), (_, best) = best_on_line(FIFTY), best_of_all(FIFTY)

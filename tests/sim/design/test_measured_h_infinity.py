@@ -26,6 +26,7 @@ def lqg(case):
     return central(case, np.inf)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("share", [0.8, 0.9, 1.5])
 def test_the_bound_holds_beside_the_norm_of_the_loop(case, lqg, share):
     """By lifting, which knows nothing of the game; of LQG's norm."""
@@ -33,12 +34,14 @@ def test_the_bound_holds_beside_the_norm_of_the_loop(case, lqg, share):
     assert norm(case, central(case, gamma), 5) <= gamma
 
 
+@pytest.mark.long
 def test_the_least_bound_is_met_and_less_than_what_lqg_leaves(case, lqg):
     plain = norm(case, lqg, 5)
     gamma, found = least(case, 0.3 * plain, 1.1 * plain)
     assert 0.95 * gamma < norm(case, found, 5) <= gamma < 0.9 * plain
 
 
+@pytest.mark.long
 def test_below_a_bound_that_its_controller_meets_exactly_there_is_none(case, lqg):
     """Of all controllers the norm is at least that: what is refused is what cannot be."""
     gamma, _ = least(case, 0.3 * norm(case, lqg, 5), norm(case, lqg, 5))
@@ -60,7 +63,7 @@ def test_lqg_is_the_kalman_filter(case, lqg):
             h = np.hstack([np.zeros((3, 3)), skews(b)])
             gain = f @ sigma @ h.T @ np.linalg.inv(h @ sigma @ h.T + case.error_t**2 * np.eye(3))
             sigma = (f - gain @ h) @ sigma @ f.T + g @ g.T
-    assert lqg.told[-1] == pytest.approx(gain, rel=1e-3, abs=1e-4 * np.abs(gain).max())
+    assert lqg.feedback[-1] == pytest.approx(gain, rel=1e-3, abs=1e-4 * np.abs(gain).max())
 
 
 @pytest.mark.long
@@ -74,7 +77,7 @@ def test_the_norm_is_that_of_the_motion(case, lqg):
         left += x @ (problem.cost * x) + problem.effort * m @ m
         paid += w @ w + v @ v
         y = skews(b) @ x[3:] + case.error_t * v
-        xi = lqg.motion[k % 48] @ xi + lqg.told[k % 48] @ y
+        xi = lqg.motion[k % 48] @ xi + lqg.feedback[k % 48] @ y
         x = problem.free @ np.concatenate([x, UNIT_NM * w - skews(b) @ m])
     assert 0.05 * norm(case, lqg, 5) < np.sqrt(left / paid) < norm(case, lqg, 5)
 

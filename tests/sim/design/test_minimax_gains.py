@@ -67,6 +67,7 @@ def test_the_search_shortens_the_longest_settling():
     assert found != start
 
 
+@pytest.mark.long
 def test_what_has_not_settled_costs_more_than_the_flight_and_more_with_weaker_coils():
     """By the error at the end: 0.02 and 0.2 A m^2, and none, from each start."""
     start, _ = best_on_line(FIFTY)

@@ -33,6 +33,7 @@ def disturbed(torque, dipole):
     return extra
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("dipole", [(0.0, 0.0, 0.0), (8e-3, -6e-3, 9e-3)], ids=["torque", "and dipole"])
 def test_its_flights_are_those_of_the_law(dipole):
     turn = radians(40.0) * np.array([1.0, -2.0, 3.0]) / np.sqrt(14.0)

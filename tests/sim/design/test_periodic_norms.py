@@ -41,6 +41,7 @@ def errors(case, gains, torques):
     return np.array(found)
 
 
+@pytest.mark.long
 def test_white_torque_leaves_the_h2_norm(case, loops):
     """Mean square over 150 orbits, the first ten not counted."""
     rng = np.random.default_rng(1)
@@ -49,6 +50,7 @@ def test_white_torque_leaves_the_h2_norm(case, loops):
     assert np.sqrt(np.mean(np.sum(found**2, axis=1))) == pytest.approx(expected, rel=0.1)
 
 
+@pytest.mark.long
 def test_the_h2_norm_of_a_loop_that_hardly_decays_is_that_of_its_settled_covariance(case, loops):
     """Which has come to itself after some hundred orbits only."""
     problem, field = case
@@ -66,6 +68,7 @@ def test_the_h2_norm_of_a_loop_that_hardly_decays_is_that_of_its_settled_covaria
     assert norms(*case, gains, UNIT_NM).h2 == pytest.approx(np.sqrt(means[-1]), rel=1e-6)
 
 
+@pytest.mark.long
 def test_no_torque_leaves_more_than_the_h_infinity_norm_and_some_nearly_as_much(case, loops):
     """Power iteration on the motion: each torque that of the errors of the one before, backwards in time."""
     problem, field = case
@@ -86,6 +89,7 @@ def test_no_torque_leaves_more_than_the_h_infinity_norm_and_some_nearly_as_much(
     assert 0.85 * size < ratio <= size * (1.0 + 1e-9)
 
 
+@pytest.mark.long
 def test_the_game_keeps_its_bound_and_betters_the_regulator(case, loops):
     plain, robust = (norms(*case, loops[name], UNIT_NM) for name in ("lqr", "robust"))
     assert robust.h_infinity <= 2.5

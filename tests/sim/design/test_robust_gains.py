@@ -1,6 +1,7 @@
 """Gains for bounds on the inertia: the corners are bodies, and weaker gains hold at all of them."""
 
 import numpy as np
+import pytest
 
 from sim.design.held_dipole import weaker
 from sim.design.inertial_gains import best_of_all
@@ -18,6 +19,7 @@ def test_corners_are_bodies_with_each_moment_off():
         assert set(np.round(j / np.array([1.02, 1.85, 1.95]), 9)) <= {0.7, 1.3}
 
 
+@pytest.mark.long
 def test_gains_that_the_bounds_break_hold_when_weaker():
     """The claim of the source: with bounds on the inertia, gains can be chosen."""
     gains, _ = best_of_all(FIFTY)
@@ -27,6 +29,7 @@ def test_gains_that_the_bounds_break_hold_when_weaker():
     assert worst_degree(FIFTY, weaker(gains, share), 0.5) < 0.0
 
 
+@pytest.mark.long
 def test_wider_bounds_ask_for_weaker_gains():
     gains, _ = best_of_all(FIFTY)
     shares = [robust_share(FIFTY, gains, error) for error in (0.1, 0.3, 0.5)]

@@ -71,6 +71,7 @@ def found():
     return case, best(replace(case, steps=12), 500.0)
 
 
+@pytest.mark.long
 def test_the_end_is_met_within_the_limits(found):
     _, plan = found
     assert plan.error_deg < 0.01
@@ -78,6 +79,7 @@ def test_the_end_is_met_within_the_limits(found):
     assert np.abs(plan.dipoles_am2).max() == pytest.approx(2.0, rel=3e-3)
 
 
+@pytest.mark.long
 def test_both_signs_of_a_quaternion_are_one_attitude(found):
     case, plan = found
     other = replace(case, steps=12, q0_body_from_orbit=tuple(-part for part in case.q0_body_from_orbit))
@@ -92,6 +94,7 @@ def forty_degrees(across, along):
     return Slew(BODY, (np.cos(half), *turn.tolist()), (0.0,) * 3, 2.0, steps=12)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sides", [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)])
 def test_it_is_found_whichever_way_the_body_is_turned(sides):
     plan = best(forty_degrees(*sides), 500.0)
@@ -106,6 +109,7 @@ def test_from_a_time_too_short_for_the_coils_the_same_one_is_found():
     assert best(case, 300.0).seconds == pytest.approx(best(case, 500.0).seconds, rel=3e-3)
 
 
+@pytest.mark.long
 def test_a_shorter_time_needs_more_than_the_limit_and_a_longer_one_less(found):
     case, plan = found[0], found[1]
     short, long = (
@@ -124,6 +128,7 @@ def test_a_copy_for_other_moments_goes_astray(found):
     assert flown(replace(case, steps=12), plan).error_deg == pytest.approx(plan.error_deg)
 
 
+@pytest.mark.long
 def test_where_nothing_turns_the_body_no_slew_is_found():
     """About the field over the equator."""
     body = Body("sphere", diagonal((1.5, 1.5, 1.5)), 800.0, 0.0)

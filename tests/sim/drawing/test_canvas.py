@@ -43,6 +43,7 @@ class Held(Figure):
         super().savefig(*args, **kwargs)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("second", [True, False], ids=["style", "svg"])
 @pytest.mark.parametrize("first", [True, False], ids=["style", "svg"])
 def test_two_threads_that_draw_leave_the_settings_of_the_caller(first, second):

@@ -54,6 +54,7 @@ def test_text_stays_text(element):
     assert "Rate & angle" in [text.text for text in element.iter("text")]
 
 
+@pytest.mark.long
 def test_the_same_figure_twice_on_a_page_has_ids_of_its_own():
     ids = [{part.get("id") for part in parsed(drawn(salt)).iter()} - {None} for salt in ("one", "two", "one")]
     assert ids[0]

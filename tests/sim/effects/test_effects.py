@@ -38,6 +38,7 @@ class TestLorentz:
         torque = lorentz_torque((0.0, 2e-6, 0.0), (0.0, 7000.0, 0.0), (0.0, 0.0, 3e-5))
         assert torque == pytest.approx((0.0, 0.0, -4.2e-7))
 
+    @pytest.mark.long
     @given(vectors, vectors, vectors)
     def test_it_is_the_sum_over_the_charges(self, first, second, b):
         """Charges of 2 and -1 micro C at two places, each with its own force."""

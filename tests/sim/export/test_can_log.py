@@ -11,6 +11,7 @@ from sim.export.mcap import write_mcap
 from sim.export.source import open_source
 
 
+@pytest.mark.long
 def test_blf_holds_every_frame_to_the_microsecond(flight, exported):
     with can.BLFReader(exported("blf")) as reader:
         messages = list(reader)

@@ -28,6 +28,7 @@ def csv_text(exported):
     return exported("csv").read_text()
 
 
+@pytest.mark.long
 def test_the_suffix_says_the_format_unless_an_option_does(flight, tmp_path, csv_text):
     said = call(flight.folder, "--out", tmp_path / "deep" / "table.dat", "--format", "csv")
     assert said.exit_code == 0
@@ -41,6 +42,7 @@ def test_the_suffix_says_the_format_unless_an_option_does(flight, tmp_path, csv_
     )
 
 
+@pytest.mark.long
 def test_a_file_is_replaced_by_force_alone(flight, tmp_path, csv_text):
     out = tmp_path / "run.csv"
     out.write_text("mine")
@@ -82,6 +84,7 @@ def test_a_flight_that_was_cut_short_is_exported_as_far_as_it_goes(cut, tmp_path
     assert "MISMATCH" in done.stdout
 
 
+@pytest.mark.long
 def test_a_compressed_run_is_exported_as_any_other(flight, exported, tmp_path):
     folder = shutil.copytree(flight.folder, tmp_path / "run")
     with gzip.open(folder / "bus.log.gz", "wb") as file:
@@ -145,6 +148,7 @@ def test_a_package_that_is_missing_is_named_with_its_extra(
     dictionary.cache_clear()
 
 
+@pytest.mark.long
 def test_progress_comes_to_its_end(flight, tmp_path):
     source = command.open_source(flight.folder)
     for write, total in (

@@ -18,6 +18,7 @@ def test_it_is_the_contract(tmp_path):
     assert dbc_text(1) == DBC.read_text()
 
 
+@pytest.mark.long
 def test_cycle_times_are_those_of_a_flight(flight):
     """Each message that comes more than twice and regularly has its period; no other has one."""
     stated = cycles_ms(1)
@@ -32,6 +33,7 @@ def test_cycle_times_are_those_of_a_flight(flight):
     assert all(stated[f"{node}_HEARTBEAT"] == 60_000 for node in ("PLANT", "FSW", "COIL", "MAG", "SUN"))
 
 
+@pytest.mark.long
 def test_messages_of_every_tick_follow_the_tick_rate():
     slow, fast = cycles_ms(1), cycles_ms(10)
     assert fast["SYNC"] == fast["MAG_FIELD"] == fast["NAV_ATTITUDE"] == 100

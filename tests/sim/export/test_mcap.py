@@ -36,6 +36,7 @@ def recording(exported):
     return Recording(exported("mcap"))
 
 
+@pytest.mark.long
 def test_every_frame_of_the_log_is_there_at_its_time(flight, recording):
     in_log = Counter((NAMES[entry.frame.can_id], 1000 * entry.timestamp_us) for entry in flight.entries)
     in_file = Counter(

@@ -6,6 +6,8 @@ import xarray
 
 from sim.record.truth import COLUMNS
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture
 def dataset(exported):

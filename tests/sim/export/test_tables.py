@@ -43,6 +43,7 @@ def test_csv_has_the_estimates_of_the_replay(flight, rows):
     assert rows[-1]["estimate_valid"] == "1.0"
 
 
+@pytest.mark.long
 def test_parquet_is_the_same_table_with_units(flight, exported, rows):
     table = pq.read_table(exported("parquet"))
     assert table.column_names == list(rows[0])
@@ -54,6 +55,7 @@ def test_parquet_is_the_same_table_with_units(flight, exported, rows):
     assert table.schema.metadata[b"seed"] == b"5"
 
 
+@pytest.mark.long
 def test_ticks_that_were_not_replayed_have_no_estimate(cut, tmp_path):
     notes = write_csv(open_source(cut), tmp_path / "out.csv", lambda done: None)
     with (tmp_path / "out.csv").open() as file:

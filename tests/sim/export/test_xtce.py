@@ -114,6 +114,7 @@ def test_it_is_valid_by_the_schema_of_xtce(text):
         schema.validate(text.replace("sizeInBits", "sizeInBytes", 1))
 
 
+@pytest.mark.long
 def test_frames_of_a_flight_are_decoded_as_on_the_wire(flight, decoder):
     seen = set()
     for entry in flight.entries:

@@ -263,6 +263,7 @@ def test_a_fault_after_an_orbit_begins_after_an_orbit():
         assert (record.onset, record.end, record.ticks) == (77, 82, 92)
 
 
+@pytest.mark.long
 def test_phases_of_another_scenario_go_round_its_orbit():
     row = FaultRow("planted", "", "none", when=When.ORBIT, scenario="cubesat-cells")
     starts = [
@@ -271,6 +272,7 @@ def test_phases_of_another_scenario_go_round_its_orbit():
     assert starts == pytest.approx([36.0 * phase for phase in range(10)])
 
 
+@pytest.mark.long
 def test_phases_go_round_the_orbit():
     row = FaultRow("planted", "", "none", when=When.ORBIT)
     starts = [prepare(case.settings_of(row, phase))[0].epoch_unix_s for phase in range(10)]

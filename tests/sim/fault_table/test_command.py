@@ -78,6 +78,7 @@ def test_a_row_is_flown_in_every_phase_with_every_seed(capsys, tmp_path):
     assert cases == [(0, 1), (0, 2), (1, 1), (1, 2)]
 
 
+@pytest.mark.long
 def test_json_is_json_alone(capsys):
     assert run("--row", "queue-full", "--json", "--workers", 1) == 0
     printed = json.loads(capsys.readouterr().out)

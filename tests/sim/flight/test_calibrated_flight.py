@@ -60,6 +60,7 @@ def wired(coils):
     return {**WIRED, "coils": {"wiring": list(coils)}, "flight": {"calibration": calibration}}
 
 
+@pytest.mark.long
 def test_with_its_calibration_it_fires_and_moves_the_same(fly, right):
     """The outputs keep their places, so that the lockout of each coil is reported in the same ticks."""
     turned = fly(wired((-1, 2, -3)))
@@ -68,6 +69,7 @@ def test_with_its_calibration_it_fires_and_moves_the_same(fly, right):
     assert turned["q_body_from_orbit"] == pytest.approx(right["q_body_from_orbit"], abs=1e-9)
 
 
+@pytest.mark.long
 def test_with_coils_in_other_places_each_pulse_is_along_the_axis_that_was_asked_for(fly):
     """The law asks for one after the other, so that nothing depends on when a lockout is reported."""
     flown = pulses(fly({**wired(COILS), "control": {"law": "phasing"}}))
@@ -81,6 +83,7 @@ def test_without_it_it_does_not(fly, right):
     assert np.abs(unknown["m_body_am2"] - right["m_body_am2"]).max() > 1.0
 
 
+@pytest.mark.long
 def test_a_coil_of_half_the_gain_is_reckoned_with(fly, right):
     """Its pulses turn the body half as far, and the table knows: more is asked of it, or of others."""
     half = {"coils": {"matrix": [[1.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 1.0]]}}

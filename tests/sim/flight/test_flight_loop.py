@@ -205,11 +205,13 @@ class TestRealTime:
     FAST = Pace(200.0)
     """5 ms a tick."""
 
+    @pytest.mark.long
     def test_keeps_to_absolute_deadlines(self, flown, scripted):
         result, *_ = flown(scripted(lambda tick: [done(tick)]), 40, self.FAST)
         assert (result.ticks, result.slips) == (40, 0)
         assert 40 / 200.0 <= result.wall_s < 5.0
 
+    @pytest.mark.long
     def test_also_where_nothing_could_come_any_more(self, flown, virtual):
         result, *_ = flown(virtual(), 40, self.FAST)
         assert result.slips == 0
@@ -254,6 +256,7 @@ class TestRealTime:
         assert Sync.decode(order[at - 1].data).tick == 6
         assert [TickDone.decode(frame.data).tick for frame in order[at + 1 : at + 3]] == [5, 6]
 
+    @pytest.mark.long
     def test_slips_are_reported_in_the_plant_s_heartbeat(self, flown, scripted):
         _, entries, *_ = flown(scripted(lambda tick: [] if tick in (3, 4) else [done(tick)]), 62, Pace(500.0))
         (beat,) = [e.frame for e in entries if e.frame.can_id == PlantHeartbeat.ID]

@@ -55,6 +55,7 @@ class TestWhatIsBound:
     def test_without_a_run_json_nothing_is(self, tmp_path):
         assert compare(tmp_path) == ({}, "")
 
+    @pytest.mark.long
     def test_what_is_bound_stays_bound_as_it_is(self, run):
         before = (run / RUN).read_bytes()
         for name in FILES:
@@ -72,6 +73,7 @@ class TestWhatIsBound:
 
 
 class TestMismatch:
+    @pytest.mark.long
     @pytest.mark.parametrize("name", FILES)
     def test_any_bit_of_any_file_counts(self, whole, tmp_path, name):
         run = shutil.copytree(whole, tmp_path / "run")

@@ -79,6 +79,7 @@ def test_in_real_time_it_is_never_a_second_behind(either, tick_s, behind):
             clock.now_s += tick_s
 
 
+@pytest.mark.long
 def test_what_is_on_the_disk_is_vouched_for_at_any_time(either):
     clock = Clock()
     with BusLog(either, "vcan0", clock) as log:
@@ -121,6 +122,7 @@ def test_a_compressed_log_cut_at_any_byte_is_read_as_far_as_it_goes(tmp_path):
         assert check_against_index(path).standing is LogStanding.BROKEN or size > path.stat().st_size - 9
 
 
+@pytest.mark.long
 def test_a_compressed_log_with_any_byte_altered_is_vouched_for_if_its_text_is_what_it_was(tmp_path):
     path, chosen = tmp_path / "bus.log.gz", Random(3)
     fly(path, 2 * BLOCK_WRITES)

@@ -57,6 +57,7 @@ def read_in_new_file(content: bytes) -> tuple[list[LogEntry], LogError | None]:
     return entries, None
 
 
+@pytest.mark.long
 @given(st.lists(st.tuples(st.integers(0, 10**16), any_frame), min_size=1, max_size=20))
 def test_what_is_written_is_read_back(rows):
     text = "".join(format_line(format_time(time_us), "vcan0", frame) for time_us, frame in rows)
@@ -75,6 +76,7 @@ def test_entries_come_one_by_one(tmp_path):
     assert next(read_log(log)).frame.can_id == 0x110
 
 
+@pytest.mark.long
 def test_a_log_in_which_every_line_has_words_of_its_own_takes_no_memory(tmp_path):
     lines = 3 * MOST_REMEMBERED
     with (tmp_path / "bus.log").open("w") as log:
@@ -217,6 +219,7 @@ def test_random_bytes_never_raise_anything_but_log_errors(content):
     assert refusal is None or "\n" not in str(refusal)
 
 
+@pytest.mark.long
 @given(st.data())
 def test_a_log_with_altered_bytes_is_refused_or_read_whole(data):
     content = bytearray((LINE * 5).encode())

@@ -91,6 +91,7 @@ def test_a_log_cut_at_any_byte_is_truncated(log):
             )
 
 
+@pytest.mark.long
 def test_any_byte_of_the_log_that_is_altered_is_found_and_in_its_block(log):
     whole, chosen = log.read_bytes(), Random(8)
     lines_in_a_block = 2 * BLOCK_WRITES
@@ -125,6 +126,7 @@ def test_blocks_that_change_places_are_found_although_each_is_as_it_was(log):
     assert not check_against_index(log).holds
 
 
+@pytest.mark.long
 def test_an_index_cut_at_any_byte_vouches_no_more(log):
     whole = index_path(log).read_bytes()
     for size in range(len(whole)):
@@ -212,6 +214,7 @@ def whole_lines(log):
     return count
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("delay_ms", [0, 1, 3, 10, 30])
 def test_a_kill_at_any_moment_leaves_a_log_that_its_index_does_not_contradict(tmp_path, delay_ms):
     log = tmp_path / "bus.log"

@@ -78,6 +78,7 @@ class TestUpdate:
             run_dir.update(begun, number=number)
         assert {file.name for file in begun.iterdir()} == names == {run_dir.RUN, run_dir.SCENARIO}
 
+    @pytest.mark.long
     def test_who_reads_meanwhile_always_finds_a_whole_file(self, begun):
         stop, torn = Event(), []
 
@@ -96,6 +97,7 @@ class TestUpdate:
         reader.join()
         assert torn == []
 
+    @pytest.mark.long
     def test_a_kill_leaves_a_whole_file(self, begun):
         code = (
             "import sys; from pathlib import Path; from sim.record import run_dir\n"

@@ -141,6 +141,7 @@ print(growing.complete, growing.rows(0, past)["t_s"].tolist())
 """
 
 
+@pytest.mark.long
 def test_rows_that_another_process_still_writes_are_read_as_they_are_written(tmp_path, monkeypatch):
     """However long the reader takes: it is the length of a block that has it written here, not its age."""
     monkeypatch.setattr(truth_module.time, "monotonic", lambda: 0.0)
@@ -157,6 +158,7 @@ def test_rows_that_another_process_still_writes_are_read_as_they_are_written(tmp
                 assert read(tick + 1) == f"{rows} {[row(before).t_s for before in range(tick + 1)]}"
 
 
+@pytest.mark.long
 def test_blocks_of_a_cut_file_are_those_of_the_whole(tmp_path):
     path, rows = tmp_path / "truth.h5", 2 * BLOCK_ROWS + 5
     write(path, 4 * BLOCK_ROWS, rows)
@@ -264,6 +266,7 @@ def test_in_real_time_rows_are_never_a_second_behind(tmp_path, monkeypatch):
     assert_rows(read_truth(path), 40)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("tick", [0, 200, BLOCK_ROWS, 3 * BLOCK_ROWS - 1, 1000])
 def test_a_kill_leaves_a_file_that_opens_with_whole_rows(tmp_path, tick):
     """At most the block that waits is lost."""

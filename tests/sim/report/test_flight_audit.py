@@ -31,6 +31,7 @@ def test_the_limits_are_judged_without_forged_sync(forged):
     assert report.pulses
 
 
+@pytest.mark.long
 def test_such_a_flight_passes(forged):
     folder, _ = forged
     summary = conclude(folder)

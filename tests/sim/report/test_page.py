@@ -187,6 +187,7 @@ def test_a_very_short_flight_has_a_report(tmp_path, ticks, made_run):
     assert "No coil was driven." in page.text
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("error")
 def test_a_flight_with_one_pulse_has_all_charts(tmp_path, made_run, charts):
     page = made_run(ticks=110, pulses=(DrivenPulse(0, 3, Fraction(100), Fraction(103)),)).write(tmp_path)
@@ -221,6 +222,7 @@ def test_perfect_knowledge_has_no_estimate_to_show(tmp_path, made_run, charts):
     assert "chart-estimate" not in page.values("id")
 
 
+@pytest.mark.long
 def test_a_filter_that_never_started_is_not_called_perfect_knowledge(tmp_path, made_run):
     run = made_run(ticks=20, pulses=())
     blind = replace(unknown(run.estimates()), q_body_from_orbit=np.full((20, 4), np.nan))
@@ -252,6 +254,7 @@ def test_whatever_a_scenario_is_called_stays_text(tmp_path, made_run):
     assert "alert(1)" not in page.scripts
 
 
+@pytest.mark.long
 def test_events_are_told_in_words(tmp_path, made_run):
     events = [
         {"t_s": 91.0, "node": "FSW", "event": 1, "severity": 0, "argument": 2},

@@ -132,6 +132,7 @@ def test_another_source_than_that_of_the_scenario_is_not_executed(folder, scenar
     assert not (folder / "leak.py.trace").exists()
 
 
+@pytest.mark.long
 def test_it_flies_and_its_run_is_replayed_through_the_plant_only_on_demand(folder, scenario_with):
     run = torquer.fly(scenario_with(("leak.py:GasLeak", "torque_nm = 2e-6")), out=folder / "run")
     assert run.ok

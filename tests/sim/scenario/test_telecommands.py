@@ -325,6 +325,7 @@ class RacingBus(VirtualBus):
                 super().send([frame])
 
 
+@pytest.mark.long
 def test_commands_by_hand_replay_too_wherever_they_meet_the_tick(tmp_path):
     scenario = load("microsat", {"control": {"law": "pd"}})
     run_dir.begin(tmp_path, scenario, 5, TICKS, "virtual", Pace())

@@ -53,6 +53,7 @@ def test_a_program_has_the_bounds_of_a_file(over, key):
         changed(**over)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("summary", "why"),
     [

@@ -77,6 +77,7 @@ def test_mixed_pools_all_times_of_all_runs():
     assert found.value == pytest.approx(1.5, rel=0.01)  # half of the first run's times and half of 3's
 
 
+@pytest.mark.long
 def test_the_bound_of_mixed_is_wider_the_more_runs_differ():
     alike = percentile(profiles_of(np.full(300, 2.0)), MIXED, 0.9, 0.9)
     differing = percentile(profiles_of(np.linspace(1.0, 3.0, 300)), MIXED, 0.9, 0.9)
@@ -84,6 +85,7 @@ def test_the_bound_of_mixed_is_wider_the_more_runs_differ():
     assert differing.bound > 1.02 * differing.value
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("runs", "least", "most"), [(50, 0.88, 1.0), (400, 0.84, 0.96)])
 def test_the_bound_of_mixed_covers_the_truth_as_often_as_it_says(runs, least, most):
     """Runs are Gaussian about a mean of their own: the pool is Gaussian with both variances."""

@@ -68,6 +68,7 @@ def test_none_is_too_long_to_be_flown_in_a_second(some):
     assert all(count <= MOST_TICKS for laps, count in ticks if laps > 1)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "tie",
     [
@@ -99,12 +100,14 @@ def test_a_pulse_is_a_tick_long_at_least_and_no_back_off_is_nothing(tick_hz):
         assert backoff_ms >= 1
 
 
+@pytest.mark.long
 def test_limits_are_as_told():
     for one in drawn(flights(limits(st.just(2), st.just((3000, 100_000)), st.just(True)))):
         assert (one.limits.tick_hz, one.limits.pulse_ms, one.limits.backoff_ms) == (2, 3000, 100_000)
         assert one.limits.shared
 
 
+@pytest.mark.long
 def test_demands_are_as_told():
     for one in drawn(flights(demands=st.just((1.0, 2.0, 3.0)))):
         assert {stretch.m_body_am2 for stretch in one.stretches} == {(1.0, 2.0, 3.0)}

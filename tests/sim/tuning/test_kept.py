@@ -87,6 +87,7 @@ def test_driver_law_and_gains_are_not_the_body():
     assert body_checksum(load("microsat", other)) == body_checksum(load("microsat"))
 
 
+@pytest.mark.long
 def test_those_that_ship_are_for_the_scenario_as_it_is():
     for path in kept.FOLDER.glob("*.toml"):
         assert path.stem in shipped_names()

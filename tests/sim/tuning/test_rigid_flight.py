@@ -45,6 +45,7 @@ def test_near_nominal_it_is_the_linear_motion():
     assert np.linalg.norm(expected) < 0.7 * np.linalg.norm(first)
 
 
+@pytest.mark.long
 def test_without_a_dipole_nothing_but_gravity_acts():
     free = flown(0.5, control={"k_w": 0.0, "k_a": 0.0})
     assert not free.m_body_am2.any()

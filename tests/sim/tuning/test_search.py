@@ -41,6 +41,7 @@ def bowl(monkeypatch):
     return flown
 
 
+@pytest.mark.long
 def test_it_keeps_to_its_budget_and_finds_the_least(bowl):
     found = tune("microsat", PULSED, "pd", budget=60, whole=as_rigid)
     assert len(bowl) == found.flights <= 60
@@ -73,6 +74,7 @@ def test_a_value_that_no_table_allows_is_a_lost_flight(monkeypatch, bowl):
     assert "gains" not in found.control
 
 
+@pytest.mark.long
 class TestWholeFlights:
     """Whether they bear out what the search has found."""
 

@@ -1,6 +1,7 @@
 """A whole flight for the search of gains: the plant's truth of the scenario as it is."""
 
 import numpy as np
+import pytest
 
 from sim.campaign.flight import Order, record_order
 from sim.scenario.schema import load, orbit_period_s
@@ -13,6 +14,7 @@ OFF_AXIS = {
 }
 
 
+@pytest.mark.long
 def test_it_is_the_truth_of_the_flight():
     scenario = load("microsat", OFF_AXIS)
     found, truth = fly_whole(scenario, 5, 0.05), record_order(Order("microsat", OFF_AXIS, 5, 0.05)).truth

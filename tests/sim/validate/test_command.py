@@ -258,6 +258,7 @@ class TestCommand:
         assert "FAIL   reference.eclipse: " in result.stdout
         assert "column sun_x_km: 'far' is no finite number" in result.stdout
 
+    @pytest.mark.long
     def test_flights_that_were_flown_are_not_flown_again(self, tmp_path, monkeypatch):
         monkeypatch.setenv("TORQUER_CACHE", str(tmp_path / "cache"))
         order = Order("microsat", seed=3, orbits=0.001)

@@ -51,6 +51,7 @@ def test_states_and_their_rates_belong_together():
     assert rates[:3] == pytest.approx([0.0, 0.0, 1.5 * (a - b) / c * np.sin(2.0 * pitch)], abs=1e-12)
 
 
+@pytest.mark.long
 def test_exponents_of_the_plant_are_those_of_the_theory():
     body = BODIES[2]
     assert computed.exponent_error(body) < 1e-5

@@ -47,6 +47,7 @@ def calls(path):
     return {ast.unparse(node) for node in called if ast.unparse(node.func) in ("max", "min")}
 
 
+@pytest.mark.long
 def test_max_and_min_which_lose_what_is_no_number_take_no_figures():
     """They keep it only where it comes first; np.max and np.min always do."""
     modules = [

@@ -37,6 +37,7 @@ def test_a_log_a_bus_and_a_path_that_is_missing(log, tmp_path):
     assert "a run" not in str(caught.value), "it can be nothing but a bus"
 
 
+@pytest.mark.long
 def test_the_orbit_is_that_of_the_run_or_of_a_scenario(log, recorded_run):
     assert command.watch(str(log), LOCKSTEP, None).view.around_at(0) is None
     for watched in (

@@ -88,6 +88,7 @@ def test_a_port_that_is_taken_is_named():
         foxglove_server(first.port).__enter__()
 
 
+@pytest.mark.long
 def test_a_client_that_never_says_a_word_does_not_hold_the_end_up():
     ended, connected = threading.Event(), threading.Event()
     port = []

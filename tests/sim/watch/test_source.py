@@ -42,6 +42,7 @@ class TestLog:
         assert [frame.can_id for frame, _ in found] == [0x700, 0x701, 0x702, 0x703, 0x704]
         assert [time_s for _, time_s in found] == [1000.0, 1000.5, 1001.0, 1001.5, 1002.0]
 
+    @pytest.mark.long
     def test_at_its_pace(self, log):
         began = monotonic()
         assert len(frames(LogSource(log, Pace(10.0)))) == 5
@@ -73,6 +74,7 @@ class TestLog:
 
 
 class TestBus:
+    @pytest.mark.long
     def test_a_loop_bus_is_waited_for_not_hosted_and_its_end_ends(self, free_port):
         source = BusSource(f"loop:{free_port}").batches()
         assert next(source).frames == []

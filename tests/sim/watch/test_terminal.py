@@ -71,6 +71,7 @@ def test_before_anything_came_it_says_that_it_waits():
     assert "no mode yet" in shown
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("width", "height"), [(40, 12), (80, 24), (240, 70), (10, 3)])
 def test_any_room_is_enough(flying, width, height):
     lines = text(flying, width, height).splitlines()

@@ -57,6 +57,7 @@ def connected(port, origin):
     return connect(f"ws://127.0.0.1:{port}/live", origin=origin, open_timeout=10.0)
 
 
+@pytest.mark.long
 def test_the_page_loads_nothing_from_elsewhere_and_escapes_its_source(port):
     status, page = get(port)
     assert status == 200
@@ -66,17 +67,20 @@ def test_the_page_loads_nothing_from_elsewhere_and_escapes_its_source(port):
     assert not re.findall(r"<(?:script|link|img)[^>]*(?:src|href)=|@import|url\(", page)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example"])
 def test_another_host_name_is_refused(port, host):
     assert get(port, host)[0] == 400
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("origin", [None, "http://evil.example", "null"])
 def test_the_websocket_is_for_its_own_page_alone(port, origin):
     with pytest.raises((InvalidStatus, ConnectionClosed)), connected(port, origin) as live:
         live.recv(5.0)
 
 
+@pytest.mark.long
 def test_a_page_gets_all_that_was_seen_and_then_what_is_new(view, port):
     view.read()
     with connected(port, f"http://127.0.0.1:{port}") as live:

@@ -5,6 +5,7 @@ import pytest
 import torquer
 
 
+@pytest.mark.long
 def test_it_says_what_the_command_prints(flown, command):
     audit = torquer.check(flown.path)
     done = command("check", flown.path)

@@ -33,6 +33,7 @@ def judged(run):
     }
 
 
+@pytest.mark.long
 def test_it_flies_what_the_command_flies_and_judges_it_the_same(flown, command, tmp_path):
     words = ("microsat", "--orbits", "0.05", "--seed", "7", "--bus", "virtual", "--out", tmp_path / "run")
     done = command("sil", *words)
@@ -46,6 +47,7 @@ def test_it_flies_what_the_command_flies_and_judges_it_the_same(flown, command, 
     assert flown.report.is_file()
 
 
+@pytest.mark.long
 def test_settings_have_dots_or_sections_and_values_of_numpy(tmp_path):
     over = {"time.tick_hz": np.int64(2), "coils": {"backoff": "per_coil"}, "initial.axis": np.eye(3)[1]}
     run = torquer.fly("microsat", orbits=SHORT, set=over, out=tmp_path / "run")
@@ -82,6 +84,7 @@ def test_what_the_caller_holds_is_collected_as_before(tmp_path):
     assert gc.get_freeze_count() == before
 
 
+@pytest.mark.long
 def test_the_scenario_of_a_run_can_be_flown_again(flown, tmp_path):
     again = torquer.fly(flown.scenario, orbits=0.05, seed=np.uint64(7), out=tmp_path / "again")
     assert again.log.read_bytes() == flown.log.read_bytes()
@@ -170,6 +173,7 @@ def test_ctrl_c_ends_the_nodes_and_leaves_a_run_that_can_be_reported(bus, tmp_pa
     assert run.concluded
 
 
+@pytest.mark.long
 def test_a_flight_whose_node_ends_raises_nothing_and_tells(tmp_path, monkeypatch, command):
     def start(module, *arguments, **pipes):
         node = start_node(module, *arguments, **pipes)
@@ -230,6 +234,7 @@ def test_a_run_is_not_flown_over(copy):
     assert copy.log.read_bytes() == before
 
 
+@pytest.mark.long
 def test_report_makes_the_summary_again_and_tells_what_was_changed(copy, command):
     edited = {**copy.summary, "seed": 8}
     (copy.path / "summary.json").write_text(json.dumps(edited))
@@ -249,6 +254,7 @@ def test_report_refuses_a_run_with_the_log_of_another(copy):
     assert caught.value.exit_code == 1
 
 
+@pytest.mark.long
 def test_without_out_each_flight_has_a_folder_of_its_own(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     runs = [torquer.fly("microsat", orbits=SHORT) for _ in range(2)]

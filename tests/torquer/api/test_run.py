@@ -24,6 +24,7 @@ SUFFIXES = {
 """How the name of a variable ends that has this unit."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("histories", ["truth", "estimate"])
 def test_every_variable_says_its_unit_in_name_and_attributes(histories, flown):
     dataset = getattr(flown, histories)
@@ -76,6 +77,7 @@ def test_after_the_end_of_a_cut_log_no_mode_is_known(copy):
     assert estimate.mode[101:].isnull().all()
 
 
+@pytest.mark.long
 def test_truth_has_the_momentum_of_a_driven_wheel(tmp_path):
     run = torquer.fly("microsat-wheel", orbits=0.005, out=tmp_path / "run")
     momentum_nms = run.truth.wheel_nms
@@ -100,6 +102,7 @@ def test_a_run_without_pulses_has_a_table_without_rows(tmp_path):
     assert list(run.pulses.dtypes.astype(str)) == ["int64", "int64", *["float64"] * 4]
 
 
+@pytest.mark.long
 def test_without_the_extra_only_tables_and_histories_are_missing(copy, monkeypatch):
     for package in ("xarray", "pandas"):
         monkeypatch.setitem(sys.modules, package, None)

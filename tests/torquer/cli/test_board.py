@@ -13,6 +13,8 @@ from fsw.wire.messages import (
     SunVector,
 )
 
+pytestmark = pytest.mark.long
+
 BOARDS = {
     "coil": (CoilBoot, CoilStatus),
     "dipole": (CoilBoot, CoilStatus, CoilDipoleStatus),

@@ -186,6 +186,7 @@ def test_an_error_leaves_stdout_empty(words, capsys):
     assert (code, out, err.count("\n")) == (2, "", 1)
 
 
+@pytest.mark.long
 def test_quiet_and_verbose(capsys, flown, broken):
     assert run(capsys, "check", flown, "--quiet") == (0, "", "")
     code, out, err = run(capsys, "check", flown, "-v")

@@ -138,6 +138,7 @@ def test_a_folder_that_is_gone_is_one_sentence(tmp_path, monkeypatch, capsys):
     )
 
 
+@pytest.mark.long
 def test_so_is_it_where_the_command_is_run_as_a_module(tmp_path):
     gone = tmp_path / "gone"
     gone.mkdir()

@@ -14,6 +14,7 @@ def call(*words):
     return CliRunner().invoke(main, ["xtce", *map(str, words)])
 
 
+@pytest.mark.long
 def test_it_writes_the_document(tmp_path):
     out = tmp_path / "bus.xml"
     done = call("--out", out)

@@ -329,6 +329,7 @@ def starts(shared, tick_hz, coils, ticks):
     return asked
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("tick_hz", [1, 2, 3, 7, 10, 50])
 def test_with_a_lasting_demand_it_fires_as_often_as_the_limits_let_it(tick_hz):
     """One coil in 103 s: after the boot lockout at 100 s, 203 s, 306 s."""
@@ -341,6 +342,7 @@ def test_with_a_lasting_demand_it_fires_as_often_as_the_limits_let_it(tick_hz):
     assert per_coil == [(100.0, 0), (103.0, 1), (203.0, 0), (206.0, 1), (306.0, 0), (309.0, 1)]
 
 
+@pytest.mark.long
 @settings(max_examples=300)
 @given(
     ready_in=st.tuples(*[st.sampled_from((-500, -1, 0, 0, 1, 200))] * 3),

@@ -23,6 +23,7 @@ def world(make_world):
     return world
 
 
+@pytest.mark.long
 def test_reports_of_the_coil_driver_may_come_a_tick_late(world):
     held = []
 

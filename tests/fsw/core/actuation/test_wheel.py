@@ -180,4 +180,4 @@ class TestRequest:
 
 
 def test_every_number_of_the_view_counts_in_the_checksum(blind_places):
-    assert blind_places(WheelView(3.0, 7, 0.25, -0.5, 2, known=True)) == []
+    assert blind_places(WheelView(3.0, 7, 0.25, -0.5, 2, has_speed=True)) == []

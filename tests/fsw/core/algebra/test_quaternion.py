@@ -45,6 +45,7 @@ def same_attitude(p, q, tolerance=1e-12):
     return min(max(abs(a - s * b) for a, b in zip(p, q, strict=True)) for s in (1, -1)) < tolerance
 
 
+@pytest.mark.long
 @given(quaternions, quaternions)
 def test_the_product_is_hamilton_s(p, q):
     assert same_attitude(multiply(p, q), (scipy_rotation(p) * scipy_rotation(q)).as_quat(scalar_first=True))
@@ -57,11 +58,13 @@ def test_the_product_of_units_i_j_is_k():
     assert multiply(i, i) == (-1.0, 0.0, 0.0, 0.0)
 
 
+@pytest.mark.long
 @given(quaternions)
 def test_the_matrix_turns_axes(q):
     np.testing.assert_allclose(dcm(q), scipy_rotation(q).as_matrix().T, atol=1e-13)
 
 
+@pytest.mark.long
 @given(quaternions)
 def test_the_matrix_is_the_formula_of_the_convention(q):
     q0, v = q[0], np.array(q[1:])
@@ -76,6 +79,7 @@ def test_a_body_turned_by_90_deg_about_its_third_axis_sees_axis_1_on_minus_axis_
     assert rotate(q, (0.0, 1.0, 0.0)) == pytest.approx((1.0, 0.0, 0.0), abs=1e-15)
 
 
+@pytest.mark.long
 @given(quaternions, vectors)
 def test_rotate_is_the_matrix_applied(q, v):
     np.testing.assert_allclose(rotate(q, v), np.array(dcm(q)) @ v, atol=1e-14)
@@ -87,6 +91,7 @@ def test_conjugate_turns_back(q, v):
     assert multiply(q, conjugate(q)) == pytest.approx(IDENTITY, abs=1e-14)
 
 
+@pytest.mark.long
 @given(quaternions, quaternions, vectors)
 def test_chains_multiply_from_the_reference_outward(q_b_from_a, q_c_from_b, v_a):
     q_c_from_a = multiply(q_b_from_a, q_c_from_b)

@@ -18,6 +18,7 @@ def close(ours, theirs):
     np.testing.assert_allclose(np.array(ours), theirs, rtol=1e-12, atol=1e-6)
 
 
+@pytest.mark.long
 @given(vectors, vectors, floats)
 def test_vector_algebra(a, b, factor):
     u, v = np.array(a), np.array(b)
@@ -49,6 +50,7 @@ def test_rows_and_components_are_found_by_their_index(m, a, index):
     assert vector.item(a, index) == a[index]
 
 
+@pytest.mark.long
 @given(matrices, matrices, vectors)
 def test_matrix_algebra(m, n, a):
     close(vector.transform(m, a), np.array(m) @ np.array(a))

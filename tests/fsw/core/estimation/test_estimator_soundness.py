@@ -76,6 +76,7 @@ class TestSoundness:
         assert state.restarts == 1
         assert used == Used(True, True, False)
 
+    @pytest.mark.long
     @given(
         st.tuples(*[st.floats(-65536.0, 65534.0)] * 3),
         st.tuples(*[st.floats(-1.1, 1.1)] * 3),

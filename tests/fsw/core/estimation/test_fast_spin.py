@@ -124,6 +124,7 @@ def test_a_slow_body_is_predicted_at_once_and_a_rate_that_is_no_number_too():
     assert pieces_of_tick((0.0, 3.1, 0.0), 0.05) == 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("estimated", "known"), [(True, J), (False, J), (False, np.eye(3))])
 def test_the_magnetometer_alone_holds_satellites_that_differ_from_the_table(estimated, known):
     """Every inertia and product off, a torque, noise; the field turns as along an orbit."""

@@ -216,6 +216,7 @@ class TestAStartInATumble:
             off_rad = angle_rad(attitude.q_body_from_orbit, truth.q_body_from_orbit)
             assert off_rad < 2.0 * attitude.sigma3_attitude_rad
 
+    @pytest.mark.long
     def test_is_never_called_valid_where_it_turns_by_eighteen(self, make_world):
         world = make_world(initial={"rate_degps": (10.0, -12.0, 9.0)})
         for _ in range(400):

@@ -64,6 +64,7 @@ def deviations(p):
     return np.outer(sigma, sigma)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("algebra", BOTH)
 @given(sizes=SIZES, seed=SEEDS)
 def test_a_prediction_is_that_of_filterpy(algebra, sizes, seed):
@@ -87,6 +88,7 @@ def test_all_rows_may_move(algebra, seed):
     assert_near(after, f @ p @ f.T, np.abs(f) @ deviations(p) @ np.abs(f).T)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("algebra", BOTH)
 @given(sizes=SIZES, seed=SEEDS)
 def test_an_update_is_that_of_filterpy(algebra, sizes, seed):
@@ -129,6 +131,7 @@ def test_a_trace_goes_along_by_the_gain_and_the_weight_of_the_update(algebra, si
     assert np.array_equal(trace.sums, kept[1])
 
 
+@pytest.mark.long
 @given(sizes=SIZES, seed=SEEDS)
 def test_both_give_the_same_over_many_steps(sizes, seed):
     random, (states, measured) = np.random.default_rng(seed), sizes
@@ -144,6 +147,7 @@ def test_both_give_the_same_over_many_steps(sizes, seed):
     assert_near(first, second, deviations(second), 1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("algebra", BOTH)
 @given(sizes=SIZES, seed=SEEDS)
 def test_considered_states_keep_their_values_and_the_covariance_is_that_of_the_errors(algebra, sizes, seed):
@@ -303,6 +307,7 @@ def of_shear(random, states):
     return covariance(random, states), random.normal(size=(3, states)), (1, 4, 5)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(BOTH[0] is not Algebra.KERNEL, reason="the kernel is not built")
 @pytest.mark.parametrize(
     ("name", "arguments"),

@@ -361,6 +361,7 @@ class TestHealthy:
 class TestBothAtOnce:
     """Field and Sun in one update: what the two give one after the other, behind no laxer gate."""
 
+    @pytest.mark.long
     @settings(max_examples=50, deadline=None)
     @given(st.tuples(*[st.floats(-1.0, 1.0)] * 6))
     def test_equals_one_after_the_other_to_first_order(self, satellite, offsets):

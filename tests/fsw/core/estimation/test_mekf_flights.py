@@ -80,6 +80,7 @@ def nees(satellite, estimate, truth, size=6):
     return error @ np.linalg.solve(estimate.covariance[:size, :size], error)
 
 
+@pytest.mark.long
 def test_every_state_is_found_within_its_sigma(satellite):
     estimate, truth = flown(satellite, satellite.parameters)
     error, sigma = satellite.error(estimate, truth), np.sqrt(estimate.covariance.diagonal())
@@ -88,6 +89,7 @@ def test_every_state_is_found_within_its_sigma(satellite):
     assert nees(satellite, estimate, truth, satellite.size()) < 2.0 * satellite.size()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in OF_CELLS])
 class TestOneDifferenceFromTheTable:
     """Attitude and rate stay honest by the state that stands for it, and by no other.
@@ -131,6 +133,7 @@ class TestTurnsOfTheSensors:
         sigma = np.sqrt(estimate.covariance.diagonal()[0:3])
         np.testing.assert_allclose(sigma, floor, rtol=0.1)
 
+    @pytest.mark.long
     def test_the_relative_turn_is_found(self, flight, full):
         estimate, truth = flight
         difference = np.zeros((3, full.size()))
@@ -145,6 +148,7 @@ class TestTurnsOfTheSensors:
         assert (after < 0.2 * before).all()
         assert (np.abs(difference @ full.error(estimate, truth)) < 4.0 * after).all()
 
+    @pytest.mark.long
     def test_a_common_turn_goes_into_the_attitude_unseen_and_inside_its_sigma(self, full):
         turned = (0.004, -0.003, 0.005)
         estimate, truth = flown(full, replace(NO_EXCESS, mag_turn_rad=turned, sun_turn_rad=turned))

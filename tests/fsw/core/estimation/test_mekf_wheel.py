@@ -89,6 +89,7 @@ def test_the_pieces_of_a_tick_add_the_doubt_of_a_tick():
     np.testing.assert_allclose(9.0 * (piece.constant - np.eye(6)), whole.constant - np.eye(6), atol=1e-15)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("motor_nm", [0.0, 2e-3, -1.5e-3])
 def test_by_measured_speeds_alone_it_turns_as_the_plant(motor_nm):
     """Friction, lag and all: the filter knows momentum and change, and no model of the wheel."""

@@ -77,6 +77,7 @@ def test_nothing_is_measured_along_them(full, direction):
     assert np.linalg.norm(seen[3:]) < 1e-3 * np.linalg.norm(turned[3:])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("direction", range(4))
 def test_the_motion_goes_on_along_them(full, nonlinear_flow, direction):
     """A satellite that differs along a direction differs along the same one after a minute's motion."""
@@ -93,6 +94,7 @@ def test_the_motion_goes_on_along_them(full, nonlinear_flow, direction):
     np.testing.assert_allclose(moved[6:], along[6:], atol=1e-9)
 
 
+@pytest.mark.long
 def test_the_motion_shows_a_factor_of_the_coils_alone(full, nonlinear_flow):
     """What is told must not be among the directions: coils stronger, and nothing else."""
     estimate = full.estimate()

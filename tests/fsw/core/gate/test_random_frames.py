@@ -3,6 +3,7 @@
 from dataclasses import replace
 from random import Random
 
+import pytest
 from gate_samples import admitted, taken
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -19,6 +20,8 @@ from fsw.wire.messages import (
     CLASSES,
     intact,
 )
+
+pytestmark = pytest.mark.long
 
 
 def random_frame(random):

@@ -24,6 +24,7 @@ def test_the_gain_stops_growing():
     assert held_gain((0.0, 0.0, 0.0), b, 1e-5, 1e7) == 1e7
 
 
+@pytest.mark.long
 class TestFlights:
     @pytest.fixture
     def flown(self, bench):

@@ -15,6 +15,7 @@ fields = vectors.map(lambda v: tuple(4e-5 * c for c in v))
 rates = vectors.map(lambda v: tuple(0.1 * c for c in v))
 
 
+@pytest.mark.long
 @given(fields, rates)
 def test_the_equation(b, omega):
     """m = -k_w b x omega."""
@@ -22,6 +23,7 @@ def test_the_equation(b, omega):
     np.testing.assert_allclose(rate_damping_dipole(b, omega, K_W), expected, rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.long
 @given(fields, rates, st.floats(0.0, 1e8))
 def test_rate_damping_never_adds_energy(b, omega, k_w):
     """The power omega . (m x b) is -k_w |b x omega|^2."""
@@ -35,6 +37,7 @@ def test_a_rate_along_the_field_is_out_of_reach():
     assert rate_damping_dipole(b, (0.01, -0.02, 0.03), K_W) == pytest.approx((0.0, 0.0, 0.0), abs=1e-12)
 
 
+@pytest.mark.long
 @given(fields, fields, st.floats(0.01, 10.0))
 def test_the_equation_of_bdot(b, before, interval_s):
     """m = -k_w (b - b_before) / interval."""

@@ -48,6 +48,7 @@ def in_orbital_rates(orbit, run):
     return np.linalg.norm(run.omega_body, axis=1) / orbit.rate_radps
 
 
+@pytest.mark.long
 def test_bdot_stops_just_under_twice_the_orbital_rate(damped):
     """On a polar orbit the field itself turns at 2 w0 on the mean, and the body with it."""
     orbit, run = damped(bdot, 90.0, orbits=4)
@@ -56,6 +57,7 @@ def test_bdot_stops_just_under_twice_the_orbital_rate(damped):
     assert rate.min() > 1.2
 
 
+@pytest.mark.long
 def test_damping_by_the_rate_does_not_stop_there(damped):
     orbit, run = damped(absolute_damping, 90.0, orbits=2.5)
     rate = in_orbital_rates(orbit, run)
@@ -63,6 +65,7 @@ def test_damping_by_the_rate_does_not_stop_there(damped):
     assert np.all(np.diff(run.energy_j) <= 0.0)
 
 
+@pytest.mark.long
 def test_its_decay_is_exponential_and_slower_where_the_field_turns_less(bench):
     """A sphere comes to lose an equal logarithm each orbit; at 30 deg less than over the poles."""
     lost = {}
@@ -84,6 +87,7 @@ def test_its_decay_is_exponential_and_slower_where_the_field_turns_less(bench):
     assert 0.7 < lost[30.0] < 0.5 * lost[90.0]
 
 
+@pytest.mark.long
 def test_damping_of_the_relative_rate_takes_the_jacobi_integral_down(bench):
     """Under gravity gradient: 1/2 Omega J Omega + 3/2 w0^2 e1 J e1 - 1/2 w0^2 e3 J e3."""
     orbit, body = bench.Orbit(), bench.Body()
@@ -96,6 +100,7 @@ def test_damping_of_the_relative_rate_takes_the_jacobi_integral_down(bench):
 
 
 class TestSwitchedGain:
+    @pytest.mark.long
     def test_a_larger_gain_at_the_end_is_faster_where_the_first_still_holds_the_coils_busy(self, damped):
         gains = {"bdot_switched": SwitchedGains(below_radps=0.01, factor=5.0)}
         _, fixed = damped(bdot, 98.6, orbits=2.5, k_w=6e5, most_am2=2.0)

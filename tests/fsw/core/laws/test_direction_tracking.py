@@ -41,6 +41,7 @@ def test_a_model_that_is_too_weak_leaves_nothing_to_do_at_the_nominal_attitude(b
     assert asked[field_tracking] > 1e-3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("vane_nm", [6e-6, 0.0])
 def test_with_the_air_three_axes_are_held_and_without_it_none(bench, turned, vane_nm):
     orbit, c0 = bench.Orbit(altitude_km=400.0, inclination_deg=80.0), turned((2, 5, -3), 35.0)

@@ -85,6 +85,7 @@ def run(bench, turned):
 
 
 class TestFlights:
+    @pytest.mark.long
     def test_the_wheel_comes_to_the_orbit_normal(self, run, bench):
         tilt_deg = run.axis_to_deg(2, bench.Orbit().c_orbit_from_eci(0.0)[2])
         assert tilt_deg[0] > 15.0

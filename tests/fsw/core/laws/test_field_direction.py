@@ -14,6 +14,7 @@ OWN = FieldDirectionGains(0.0, 2.0, 1.0)
 NOTHING = (0.0, 0.0, 0.0)
 
 
+@pytest.mark.long
 @given(vectors, vectors)
 def test_the_torque_turns_the_target_onto_the_field(b, t):
     """A small turn d about it takes t to t + d x t, nearer to n."""
@@ -25,6 +26,7 @@ def test_the_torque_turns_the_target_onto_the_field(b, t):
     assert torque @ n == pytest.approx(0.0, abs=1e-22)
 
 
+@pytest.mark.long
 @given(vectors, vectors)
 def test_turning_across_the_field_is_braked(b, omega):
     """de/dt = -n x omega for a fixed target: M = -k_w |b|^2 omega_across."""
@@ -51,6 +53,7 @@ def fly(bench, turned):
     return run
 
 
+@pytest.mark.long
 def test_an_axis_follows_the_field_as_a_bar_magnet_would(bench, fly):
     """From far off, by the magnetometer alone, the turn about the field free."""
     orbit, run = fly(OWN, bench.Body(np.diag([1.6, 1.6, 1.6])), orbits=2.0, k_a=2e4)
@@ -60,6 +63,7 @@ def test_an_axis_follows_the_field_as_a_bar_magnet_would(bench, fly):
     assert off[len(off) // 2 :].max() < 15.0
 
 
+@pytest.mark.long
 def test_without_a_target_and_with_a_wheel_the_whole_attitude_follows(bench, fly):
     body = bench.Body(inertia=np.diag([1.9, 1.95, 2.0]), wheel=(0.0, 0.0, 0.05))
     _, run = fly(FieldDirectionGains(), body)

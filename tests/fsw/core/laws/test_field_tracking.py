@@ -75,6 +75,7 @@ def test_to_first_order_it_is_the_pd_law_less_the_turning_of_the_field(bench, tu
     assert np.linalg.norm(left) > 0.2 * np.linalg.norm(pd_part)
 
 
+@pytest.mark.long
 class TestFlights:
     def test_with_a_wheel_along_the_normal_it_comes_to_nominal(self, from_nominal, bench):
         body = bench.Body(inertia=np.diag([1.9, 1.95, 2.0]), wheel=(0.0, 0.0, 0.05))

@@ -57,12 +57,14 @@ def test_a_small_gamma_answers_the_attitude_more(bench):
     assert firm > 1.2 * soft
 
 
+@pytest.mark.long
 def test_it_holds_the_body_and_that_with_a_wheel(bench, flight):
     for wheel, orbits in (((0.0, 0.0, 0.0), 1.5), (WHEEL, 3.0)):
         flown = flight(h_infinity, "h_infinity", bench.Body(np.diag([1.02, 1.85, 1.95]), wheel, 2.0), orbits)
         assert flown.angle_deg[-1] < 1.5
 
 
+@pytest.mark.long
 def test_from_the_same_start_it_is_sooner_at_rest_than_the_regulator(bench, flight):
     body = bench.Body(np.diag([1.02, 1.85, 1.95]), (0.0, 0.0, 0.0), 2.0)
     robust, plain = flight(h_infinity, "h_infinity", body, 1.5, {"gamma": 2.5}), flight(lqr, "lqr", body, 1.5)

@@ -92,6 +92,7 @@ class TestMemory:
         assert ask(700, memory).memory == memory
 
 
+@pytest.mark.long
 class TestFlights:
     def test_yaw_is_taken_away_by_roll_alone(self, lean):
         """It begins as yaw: about axis 1."""

@@ -95,6 +95,7 @@ def flight(bench, turned):
     return fly
 
 
+@pytest.mark.long
 def test_the_field_alone_brings_the_body_to_its_attitude(flight):
     flown = flight()
     assert flown.angle_deg[-1] < 1.0

@@ -100,6 +100,7 @@ def cost(flown, effort):
     return float(np.sum(angles**2 + effort * np.sum(flown.m_body**2, axis=1)))
 
 
+@pytest.mark.long
 def test_the_regulator_costs_less_than_the_best_pd(flight, settings):
     """Same start, same weights; PD has the gains with the best Floquet exponent."""
     effort = settings.schedules["lqr"].problem.effort
@@ -107,11 +108,13 @@ def test_the_regulator_costs_less_than_the_best_pd(flight, settings):
     assert by_lqr < 0.85 * by_pd
 
 
+@pytest.mark.long
 def test_the_regulator_points_from_thirty_degrees(flight):
     """The source: it works to errors of about 30 deg, though designed for small ones."""
     assert rms_deg(flight(lqr, angle_deg=30.0, orbits=5.0), orbits=5.0, last=1.0) < 0.1
 
 
+@pytest.mark.long
 def test_a_known_constant_torque_leaves_little_more_than_any_dipole_must(flight):
     """The least over all periodic dipoles: by least squares on the linearised motion, on the ground."""
     body = Body("50 kg", tuple(map(tuple, INERTIA.tolist())), 800.0, 98.6)
@@ -120,6 +123,7 @@ def test_a_known_constant_torque_leaves_little_more_than_any_dipole_must(flight)
     assert 0.98 * least < known < 1.3 * least
 
 
+@pytest.mark.long
 def test_a_constant_torque_that_it_does_not_know_leaves_more(flight):
     unknown = rms_deg(flight(lqr, orbits=6.0, torque=TORQUE, known=False), orbits=6.0, last=1.0)
     by_pd = rms_deg(flight(pd, orbits=6.0, torque=TORQUE), orbits=6.0, last=1.0)

@@ -70,6 +70,7 @@ def flight(bench, turned):
     return fly
 
 
+@pytest.mark.long
 def test_a_periodic_torque_that_nobody_knows_is_learned(flight):
     learned = flight(lqr_disturbed, "lqr_disturbed", {"learning": 3.0})
     plain = flight(lqr, "lqr")

@@ -71,6 +71,7 @@ def flight(bench, turned):
     return fly
 
 
+@pytest.mark.long
 def test_with_weak_coils_it_costs_less_than_the_plan_shortened(flight):
     """10 mA m^2 for 20 deg: the sum of the squared angle."""
     boxed, shortened = (flight(law, 0.01) for law in (mpc_box, mpc))

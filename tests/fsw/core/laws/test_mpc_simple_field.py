@@ -53,6 +53,7 @@ def test_on_the_dipoles_field_the_fit_flies_as_the_model_does(flight):
     assert by_fit.m_body == pytest.approx(by_model.m_body, abs=1e-3 * np.abs(by_model.m_body).max())
 
 
+@pytest.mark.long
 def test_the_longer_a_field_is_held_the_worse_it_points(flight):
     """The source: with the field held, the horizon must be short."""
     soon, late = (

@@ -43,6 +43,7 @@ class TestDipole:
         m = fastest_dipole((1e-5, 2e-5, -2e-5), (3.0, 0.0, 1.0), 2.0, 0.6)
         assert m == pytest.approx((-0.2, 0.6, 0.6))
 
+    @pytest.mark.long
     @given(fields, vectors)
     def test_no_other_dipole_within_the_bound_is_faster(self, b, v):
         """Beyond the band: the power v . (m x b) against that of all corners."""
@@ -73,6 +74,7 @@ def flown(bench):
     return fly
 
 
+@pytest.mark.long
 class TestFlights:
     def test_the_momentum_falls_in_every_step(self, flown):
         run = flown(least_momentum, {"least_momentum": MomentumGains(5.0)})
@@ -127,6 +129,7 @@ class TestModel:
         normal = wanted - b * (b @ wanted) / (b @ b)
         np.testing.assert_allclose(np.cross(m, b), normal, atol=1e-9)
 
+    @pytest.mark.long
     def test_what_the_coils_cannot_give_of_it_delays_the_decay(self, flown):
         """Unlike the other laws it may add energy: the gyroscopic part has power once projected."""
         run = flown(rate_model, {"rate_model": ModelGains()})

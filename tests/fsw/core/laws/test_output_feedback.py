@@ -114,6 +114,7 @@ def test_the_filter_takes_the_step_of_its_backward_difference(inputs, settings, 
     assert after == pytest.approx(np.array(z) + step * (np.array(Q) - after), abs=1e-12)
 
 
+@pytest.mark.long
 def test_without_a_rate_the_attitude_converges(flight):
     """The property claimed by the source; the law sees no number in place of the rate."""
     run = flight(output_feedback, blind=True)
@@ -121,11 +122,13 @@ def test_without_a_rate_the_attitude_converges(flight):
     assert run.angle_deg[-600:].max() < 0.3
 
 
+@pytest.mark.long
 def test_without_damping_it_would_not(flight):
     """The same spring alone."""
     assert flight(pd, k_w=0.0).angle_deg[-600:].max() > 10.0
 
 
+@pytest.mark.long
 def test_with_the_rate_it_converges_sooner(flight):
     """What the missing rate costs."""
     third_orbit = slice(1200, 1800)

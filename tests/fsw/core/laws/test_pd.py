@@ -28,6 +28,7 @@ def c_body_from_orbit(rotation_rad):
     return tuple(map(tuple, Rotation.from_rotvec(rotation_rad).as_matrix().T.tolist()))
 
 
+@pytest.mark.long
 @given(fields, rates, vectors)
 def test_the_equation(b, omega, error):
     """m = -k_w b x Omega - k_a b x S."""
@@ -35,6 +36,7 @@ def test_the_equation(b, omega, error):
     np.testing.assert_allclose(pd_dipole(b, omega, error, K_W, K_A), expected, rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.long
 @given(directions, st.floats(0.0, pi))
 def test_the_error_is_2_sin_theta_about_the_axis_of_the_turn(axis, angle_rad):
     error = attitude_error(c_body_from_orbit(angle_rad * axis))
@@ -61,6 +63,7 @@ def test_the_torque_opposes_the_part_of_the_error_normal_to_the_field(b, error):
     assert np.dot(torque, error) <= 1e-18
 
 
+@pytest.mark.long
 @given(fields, rates, vectors)
 def test_no_dipole_is_asked_for_along_the_field_where_it_makes_no_torque(b, omega, error):
     assert abs(np.dot(pd_dipole(b, omega, error, K_W, K_A), b)) < 1e-12
@@ -84,6 +87,7 @@ def quaternion(rotation_rad):
 class TestFarError:
     """E = 4 qv, of the shorter way round."""
 
+    @pytest.mark.long
     @given(directions, st.floats(0.0, pi))
     def test_is_4_sin_of_half_the_turn_about_its_axis(self, axis, angle_rad):
         error = far_error(quaternion(angle_rad * axis))
@@ -103,6 +107,7 @@ class TestFarError:
         assert sizes[-1] == pytest.approx(4.0)
         assert np.linalg.norm(attitude_error(dcm(quaternion(pi * axis)))) < 1e-15
 
+    @pytest.mark.long
     @given(directions, st.floats(0.01, pi - 0.01))
     def test_both_signs_of_the_quaternion_are_one_attitude(self, axis, angle_rad):
         q = quaternion(angle_rad * axis)

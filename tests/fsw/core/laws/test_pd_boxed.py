@@ -78,6 +78,7 @@ def test_without_a_field_there_is_no_dipole():
     assert boxed_dipole((1e-6, 0.0, 0.0), (0.0, 0.0, 0.0), MOST) == (0.0, 0.0, 0.0)
 
 
+@pytest.mark.long
 def test_with_coils_at_their_limits_it_flies_as_pd_does(bench, turned):
     """10 mA m^2: the sum of the squared angle from 40 deg. A nearer torque is not a quicker flight."""
     body = bench.Body(np.diag([1.02, 1.85, 1.95]), most_am2=0.01)

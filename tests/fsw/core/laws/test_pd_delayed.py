@@ -76,6 +76,7 @@ def test_an_unknown_attitude_asks_for_nothing_and_forgets(bench, seen):
     assert demand.memory == ()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("delay_s", "low", "high"), [(60.0, 0.0, 0.3), (600.0, 30.0, 181.0)])
 def test_it_converges_without_a_rate_while_the_delay_is_short(bench, turned, delay_s, low, high):
     run = bench.fly_from_rest(

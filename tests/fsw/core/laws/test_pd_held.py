@@ -88,15 +88,18 @@ def last_deg(bench, turned):
     return run
 
 
+@pytest.mark.long
 def test_held_for_minutes_the_attitude_still_converges(last_deg):
     """The claim of the source."""
     assert last_deg("pd_held", HoldGains(200.0)) < 0.5
 
 
+@pytest.mark.long
 def test_measuring_as_long_as_acting_it_does_too(last_deg):
     assert last_deg("pd_apart", ApartGains(120.0, 120.0)) < 1.0
 
 
+@pytest.mark.long
 def test_held_too_long_for_its_gains_it_diverges(last_deg):
     assert last_deg("pd_held", HoldGains(600.0)) > 90.0
 

@@ -63,6 +63,7 @@ def test_half_a_turn_off_the_far_form_turns_and_the_near_form_rests(bench, turne
     assert np.linalg.norm(inertial_far(over, (), point, settings).m_body_am2) > 1e-3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("gravity", "limit_deg"), [(False, 0.3), (True, 12.0)])
 def test_it_comes_to_an_inertial_target_and_stays(bench, turned, gravity, limit_deg):
     """Four orbits from 40 deg off; the gravity gradient is what is left."""

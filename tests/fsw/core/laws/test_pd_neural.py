@@ -89,6 +89,7 @@ def test_its_weights_are_those_that_training_found():
     assert kept["cost"] < kept["cost_of_constant_gains"]
 
 
+@pytest.mark.long
 def test_it_points_a_satellite(bench, turned):
     flown = bench.fly_from_rest(
         neural,

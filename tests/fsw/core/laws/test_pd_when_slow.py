@@ -29,6 +29,7 @@ def test_it_is_one_of_the_two_laws(bench, ours, other):
         assert m == pytest.approx(expected(inputs, (), point, settings).m_body_am2)
 
 
+@pytest.mark.long
 def test_a_tumble_loses_the_jacobi_integral_while_it_is_fast_and_ends_pointed(bench, turned):
     orbit, body = bench.Orbit(), bench.Body(inertia=np.diag([0.3, 2.0, 2.2]), most_am2=5.0)
     run = bench.fly(

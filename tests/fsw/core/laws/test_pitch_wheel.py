@@ -68,12 +68,14 @@ def test_a_turn_in_pitch_takes_minutes_and_the_wheel_gives_it(bench, turned):
     assert np.abs(flight.wheel_nms - 0.05).max() > 1e-3
 
 
+@pytest.mark.long
 def test_all_three_axes_come_to_rest(bench, turned):
     flight = flown(bench, turned, orbits=4.0)
     assert flight.angle_deg[-300:].max() < 1.5
     assert flight.angle_deg[-300:].max() < 0.1 * flight.angle_deg[0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("begin_nms", [0.08, 0.02])
 def test_the_momentum_is_brought_to_its_bias(bench, turned, begin_nms):
     flight = flown(bench, turned, begin_nms=begin_nms, orbits=2.0)
@@ -95,6 +97,7 @@ def test_a_wheel_that_turns_the_other_way_is_only_spun_up(bench, turned):
     assert held_off_deg[-20:].max() < 1.0
 
 
+@pytest.mark.long
 def test_a_pitch_of_its_own_is_held(bench, turned):
     flight = flown(bench, turned, first=((0, 0, 1), 0.0), pitch_rad=0.35, orbits=0.5)
     assert pitches_deg(flight)[-1] == pytest.approx(np.degrees(0.35), abs=0.3)

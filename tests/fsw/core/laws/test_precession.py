@@ -70,6 +70,7 @@ class TestRoll:
         m = roll_dipole(b, (1.0, 0.0, roll), (0.0, 1.0, 0.0), 0.2, 2, 1e6)
         assert np.cross((0.0, 0.0, m[2]), b)[0] * roll <= 0.0
 
+    @pytest.mark.long
     @pytest.mark.parametrize(("spin", "flip"), [(0.1, False), (-0.1, True)])
     def test_the_momentum_comes_to_the_normal_and_the_nutation_ends(self, spinning, spin, flip):
         run = spinning(roll_precession, RollGains(3.0, 1e6), 3.0, spin, omega=(0.003, 0.0), flip=flip)
@@ -81,6 +82,7 @@ class TestRoll:
 
 
 class TestTarget:
+    @pytest.mark.long
     @given(fields, directions, axes)
     def test_without_a_bend_it_is_reorientation_along_the_target(self, b, target, axis):
         ours = precession_dipole(b, target, axis, 3e5, 1.0)
@@ -91,6 +93,7 @@ class TestTarget:
         m = precession_dipole((2e-5, 1e-5, 0.0), (0.6, -0.1, 0.79), 2, 1e5, 0.3)
         assert m == pytest.approx((0.0, 0.0, 1e5 * (-2e-6 - 3e-6)))
 
+    @pytest.mark.long
     @given(directions, directions, st.floats(0.01, 1.0))
     def test_in_the_mean_over_a_turn_the_torque_is_along_the_target(self, b, target, limit):
         """Not at each instant, but for any f of the sign of its argument; of one that bends, to 1 / n^2."""
@@ -103,6 +106,7 @@ class TestTarget:
             means.append(np.cross(m, b_body) @ t_body)
         assert np.mean(means) >= -4.0 * across / len(turn) ** 2 - 1e-12
 
+    @pytest.mark.long
     @pytest.mark.parametrize("limit", [1.0, 0.3])
     def test_the_momentum_comes_to_the_target_with_any_f(self, spinning, limit):
         run = spinning(target_precession, PrecessionGains(3.0, *TARGET, 1e6, limit), 2.0)
@@ -116,12 +120,14 @@ class TestTarget:
 
 
 class TestStages:
+    @pytest.mark.long
     @given(fields, vectors, axes)
     def test_nutation_loses_energy(self, b, rate, axis):
         e = np.eye(3)[axis]
         m = nutation_switch(tuple(np.cross(b, rate)), axis) * e
         assert np.dot(rate, np.cross(m, b)) <= 0.0
 
+    @pytest.mark.long
     @given(fields, st.floats(-0.1, 0.1), axes)
     def test_both_coils_of_the_spin_turn_the_same_way(self, b, lacking, axis):
         for coil, switch in zip(
@@ -130,6 +136,7 @@ class TestStages:
             torque = np.cross(switch * np.eye(3)[coil], b)
             assert torque[axis] * lacking >= 0.0
 
+    @pytest.mark.long
     @given(fields, directions, axes)
     def test_the_direction_is_approached(self, b, target, axis):
         m = direction_switch(b, target, axis) * np.eye(3)[axis]
@@ -167,6 +174,7 @@ class TestStages:
         b, t = inputs.b_body_t, c @ TARGET
         assert m == (0.0, 0.0, 2.0 * np.sign(b[0] * t[1] - b[1] * t[0]))
 
+    @pytest.mark.long
     def test_a_tumble_ends_in_the_spin_along_the_target(self, spinning):
         gains = StageGains(3.0, *TARGET)
         run = spinning(relay_stages, gains, 3.5, 0.1, 3.0, omega=(0.02, -0.03))
@@ -190,6 +198,7 @@ class TestSteps:
         assert level * (-b[1] * roll + b[0] * yaw) <= 0.0
         assert level in (-1.0, 0.0, 1.0)
 
+    @pytest.mark.long
     @pytest.mark.parametrize(("spin", "flip"), [(0.1, False), (-0.1, True)])
     def test_three_levels_bring_the_momentum_to_the_normal(self, spinning, bench, spin, flip):
         run = spinning(stepped_precession, StepGains(3.0), 2.0, spin, 2.0, flip=flip)

@@ -29,11 +29,13 @@ UNEQUAL = np.diag([1.0, 10.0, 10.5])
 K_W, K_A = 2e7, 5000.0
 
 
+@pytest.mark.long
 @given(torques, fields, weights)
 def test_the_weighted_projection_is_normal_to_the_field(torque, b, q):
     assert np.dot(weighted_projection(torque, b, q), b) == pytest.approx(0.0, abs=1e-22)
 
 
+@pytest.mark.long
 @given(torques, fields, weights, st.tuples(component, component))
 def test_no_other_torque_normal_to_the_field_is_nearer(torque, b, q, other):
     """In the norm of Q."""
@@ -156,6 +158,7 @@ def axes_deg(bench, turned):
     return run
 
 
+@pytest.mark.long
 def test_a_weight_on_the_axis_of_small_moment_steadies_it_at_the_others_cost(axes_deg):
     """The property claimed by the source, for moments that differ tenfold."""
     plain, own = axes_deg(WeightGains(1.0, 1.0, 1.0)), axes_deg(WeightGains(10.0, 1.0, 1.0))

@@ -23,6 +23,7 @@ def test_the_equation_by_hand():
     assert m == pytest.approx((-1.8, 0.9, -0.6))
 
 
+@pytest.mark.long
 @given(fields, rates)
 def test_it_never_adds_energy(b, omega):
     power = np.dot(omega, np.cross(matrix_damping_dipole(b, omega, FULL.matrix, K_W), b))
@@ -46,6 +47,7 @@ def test_a_matrix_that_is_not_positive_definite_is_refused(values):
         MatrixGains(**values)
 
 
+@pytest.mark.long
 class TestFlights:
     @pytest.fixture
     def flown(self, bench):

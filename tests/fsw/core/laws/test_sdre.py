@@ -58,12 +58,14 @@ def flight(bench, turned):
     return fly
 
 
+@pytest.mark.long
 def test_from_far_off_it_costs_less_than_the_linear_regulator(flight):
     """120 deg: the sum of the squared angle over an orbit."""
     by_sdre, by_lqr = (np.sum(flight(law, 120.0, 1.0).angle_deg ** 2) for law in (sdre, lqr))
     assert by_sdre < 0.85 * by_lqr
 
 
+@pytest.mark.long
 def test_near_the_goal_it_points(flight):
     assert flight(sdre, 15.0, 1.6).angle_deg[-1] < 1.0
 

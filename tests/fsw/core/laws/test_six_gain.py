@@ -42,6 +42,7 @@ def test_with_k2_one_the_angle_part_only_straightens_the_momentum(motion):
     assert m3 * (B[1] * motion.roll + B[0] * motion.yaw) >= 0.0
 
 
+@pytest.mark.long
 @given(motions, motions)
 def test_the_spring_has_a_potential(one, other):
     """Its stiffness is symmetric: what a turn does to the torque about another axis, that one does to it."""
@@ -79,12 +80,14 @@ def test_of_a_turned_body_the_wheel_is_held_and_the_pitch(bench, turned):
 
 
 class TestFlights:
+    @pytest.mark.long
     def test_with_yaw_the_wheel_comes_to_the_normal_faster_than_without(self, lean):
         both, roll_alone = (lean(six_gain, gains=SixGainGains(k2=k2)) for k2 in (1.0, 0.0))
         assert both.most_deg(0) > 9.0
         assert both.lean_deg[-1] < 1.2
         assert roll_alone.lean_deg[-1] > 2.0 * both.lean_deg[-1]
 
+    @pytest.mark.long
     def test_without_yaw_at_all_it_still_comes_to_the_normal(self, lean):
         """As with a horizon sensor: yaw becomes roll a quarter of an orbit later."""
         run = lean(six_gain, gains=SixGainGains(k2=0.0, k5=0.5, k6=0.0))

@@ -126,6 +126,7 @@ def test_the_torque_asked_for_is_parallel_to_the_surface(bench, inputs, asked):
     assert np.cross(m, inputs.b_body_t) == pytest.approx(wanted - unit * (unit @ wanted), rel=1e-9)
 
 
+@pytest.mark.long
 def test_the_surface_is_reached_and_the_attitude_follows(bench, flight):
     run = flight("sliding")
     orbit = bench.Orbit()
@@ -136,6 +137,7 @@ def test_the_surface_is_reached_and_the_attitude_follows(bench, flight):
     assert rms_deg(run, 5.0) < 0.01
 
 
+@pytest.mark.long
 def test_on_the_mean_a_constant_torque_is_answered_by_the_integral(flight):
     """Claimed by the source for the surface with integrals."""
     plain = rms_deg(flight("sliding", torque=TORQUE), 5.0)

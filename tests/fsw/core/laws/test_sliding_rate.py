@@ -89,6 +89,7 @@ def rms_deg(bench, turned):
     return run
 
 
+@pytest.mark.long
 def test_both_converge_and_the_modified_law_sooner(rms_deg):
     classical, modified = rms_deg("sliding_rate"), rms_deg("sliding_rate_modified")
     assert classical[-1] < 0.5

@@ -23,6 +23,7 @@ units = vectors.map(lambda v: tuple((np.array(v) / np.linalg.norm(v)).tolist()))
 matrices = st.tuples(*[component] * 6)
 
 
+@pytest.mark.long
 @given(component, units, vectors)
 def test_the_change_takes_what_is_wanted_along_the_field(wanted, n, e):
     change = np.array(rows(matrix_change(wanted, n, e)))
@@ -30,6 +31,7 @@ def test_the_change_takes_what_is_wanted_along_the_field(wanted, n, e):
     assert np.array_equal(change, change.T)
 
 
+@pytest.mark.long
 @given(component, units, vectors, matrices)
 def test_no_other_symmetric_change_that_does_is_smaller(wanted, n, e, other):
     """Whatever is added that takes nothing along the field makes the sum of squares larger."""
@@ -127,11 +129,13 @@ def rms_deg(bench, turned):
     return run
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("angle_deg", [20.0, 100.0])
 def test_the_attitude_converges(rms_deg, angle_deg):
     assert rms_deg(angle_deg)[-1] < 0.5
 
 
+@pytest.mark.long
 def test_a_steep_surface_that_a_constant_matrix_cannot_hold_is_held(rms_deg):
     """The claim of the source: the constant one asks for what is not there, and drives the satellite away."""
     steep = {"reach": 3.0, "slope": 1.0}

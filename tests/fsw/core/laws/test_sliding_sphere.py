@@ -14,6 +14,7 @@ rates = vectors.map(lambda v: tuple(2e-3 * c for c in v))
 BOX = np.diag([1.0, 10.0, 10.5])
 
 
+@pytest.mark.long
 @given(rates, fields)
 def test_the_coils_never_feed_the_energy_of_a_spheres_surface(s, b):
     """J s . ds/dt = s . (m x b)."""
@@ -52,6 +53,7 @@ def test_without_a_field_nothing_is_asked_for():
     assert relay_dipole((1e-3, 0.0, 0.0), (0.0, 0.0, 0.0), 0.2, 5e-4) == (0.0, 0.0, 0.0)
 
 
+@pytest.mark.long
 def test_a_sphere_comes_to_the_nominal_attitude(bench, turned):
     """The claim of the source."""
     flight = bench.fly_from_rest(

@@ -89,6 +89,7 @@ def test_the_integral_is_limited_to_what_the_coils_can_hold(asked):
     assert np.linalg.norm(memory) == pytest.approx(limit, rel=1e-6)
 
 
+@pytest.mark.long
 def test_the_attitude_converges(bench, turned):
     flight = bench.fly_from_rest(
         sliding_twisting,

@@ -28,6 +28,7 @@ def test_it_turns_the_body_about_minus_e(b, axis):
     assert torque[axis] == pytest.approx(-5.0 * across @ across, abs=1e-20)
 
 
+@pytest.mark.long
 @given(fields, rates)
 def test_with_damping_it_is_damping_about_the_spin(b, omega):
     """-k_w b x omega - k_w w_ref e x b = -k_w b x (omega - w_ref e)."""
@@ -36,6 +37,7 @@ def test_with_damping_it_is_damping_about_the_spin(b, omega):
     np.testing.assert_allclose(both, about, atol=1e-12)
 
 
+@pytest.mark.long
 class TestFlights:
     @pytest.fixture
     def flown(self, bench, turned):

@@ -26,6 +26,7 @@ component = st.floats(-1.0, 1.0, allow_subnormal=False)
 vectors = st.tuples(component, component, component).filter(lambda v: np.linalg.norm(v) > 0.1)
 
 
+@pytest.mark.long
 @given(vectors, vectors)
 def test_the_torque_turns_the_axis_to_the_vertical(a, r):
     a, r = np.array(a) / np.linalg.norm(a), np.array(r) / np.linalg.norm(r)
@@ -60,6 +61,7 @@ def hidden(inputs):
     return inputs.replace(attitude=inputs.attitude.replace(omega_body_orbit_radps=(nan, nan, nan)))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("axis", [0, 1])
 def test_the_axis_comes_to_the_vertical_and_the_body_turns_as_it_likes(fly, axis):
     """The claim of the source, for a sphere."""
@@ -107,6 +109,7 @@ def test_it_knows_a_push_at_once():
     assert w == (2e-5, 0.0, 0.0)
 
 
+@pytest.mark.long
 def test_without_a_rate_a_sphere_comes_to_the_nominal_attitude(fly):
     """The claim of the source."""
     run = fly(sphere_output, {"sphere_output": ObserverGains()}, 20.0, hidden)

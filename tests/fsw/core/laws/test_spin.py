@@ -46,6 +46,7 @@ def spinning(bench):
 
 
 class TestEquations:
+    @pytest.mark.long
     @given(fields, fields, st.floats(0.1, 10.0))
     def test_nutation_of_the_third_axis(self, b, before, interval_s):
         """m3 = -k db3/dt."""
@@ -57,6 +58,7 @@ class TestEquations:
         """m = k (b2, -b1, 0)."""
         assert spin_up_dipole(b, 2, 7.0) == pytest.approx((7.0 * b[1], -7.0 * b[0], 0.0), abs=1e-15)
 
+    @pytest.mark.long
     @given(fields, st.floats(-0.1, 0.1), st.floats(-0.1, 0.1))
     def test_y_thomson_of_the_second_axis(self, b, spin, wanted):
         """m1 = k (w2 - w2ref) sign b3, k = k_w |b|."""
@@ -65,6 +67,7 @@ class TestEquations:
 
 
 class TestTorques:
+    @pytest.mark.long
     @given(fields, rates, axes)
     def test_nutation_damping_adds_no_energy_and_leaves_the_spin(self, b, omega, axis):
         """In a field at rest db/dt = b x omega."""
@@ -103,6 +106,7 @@ def test_both_laws_of_the_spin_count_the_absolute_rate(bench, turned, axis):
     assert y_thomson(inputs, (), point, settings).m_body_am2 == pytest.approx(held, abs=1e-12)
 
 
+@pytest.mark.long
 class TestFlights:
     def test_nutation_is_damped_and_the_spin_kept(self, spinning):
         run = spinning(nutation, "nutation", (0.1, -0.03, 0.025), orbits=1.5)

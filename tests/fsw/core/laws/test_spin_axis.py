@@ -52,6 +52,7 @@ def spinning(bench):
 
 
 class TestTorques:
+    @pytest.mark.long
     @given(fields, vectors)
     def test_each_coil_of_the_relay_takes_the_error_down_or_is_off(self, b, error):
         m = np.array(relay_dipole(b, error, 2.5))
@@ -74,6 +75,7 @@ class TestTorques:
         assert torque @ np.array(error) >= -1e-18
         assert torque[axis] == 0.0
 
+    @pytest.mark.long
     @given(fields, vectors, vectors, st.floats(-1.0, 1.0), axes)
     def test_the_three_terms_give_their_torque_normal_to_the_field(self, b, rate, error, spin, axis):
         e = np.eye(3)[axis]
@@ -101,6 +103,7 @@ def test_of_any_body_the_three_terms_are_of_its_momentum_about_its_own_axis(benc
     assert m == pytest.approx(np.cross(inputs.b_body_t, wanted), rel=1e-9)
 
 
+@pytest.mark.long
 class TestFlights:
     def test_reorientation_turns_the_momentum_and_keeps_its_size(self, spinning):
         run = spinning(reorientation, (0.05, 0.0, 0.0), orbits=2, most_am2=5.0)

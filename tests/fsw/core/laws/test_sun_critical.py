@@ -49,6 +49,7 @@ def test_the_torque_is_the_inertia_times_it_across_the_field(bench, turned):
     np.testing.assert_allclose(np.cross(m, b), wanted - b * (b @ wanted) / (b @ b), atol=1e-12)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("xi_radps", "comes"), [(0.001, True), (0.006, False)])
 def test_with_coils_alone_a_slow_root_comes_to_the_sun_and_a_fast_one_does_not(
     bench, turned, xi_radps, comes

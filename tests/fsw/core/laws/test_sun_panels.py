@@ -27,6 +27,7 @@ def test_the_equation_by_hand():
     assert panel_torque(currents, 2, 2.0, 5.0) == pytest.approx((5.0, 1.2, 0.0))
 
 
+@pytest.mark.long
 @given(directions, st.integers(0, 2))
 def test_each_term_turns_the_axis_to_the_sun_if_the_panels_do_not_face_away(sun, axis):
     """A body that turns with the torque: d(e . s)/dt has the sign of torque . (e x s)."""
@@ -37,6 +38,7 @@ def test_each_term_turns_the_axis_to_the_sun_if_the_panels_do_not_face_away(sun,
         assert torque @ np.cross(e, sun) >= 0.0
 
 
+@pytest.mark.long
 def test_the_sun_comes_to_the_axis_within_the_corner_of_its_panel(bench, turned):
     """Within 45 deg, where its own panel has the most: nothing turns it about the last axis there."""
     run = bench.fly(

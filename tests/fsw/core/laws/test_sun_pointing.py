@@ -17,6 +17,7 @@ directions = vectors.filter(lambda v: np.linalg.norm(v) > 0.1).map(lambda v: np.
 rates = vectors.map(lambda v: 0.05 * np.array(v))
 
 
+@pytest.mark.long
 @given(fields, directions, rates)
 def test_across_the_sun_the_torque_is_a_drag(b, sun, omega):
     """M = k cos(alpha) (s (omega . b) - omega (s . b)): across s it is -k |b| cos(alpha)^2 omega_across."""
@@ -47,6 +48,7 @@ def run(bench):
     return fly
 
 
+@pytest.mark.long
 class TestFlights:
     @pytest.mark.parametrize("known", [True, False])
     def test_momentum_and_axis_of_most_inertia_come_to_the_sun(self, run, known):

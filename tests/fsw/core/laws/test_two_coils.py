@@ -115,6 +115,7 @@ def test_in_an_inclined_orbit_it_turns_as_the_spring_says(bench, turned):
     assert np.abs(flight.m_body[:, 2]).max() == 0.0
 
 
+@pytest.mark.long
 def test_over_the_poles_it_fails(bench, turned):
     """The field's component along the orbit normal goes as the cosine of the inclination, the dipole as one
     over it; in a polar orbit there is none, and the axes are lost under a torque that is held elsewhere."""

@@ -19,6 +19,7 @@ quaternions = st.tuples(component, component, component, component).filter(
 )
 
 
+@pytest.mark.long
 @given(quaternions, directions)
 def test_both_turns_are_across_the_field_and_make_the_whole(q, n):
     q, n = normalise(q), tuple((np.array(n) / np.linalg.norm(n)).tolist())
@@ -30,6 +31,7 @@ def test_both_turns_are_across_the_field_and_make_the_whole(q, n):
     assert abs(a[0]) == pytest.approx(abs(p[0]), abs=1e-7)
 
 
+@pytest.mark.long
 @given(quaternions, directions)
 def test_of_both_signs_the_smaller_turns_are_taken(q, n):
     """Of q and -q the one with the lesser s^2 = 1 - p0^2."""
@@ -61,6 +63,7 @@ def fly(bench, turned):
     return run
 
 
+@pytest.mark.long
 def test_over_the_equator_it_brings_a_sphere_home_where_pd_cannot(fly):
     """The claim of the source: three axes although the field never turns."""
     plain, own = fly(pd_far), fly(two_step)

@@ -163,6 +163,7 @@ class TestInFlight:
         flight = self.flown(bench, turned, first_deg=40.0, orbits=0.5)
         assert flight.angle_deg[-100:].max() < 0.1
 
+    @pytest.mark.long
     def test_a_torque_about_the_wheel_fills_it(self, bench, turned):
         """By the torque times the time: the attitude held, nothing takes it away."""
         flight = self.flown(bench, turned, torque=(0.0, 0.0, 5e-7), first_deg=0.0)

@@ -55,6 +55,7 @@ def test_the_integral_stops_at_what_the_coils_can_give(bench, turned, law):
     np.testing.assert_allclose(np.array(memory) / memory[2], (3.0, 2.0, 1.0), rtol=1e-3)
 
 
+@pytest.mark.long
 def test_it_takes_the_mean_of_a_constant_torque_away(lean):
     """Without it T2 / (h w0) of roll and T1 / (h w0) of yaw are left, and the pitch hangs off."""
     flight = {"angle_deg": 0.01, "orbits": 6.0, "step_s": 12.0, "torque": TORQUE_NM}

@@ -65,6 +65,7 @@ def polar(lean):
 
 
 class TestFlights:
+    @pytest.mark.long
     def test_on_the_surface_the_lean_falls_as_the_field_turns(self, polar):
         """exp(-4 pi t) an orbit at most is left, t = lead / (1 + rate_s w0)."""
         left = np.exp(-4.0 * np.pi * 0.1 / (1.0 + 100.0 * 1.038e-3))

@@ -151,6 +151,7 @@ def test_a_flight_outside_the_years_of_the_field_is_refused(itamsat):
 # The reference
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("node_s", "field_error_t"), [(10, 0.005e-9), (20, 0.03e-9), (30, 0.1e-9)])
 def test_the_cubic_holds_the_field_to_a_tenth_of_a_nanotesla(
     make_model, itamsat, itamsat_epoch_unix_s, node_s, field_error_t

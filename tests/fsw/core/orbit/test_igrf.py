@@ -95,6 +95,7 @@ def test_degree_ten_points_within_six_hundredths_of_a_degree_of_degree_thirteen(
     assert 0.01 < worst_deg <= 0.06
 
 
+@pytest.mark.long
 @given(
     direction=st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda d: norm(d) > 0.1),
     radius_m=st.floats(6.4e6, 8e6),

@@ -110,6 +110,7 @@ def test_the_epoch_is_rounded_up_to_a_whole_second(epoch_of, day, moment):
     assert epoch_of(day) == int(datetime(*moment, tzinfo=UTC).timestamp())
 
 
+@pytest.mark.long
 def test_the_epoch_is_that_of_the_columns_to_the_second(epoch_of):
     """Against decimal arithmetic on the text, at any time of any day of a hundred years."""
     random = Random(1)
@@ -122,6 +123,7 @@ def test_the_epoch_is_that_of_the_columns_to_the_second(epoch_of):
         assert epoch_of(f"{year:02d}{text}") == expected, text
 
 
+@pytest.mark.long
 def test_every_element_is_the_number_of_its_column(tle, checksummed):
     random = Random(2)
     line1, line2 = tle["ITAMSAT"]

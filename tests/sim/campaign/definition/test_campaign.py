@@ -24,6 +24,7 @@ def test_a_dispersion_does_not_depend_on_the_others(campaign_file, small, tmp_pa
     assert {key: ours.inputs[key] for key in theirs.inputs} == theirs.inputs
 
 
+@pytest.mark.long
 def test_dispersions_are_independent_of_each_other(tmp_path):
     entry = '[[disperse]]\nkey = "{}"\ndistribution = "uniform"\nlow = 0.0\nhigh = 1.0\n'
     keys = ("initial.angle_deg", "sensors.sun.noise_deg")

@@ -22,6 +22,7 @@ def is_of(values, distribution):
     return stats.kstest(values, distribution.cdf).pvalue > 1e-3
 
 
+@pytest.mark.long
 def test_normal_has_mean_and_sigma_of_each_component():
     values = drawn(
         {"distribution": "normal", "key": "a", "mean": [1.0, -2.0, 0.0], "sigma": [0.5, 3.0, 0.0]}, ((3,),)
@@ -32,6 +33,7 @@ def test_normal_has_mean_and_sigma_of_each_component():
     assert abs(np.corrcoef(values[:, 0], values[:, 1])[0, 1]) < 0.05
 
 
+@pytest.mark.long
 def test_normal_between_limits_is_truncated_not_piled_up():
     values = drawn({"distribution": "normal", "key": "a", "mean": 1.0, "sigma": 2.0, "low": 0.0, "high": 4.0})
     assert is_of(values[:, 0], stats.truncnorm(-0.5, 1.5, loc=1.0, scale=2.0))

@@ -12,6 +12,7 @@ from sim.scenario.schema import flight_table
 FILES = sorted((Path(__file__).resolve().parents[4] / "examples" / "campaigns").glob("*.toml"))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_its_runs_are_allowed_and_the_onboard_table_is_the_same_for_all(path):
     campaign = load_campaign(str(path), {}, {})
@@ -24,6 +25,7 @@ def test_the_microsat_has_twelve_dispersions():
     assert len(load_campaign(str(FILES[0]), {}, {}).disperse) == 12
 
 
+@pytest.mark.long
 def test_the_population_keeps_its_tolerances():
     campaign = load_campaign(str(FILES[1]), {}, {})
     bounds = POPULATIONS["50kg"].tolerances

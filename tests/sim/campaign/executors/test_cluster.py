@@ -78,6 +78,7 @@ def test_rows_are_those_of_one_process_until_the_scheduler_is_lost(small, cluste
     assert caught.value.exit_code == 1
 
 
+@pytest.mark.long
 def test_no_scheduler_is_one_sentence(small, monkeypatch):
     monkeypatch.setattr("sim.campaign.executors.cluster.CONNECT_S", 0.5)
     rows = Cluster("tcp://127.0.0.1:9").rows(RunTask(small, Keep.NONE, Path()), [0])

@@ -13,6 +13,7 @@ from sim.statistics.indices import Interpretation
 from sim.statistics.proportion import clopper_pearson
 
 
+@pytest.mark.long
 def test_success_counts_failed_runs_as_none(campaign_of_40, analysis):
     assert analysis.done == 38
     assert list(analysis.failures) == [7, 21]

@@ -65,6 +65,7 @@ def narrow(analysis):
     return replace(analysis, inputs=inputs, sensitivities=sensitivities)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("low", "high"), [(0.25, 8.0), (2.0, 3.0), (1e-4, 40.0)])
 def test_indices(analysis, low, high):
     profiles = {
@@ -74,6 +75,7 @@ def test_indices(analysis, low, high):
     assert_readable(lambda: pictures.indices(replace(analysis, profiles=profiles), 0.95, IndexLimits()))
 
 
+@pytest.mark.long
 def test_inputs_of_long_names_and_small_numbers(narrow):
     assert_readable(lambda: pictures.scatter(narrow))
 
@@ -92,6 +94,7 @@ def test_runs_of_one_length_are_shown_as_they_are():
     assert np.array_equal(errors, given)
 
 
+@pytest.mark.long
 def test_the_worst_runs_are_drawn_where_lengths_differ(analysis):
     errors = {run: values[: 5 + run % 3] for run, values in analysis.errors.items()}
     orbits = np.array([0.01 * len(values) for values in errors.values()])

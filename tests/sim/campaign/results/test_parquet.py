@@ -12,6 +12,7 @@ from sim.campaign.results.store import open_results
 from sim.errors import HarnessError
 
 
+@pytest.mark.long
 def test_rows_columns_and_versions_are_those_of_the_results(small, tmp_path):
     with open_results(tmp_path, small) as results:
         for run, value in ((2, 0.1), (0, math.inf), (1, None)):

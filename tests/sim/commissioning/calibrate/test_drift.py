@@ -7,6 +7,8 @@ from recorded_samples import made_up
 from sim.commissioning.calibrate.magnetometer import fit_magnetometer
 from sim.commissioning.calibrate.recorded import bias_drift
 
+pytestmark = pytest.mark.long
+
 
 def drift(folder, drift_nt, extra=None):
     truth = made_up(1000, seed=4, drift_nt=drift_nt)

@@ -23,6 +23,7 @@ def deviations(fit, matrix=MATRIX):
     return np.array(off) / fit.sigma
 
 
+@pytest.mark.long
 def test_the_true_numbers_are_within_their_deviations():
     off = np.array([deviations(fit_magnetometer(*samples(seed=seed))) for seed in range(12)])
     assert np.mean(np.abs(off) < 3.0) > 0.95
@@ -71,6 +72,7 @@ def test_a_matrix_that_turns_comes_out_without_its_turn():
     assert np.linalg.eigvalsh(fit.matrix).min() > 0.0
 
 
+@pytest.mark.long
 def test_a_bias_along_the_spin_axis_cannot_be_seen_in_a_minute(tmp_path):
     """The field along the axis stands still, and so may the bias."""
     short, long = (made_up(seconds, noise_nt=300.0, seed=4).along(tmp_path) for seconds in (60, 900))
@@ -82,6 +84,7 @@ def test_a_bias_along_the_spin_axis_cannot_be_seen_in_a_minute(tmp_path):
     assert fits[1].weakest_nt < 0.3 * fits[0].weakest_nt
 
 
+@pytest.mark.long
 def test_what_is_told_of_a_spin_is_true(tmp_path):
     """Where samples hardly change along an axis, their noise must not be taken for a smaller scale there."""
     off = []

@@ -53,6 +53,7 @@ def test_so_are_the_cells_by_the_motion_of_the_filter(calibrated):
         assert cell.full_scale == pytest.approx(scale + 30.0, rel=0.1)
 
 
+@pytest.mark.long
 def test_and_the_axis_about_which_it_turns(calibrated):
     assert np.degrees(np.arccos(abs(calibrated.calibration.spin_axis @ AXES[:, 1]))) < 1.0
     np.testing.assert_allclose(calibrated.body.ratios, RATIOS, atol=0.01)
@@ -71,6 +72,7 @@ def test_the_file_says_what_was_found(calibrated, tmp_path):
     assert 0.0 < bounds["magnetometer_scale_percent"] <= 10.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("unit", [1.0, 1e-4, 1e-6])
 def test_full_scales_keep_their_digits_in_any_unit(calibrated, tmp_path, unit):
     def in_unit(cell):
@@ -91,6 +93,7 @@ def test_full_scales_keep_their_digits_in_any_unit(calibrated, tmp_path, unit):
         assert f">{shown}<" in calibration_page(found, "")
 
 
+@pytest.mark.long
 def test_the_file_can_be_read_whatever_the_name_of_the_pass(tmp_path):
     around = made_up(40).along(tmp_path)
     named = replace(around, recorded=replace(around.recorded, name="a\nb\x01"))
@@ -100,6 +103,7 @@ def test_the_file_can_be_read_whatever_the_name_of_the_pass(tmp_path):
     np.testing.assert_allclose(read_calibration(path).offset_nt, found.magnetometer.offset_nt, atol=0.1)
 
 
+@pytest.mark.long
 def test_the_page_shows_residuals_and_verdicts(calibrated):
     page = calibration_page(calibrated, "offset_nt = <1>")
     assert "|B| measured less modelled" in page
@@ -107,6 +111,7 @@ def test_the_page_shows_residuals_and_verdicts(calibrated):
     assert "offset_nt = &lt;1&gt;" in page
 
 
+@pytest.mark.long
 def test_a_ratio_that_the_wobble_shows_is_corrected(tmp_path):
     truth = made_up(400)
     around = truth.along(tmp_path)
@@ -123,6 +128,7 @@ class TestOfTheCommand:
     def run(self, *arguments):
         return CliRunner().invoke(main, ["calibrate", *map(str, arguments)])
 
+    @pytest.mark.long
     def test_a_short_pass_says_what_it_cannot_tell(self, tmp_path):
         out = tmp_path / "c.toml"
         result = self.run(
@@ -154,6 +160,7 @@ class TestOfTheCommand:
         assert len(result.stderr.splitlines()) == 1
         assert not out.exists()
 
+    @pytest.mark.long
     def test_one_row_of_zeros_changes_nothing_and_is_told(self, tmp_path):
         lines = (DATA / "s3_20240426T041442Z.csv").read_text().splitlines()
         spoiled, without = tmp_path / "spoiled.csv", tmp_path / "without.csv"

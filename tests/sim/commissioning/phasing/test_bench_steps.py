@@ -5,6 +5,8 @@ import pytest
 
 from sim.commissioning.phasing.bench_log import Recording, bench_responses
 
+pytestmark = pytest.mark.long
+
 
 def noisy(seed, on_s, off_s):
     """A recording of six pulses along x of 3000 nT, each on and off so long, in noise."""

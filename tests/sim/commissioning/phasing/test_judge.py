@@ -18,6 +18,7 @@ def found(flown):
     return phasing(samples, table, Known())
 
 
+@pytest.mark.long
 def test_both_wirings_are_told(found, wired):
     assert found.wiring == wired
 

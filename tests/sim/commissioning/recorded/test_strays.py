@@ -54,6 +54,7 @@ def same(one, other):
     return all(np.array_equal(x, y, equal_nan=True) for x, y in values)
 
 
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(
     st.sampled_from(sorted(PASSES)),
@@ -98,6 +99,7 @@ def sphere(count=300, seed=2):
     return field @ np.linalg.inv(MATRIX).T + OFFSET_NT, strength
 
 
+@pytest.mark.long
 @given(st.integers(0, 299), st.integers(0, 2), st.floats(6e3, 1e9) | st.floats(-1e9, -6e3))
 @settings(max_examples=40, deadline=None)
 def test_a_spike_along_the_field_is_found_in_any_direction(row, seed, size_nt):

@@ -43,6 +43,7 @@ def test_the_document_has_the_keys_that_are_documented(short):
     assert found["sun_azimuth_deg"] == {"median": None, "rms": None, "rows": 0}
 
 
+@pytest.mark.long
 def test_the_rate_is_told_about_the_axis_of_the_spin_whichever_that_is(short, tmp_path):
     head, *rows = short.read_text().splitlines()
     after = dict(zip("xyz", "yzx", strict=True))
@@ -62,6 +63,7 @@ def test_the_rate_is_told_about_the_axis_of_the_spin_whichever_that_is(short, tm
     assert found["motions_degps"] == pytest.approx([65.5] * len(found["motions_degps"]), abs=2.0)
 
 
+@pytest.mark.long
 def test_the_words_say_what_was_not_used_and_the_page_is_written(short, tmp_path):
     page = tmp_path / "page.html"
     result = run(short, "--tle", TLE, "--calibration", CALIBRATION, "--page", page)
@@ -74,6 +76,7 @@ def test_the_words_say_what_was_not_used_and_the_page_is_written(short, tmp_path
     assert "short" in text
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("text", "said"),
     [

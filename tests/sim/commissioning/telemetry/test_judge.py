@@ -71,6 +71,7 @@ def turned(row):
     return ",".join([index, time, *map(str, wrong), *rest])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("places", [(0,), (1,), (100,), (199,), (60, 61, 62, 63), (5, 50, 120, 180, 198)])
 def test_samples_that_the_filter_rightly_refuses_count_for_nothing(tmp_path, places):
     name = "20240426T041442Z"
@@ -83,6 +84,7 @@ def test_samples_that_the_filter_rightly_refuses_count_for_nothing(tmp_path, pla
     assert found == right
 
 
+@pytest.mark.long
 def test_where_the_filter_refuses_more_than_a_tenth_all_of_it_is_its_error(tmp_path):
     name = "20240426T041442Z"
     rows = (DATA / f"s3_{name}.csv").read_text().splitlines()[1:]
@@ -184,6 +186,7 @@ def test_too_short_a_pass_has_no_coasting_and_is_not_believed(tmp_path):
     assert figures(found)["coast_deg_rms"]["60"] is None
 
 
+@pytest.mark.long
 def test_a_rate_is_right_without_a_calibration_of_the_body(sunlit):
     """A sphere spins about what axis it has: that across which the field turns."""
     recorded = sunlit.around.recorded

@@ -23,6 +23,7 @@ def off_deg(spin, truth):
     return np.degrees(Rotation.from_matrix(spin.dcm_body_from_eci @ truth.dcm[0].T).magnitude())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("rate_degps", [31.0, -47.0, 75.0, 170.0])
 def test_the_true_spin_is_among_those_that_fit(rate_degps):
     truth = made_up(200, rate_degps)
@@ -32,6 +33,7 @@ def test_the_true_spin_is_among_those_that_fit(rate_degps):
     np.testing.assert_allclose(best.omega_body_radps, np.radians(best.rate_degps) * AXIS)
 
 
+@pytest.mark.long
 def test_a_field_that_turns_far_shows_the_true_spin_first():
     truth = made_up(900, 31.0)
     assert off_deg(found(truth)[0], truth) < 8.0
@@ -43,6 +45,7 @@ def test_one_that_turns_little_fits_two_spins_alike():
     assert abs(first.rate_degps - second.rate_degps) > 0.05
 
 
+@pytest.mark.long
 def test_a_bias_across_the_axis_is_found_and_one_along_it_cannot_be():
     across = np.cross(AXIS, (0.0, 0.0, 1.0))
     across /= np.linalg.norm(across)
@@ -52,6 +55,7 @@ def test_a_bias_across_the_axis_is_found_and_one_along_it_cannot_be():
     assert best.bias_nt @ AXIS == pytest.approx(0.0, abs=1e-6)
 
 
+@pytest.mark.long
 def test_the_axis_is_that_across_which_samples_differ():
     truth = made_up(200, 31.0)
     axis = spin_axis(calibrated(truth))

@@ -35,6 +35,7 @@ def test_on_the_direct_dipoles_field_it_comes_near_the_periodic_one_from_below()
     assert three_orbits > 0.93 * periodic
 
 
+@pytest.mark.long
 def test_it_is_in_proportion_to_the_torque(two_orbits):
     config = config_of(load("microsat", UNEQUAL))
     one, three = (least_deg(config, tuple(n * part for part in TORQUE), two_orbits) for n in (10.0, 30.0))

@@ -26,6 +26,7 @@ def config_of(given):
     return flight_config(flight_table(given))
 
 
+@pytest.mark.long
 class TestBody:
     TICKS, DIPOLE = 1500, (2e-4, -1e-4, 3e-4)
 
@@ -79,6 +80,7 @@ class TestBody:
 
 
 class TestFlight:
+    @pytest.mark.long
     @pytest.mark.parametrize("law", ["mpc", "pulse_mpc"])
     def test_no_pulse_breaks_the_limits(self, law, two_orbits):
         flight = fly(scenario(law, coils={"backoff_s": 41.0, "pulse_s": 2.0}), START, two_orbits[:6000])
@@ -88,6 +90,7 @@ class TestFlight:
         assert {fired.coil for fired in flight.fired} == {0, 1, 2}
         assert all(1 <= abs(fired.level) <= 3 for fired in flight.fired)
 
+    @pytest.mark.long
     def test_coils_with_a_back_off_of_their_own_never_overlap(self, two_orbits):
         flight = fly(scenario("mpc", coils={"backoff": "per_coil"}), START, two_orbits[:4000])
         ticks = [fired.tick for fired in flight.fired]

@@ -3,6 +3,8 @@
 from math import inf
 from xml.etree import ElementTree
 
+import pytest
+
 from sim.design.limits.page import Agreement, page
 from sim.design.limits.picture import draw
 from sim.design.limits.sweep import BOUND, QUANTITIES, Line, all_orders, orders_of
@@ -28,6 +30,7 @@ def test_no_line_of_prose_is_longer_than_it_should_be():
     assert max(map(len, prose)) <= 135
 
 
+@pytest.mark.long
 def test_the_picture_names_its_axes_with_units(tmp_path):
     path = tmp_path / "picture.svg"
     draw(FLOWN | dict.fromkeys(LOST, inf), path)

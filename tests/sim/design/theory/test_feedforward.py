@@ -50,6 +50,7 @@ def test_the_answer_is_a_periodic_motion_of_the_linearised_body():
     assert rms(theta) == pytest.approx(found.rms_rad, rel=1e-3)
 
 
+@pytest.mark.long
 def test_cheap_dipoles_bring_the_regulator_to_it_and_none_under_it():
     """Another way to the same bound: the periodic regulator that knows the torque."""
     body, torque = BODIES[2], (1e-7, 1e-7, 1e-7)

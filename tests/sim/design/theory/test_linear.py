@@ -193,6 +193,7 @@ def flown_degree(plant, deviation=1e-5, steps=600):
     return float(degree_of_stability(np.array(columns).T))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("k_w", "k_a"), [(3.0e6, 800.0), (4.0e6, 3200.0)], ids=["stable", "unstable"])
 def test_the_exponents_are_those_of_the_nonlinear_plant(k_w, k_a):
     body = Body("50 kg", diagonal((1.02, 1.85, 1.95)), 800.0, 98.6)

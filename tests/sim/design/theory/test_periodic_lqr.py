@@ -32,6 +32,7 @@ def degree(body, law):
     return float(degree_of_stability(monodromy(periodic_lqr.closed_loop(body, law))))
 
 
+@pytest.mark.long
 def test_the_gain_solves_the_riccati_equation(skewed):
     a, q = free_motion(skewed), np.diag([0.7] * 3 + [1.3] * 3)
     effort = 0.5 / (np.trace(skewed.inertia_kgm2) / 3.0) ** 2
@@ -124,6 +125,7 @@ def test_it_stabilises_what_the_gravity_gradient_drives_away():
     assert all(degree(body, design(body)) < -0.4 for body in UNSTABLE_BODIES)
 
 
+@pytest.mark.long
 def test_the_best_effort_is_the_one_of_the_least_degree():
     weights, least = best_effort(MICROSAT)
     assert least == pytest.approx(degree(MICROSAT, design(MICROSAT, weights)), abs=1e-12)

@@ -55,6 +55,7 @@ def nearest(due, field, inertia, in_turn, k):
     return given @ dipole
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("in_turn", [False, True], ids=["all coils", "one coil in turn"])
 def test_an_orbit_of_pulses_flown_one_by_one_is_the_monodromy_matrix(skewed, in_turn):
     pulsing = Pulsing(pulse_s=60.0, backoff_s=590.0, leak_s=900.0, in_turn=in_turn)

@@ -43,6 +43,7 @@ def test_a_wrong_spread_changes_the_two_moments_across_it():
     assert np.diag(wrong) == pytest.approx([a, b + 0.2 * along_first, c + 0.2 * along_first], rel=1e-12)
 
 
+@pytest.mark.long
 def test_every_wrong_spread_is_a_body():
     errors = np.random.default_rng(5).uniform(-0.9, 0.9, size=(200, 3))
     assert np.isfinite(degrees(BOOM, GAINS, wrong_spreads(BOOM, errors))).all()
@@ -68,6 +69,7 @@ def maps():
     return inertia_maps(MICROSAT, GAINS)
 
 
+@pytest.mark.long
 def test_maps_show_the_gains_on_the_body_they_speak_of(maps):
     i, j = 4, 15
     for place, (one, other) in enumerate(PAIRS):
@@ -87,6 +89,7 @@ def test_the_maps_reach_to_half_and_half_again_and_have_the_own_body_in_the_midd
     assert maps.degree[:, middle, middle] == pytest.approx([degree(MICROSAT, GAINS)] * 3, abs=1e-9)
 
 
+@pytest.mark.long
 def test_margins_lie_where_the_degree_rises_to_its_level_on_both_sides_of_one():
     """Of a landscape of straight slopes over the logarithms, whose margins reach to the ends of the scan."""
 
@@ -100,6 +103,7 @@ def test_margins_lie_where_the_degree_rises_to_its_level_on_both_sides_of_one():
     assert found.half == pytest.approx((0.3**0.5, 5.0 * 0.3**0.5))
 
 
+@pytest.mark.long
 def test_a_body_that_only_swings_has_no_margin():
     """Without gains the gravity torque alone holds it, and nothing brings it to rest."""
     found = margins(MICROSAT, Gains(0.0, 0.0), continuous(MICROSAT, ROUGH_STEPS))
@@ -112,6 +116,7 @@ def microsat_margins():
     return margins(MICROSAT, GAINS, continuous(MICROSAT, ROUGH_STEPS))
 
 
+@pytest.mark.long
 def test_gains_stay_stable_up_to_their_margins_and_no_further(microsat_margins):
     (_, half), (_, high), (_, both) = microsat_margins.half, microsat_margins.k_a, microsat_margins.both
     assert degree(MICROSAT, Gains(GAINS.k_w, 0.98 * high * GAINS.k_a)) < 0.0
@@ -137,6 +142,7 @@ def test_moments_and_axes_are_safe_below_their_margins(microsat_margins):
     assert max(degrees(MICROSAT, GAINS, tilted(MICROSAT, axis, angles)).max() for axis in range(3)) < 0.0
 
 
+@pytest.mark.long
 def test_unstable_gains_have_no_margin():
     body = Body("turned", diagonal((1.95, 1.85, 1.02)), 800.0, 98.6)
     found = margins(body, Gains(6.3e6, 8000.0), continuous(body, ROUGH_STEPS))

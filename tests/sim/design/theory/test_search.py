@@ -60,6 +60,7 @@ def test_the_best_gains_are_better_than_all_beside_them(microsat):
     assert beside.min() >= best.degree - 1e-6
 
 
+@pytest.mark.long
 def test_the_steady_gains_are_surer_than_the_best(microsat):
     best, steady = microsat.best, microsat.steady
     assert steady.worst_degree < best.worst_degree - 0.05
@@ -74,6 +75,7 @@ def test_it_says_when_no_gains_stabilise():
     assert found.best.worst_degree > 0.0
 
 
+@pytest.mark.long
 def test_it_goes_down_to_the_kink_of_the_lower_basin():
     best, natural = search(MICROSAT, kinked, kinked).best, natural_gains(MICROSAT)
     assert best.degree == pytest.approx(-0.6, abs=0.02)
@@ -87,6 +89,7 @@ def test_the_wide_basin_is_steadier_than_the_kink():
     assert found.steady.degree == pytest.approx(-0.3, abs=0.02)
 
 
+@pytest.mark.long
 def test_it_finds_the_same_again_and_tells_how_far_it_is():
     progress = []
     once = search(MICROSAT, kinked, kinked, progress.append)
@@ -140,6 +143,7 @@ def test_sure_is_the_worst_of_gains_that_are_off():
     assert one.worst_degree > one.degree
 
 
+@pytest.mark.long
 def test_a_map_has_its_gains_where_it_says():
     degree = continuous(MICROSAT, ROUGH_STEPS)
     found = gain_map(MICROSAT, degree)
@@ -147,6 +151,7 @@ def test_a_map_has_its_gains_where_it_says():
     assert found.degree[7, 23] == pytest.approx(float(degree(Gains(found.k_w[23], found.k_a[7]))), abs=1e-12)
 
 
+@pytest.mark.long
 def test_the_best_integral_gain_is_best_and_too_much_of_it_diverges():
     degree = continuous(MICROSAT, ROUGH_STEPS)
     best = best_integral(MICROSAT, GAINS, degree)

@@ -43,6 +43,7 @@ def test_a_step_is_the_plant_s(flight):
     np.testing.assert_allclose(ours, (*plant.q_body_from_eci, *plant.omega_body_radps), rtol=0.0, atol=1e-14)
 
 
+@pytest.mark.long
 def test_the_error_of_a_step_falls_with_its_fifth_power():
     def error(h_s):
         finer = STARTS

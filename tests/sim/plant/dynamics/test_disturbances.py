@@ -87,6 +87,7 @@ def test_drag_is_that_of_the_orbit_and_of_air_that_turns_with_the_earth(fly, mak
         assert np.linalg.norm(found) > 1e-8
 
 
+@pytest.mark.long
 def test_light_presses_by_its_flux_and_distance_while_there_is_light(fly, make_config):
     plant, rows = fly(5600)
     epoch, lit_seen = make_config().epoch_unix_s, set()
@@ -227,6 +228,7 @@ class TestResidualDipole:
             seen.add(row.lit)
         assert {0.0, 1.0} <= seen
 
+    @pytest.mark.long
     def test_in_the_dark_the_body_turns_as_by_the_sum_and_in_light_as_without(self, make_plant, fly):
         """To the last bit, for as long as neither begins nor ends."""
         summed = DisturbanceConfig(residual_dipole_body_am2=(0.01 - 0.004, 0.02 + 0.006, -0.03 + 0.05))

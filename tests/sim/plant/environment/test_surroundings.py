@@ -16,6 +16,7 @@ def instants(config, substeps, ticks):
     return np.array(times), [stage for tick in ticks for stage in environment.stages(tick)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("model", ["igrf14", "direct_dipole"])
 def test_interpolation_is_as_good_as_the_models(make_config, model):
     config = make_config(field=FieldConfig(model))
@@ -30,6 +31,7 @@ def test_interpolation_is_as_good_as_the_models(make_config, model):
     )
 
 
+@pytest.mark.long
 def test_samples_are_the_models_in_the_orbital_frame(make_config):
     config = make_config()
     ticks = range(3, 6100, 7)
@@ -80,6 +82,7 @@ def test_stages_of_successive_ticks_meet(make_config, tick_hz, substeps):
         ends[tick + 1] = stages[-1]
 
 
+@pytest.mark.long
 def test_tick_rate_and_substeps_do_not_move_the_surroundings(make_config):
     coarse = Environment(make_config(), 1)
     fine = Environment(make_config(tick_hz=10), 3)

@@ -33,6 +33,7 @@ def test_every_chart_is_there_with_its_labels(page, chart):
     assert len(page.paths[chart]) > 5
 
 
+@pytest.mark.long
 def test_time_runs_in_orbits_under_every_chart_of_the_whole_flight(page):
     for chart in set(CHARTS) - {"chart-zoom", "chart-gaps_and_levels"}:
         assert "orbits of 100.7 min" in page.texts[chart]
@@ -72,6 +73,7 @@ def test_eclipses_are_shaded_in_every_chart_of_the_whole_flight(page, chart):
         assert shown == [pytest.approx((1000 / 7000, 3000 / 7000), abs=1e-4)]
 
 
+@pytest.mark.long
 def test_a_flight_in_sunlight_has_no_bands(tmp_path, made_run):
     page = made_run(ticks=300, pulses=()).write(tmp_path, lit=np.ones(300))
     assert 'class="eclipse"' not in page.source
@@ -91,6 +93,7 @@ def test_every_pulse_is_a_bar_up_or_down_by_its_polarity(page, made_run):
         assert heights / np.abs(levels) == pytest.approx(heights[0] / abs(levels[0]), rel=2e-2)
 
 
+@pytest.mark.long
 def test_the_zoom_shows_pulses_to_scale_and_the_backoff_after_each(tmp_path, made_run):
     pulses = (
         DrivenPulse(0, 1, Fraction(100), Fraction(103)),
@@ -109,6 +112,7 @@ def test_the_zoom_shows_pulses_to_scale_and_the_backoff_after_each(tmp_path, mad
     assert {"3 s", "1.5 s"} <= set(page.texts["chart-zoom"])
 
 
+@pytest.mark.long
 def test_a_backoff_of_each_coil_shades_the_lane_of_that_coil_alone(tmp_path, made_run):
     pulses = (
         DrivenPulse(0, 1, Fraction(100), Fraction(103)),

@@ -60,6 +60,7 @@ def test_duty_is_that_of_the_orbit_before(run, cuts):
     assert (duty[:, 2] == 0.0).all()
 
 
+@pytest.mark.long
 def test_continuous_coils_and_the_wheel_are_drawn_against_their_limits(run):
     found = coils_section(run)
     assert found.title == "Coils and wheel against their limits"
@@ -71,12 +72,14 @@ def test_continuous_coils_and_the_wheel_are_drawn_against_their_limits(run):
     assert wheel["label"] == "momentum [mN m s]"
 
 
+@pytest.mark.long
 def test_where_no_coil_was_driven_the_wheel_still_is_drawn(run):
     found = coils_section(run, driven=(0, 0, 0), any_driven=0)
     assert found.note == "No coil was driven."
     assert [chart.name for chart in found.charts] == ["wheel"]
 
 
+@pytest.mark.long
 def test_a_pulsed_flight_without_a_wheel_is_drawn_by_its_pulses(made_run):
     run = made_run()
     drawn = sections(run.scenario, run.lines(run.truth(), run.estimates()), run.audit())

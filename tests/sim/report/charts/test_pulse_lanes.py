@@ -2,6 +2,8 @@
 
 from fractions import Fraction
 
+import pytest
+
 from sim.audit.findings import DrivenPulse
 from sim.report.charts.pulse_lanes import MOST_PULSES, pulse_lanes, shown
 
@@ -24,6 +26,7 @@ def test_every_pulse_has_its_span_and_its_level(made_run):
     assert (data["backoff_s"], data["shared"], data["most"]) == (100.0, True, 3)
 
 
+@pytest.mark.long
 def test_of_very_many_the_strongest_of_each_part_stays():
     many = pulses(2 * MOST_PULSES)
     kept = shown(many, 20.0 * MOST_PULSES)

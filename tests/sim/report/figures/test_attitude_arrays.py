@@ -18,6 +18,7 @@ def quaternions(seed, count=20):
     return Rotation.random(count, np.random.default_rng(seed)).as_quat(scalar_first=True)
 
 
+@pytest.mark.long
 @given(seeds)
 def test_relative_is_the_turn_from_the_first_to_the_second(seed):
     p, q = quaternions(seed), quaternions(seed + 1)
@@ -46,6 +47,7 @@ def test_angle_is_exact_from_nothing_to_a_half_turn(angle):
     assert angle_rad(-turn)[0] == pytest.approx(angle, rel=1e-12, abs=1e-16)
 
 
+@pytest.mark.long
 @given(seeds)
 def test_axis_1_against_the_vertical_and_the_normal_in_the_body(seed):
     q = quaternions(seed)

@@ -200,6 +200,7 @@ class TestRun:
                 0.0 < sigma <= bound for sigma, bound in zip(figures["sigma"], figures["bound"], strict=True)
             )
 
+    @pytest.mark.long
     def test_the_page_shows_them(self, concluded):
         html = (concluded / "report.html").read_text(encoding="utf-8")
         section = html[html.index('<section id="parameters">') :]

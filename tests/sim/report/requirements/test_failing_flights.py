@@ -95,6 +95,7 @@ def test_a_flight_that_fails_is_told_why(name):
     assert set(causes) <= {flight.cause} | flight.also
 
 
+@pytest.mark.long
 def test_a_flight_that_does_what_is_expected_is_told_no_cause():
     flight = Flight((PERFECT, "initial.angle_deg=0.5", "initial.rate_degps=[0,0,0]"), 0.3, "")
     one = outcome(flight)

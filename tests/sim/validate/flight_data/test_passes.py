@@ -33,6 +33,7 @@ def test_a_wrong_motion_is_counted_where_it_is_believed(monkeypatch):
     assert all(one.startswith(("65.8", "65.9", "66.0")) for one in wrong)
 
 
+@pytest.mark.long
 def test_figures_of_a_pass():
     found = judged(DATA / "s3_20240314T153551Z.csv", KNOWN)
     assert found.name == "s3_20240314T153551Z"

@@ -44,6 +44,7 @@ def studies():
     return {study.id.partition(".")[2]: study for study in population.studies()}
 
 
+@pytest.mark.long
 def test_as_many_satellites_as_are_claimed(studies):
     count = {name: len(study.tasks) for name, study in studies.items()}
     assert [count[name] for name in ("50kg", "3u", "6u", "tumbling", "twice")] == [100, 30, 30, 30, 30]

@@ -99,6 +99,7 @@ def test_a_quote_without_its_end_is_reported(folder):
         failures(folder, "eclipse.csv")
 
 
+@pytest.mark.long
 def test_words_count_too(folder):
     for name in ("eclipse.csv", "floquet.csv"):
         folder.copy(name)

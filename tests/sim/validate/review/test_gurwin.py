@@ -9,6 +9,7 @@ from sim.validate.review.fifty_kg import last_orbit_deg
 from sim.validate.review.law_flight import fly
 
 
+@pytest.mark.long
 def test_without_its_wheel_the_satellite_does_not_recover():
     bare = replace(gurwin.FAILED, wheel_body_nms=(0.0, 0.0, 0.0), orbits=3.0)
     assert last_orbit_deg(bare) > 10.0

@@ -61,7 +61,7 @@ def test_a_further_torque_acts():
 
 def test_a_coil_gives_its_most_and_a_law_without_what_it_needs_nothing():
     assert np.abs(with_(k_w=1e8, most_am2=0.5).m_body_am2).max() == 0.5
-    assert not with_(k_w=1e8, known=False).m_body_am2.any()
+    assert not with_(k_w=1e8, attitude_known=False).m_body_am2.any()
     assert not with_(law="sun_panels", k_w=1e8).m_body_am2.any()
     assert with_(law="sun_panels", k_w=1e6, sun_eci=(0.6, 0.0, 0.8)).m_body_am2.any()
 

@@ -14,6 +14,7 @@ def claims_of(study, found):
     return [outcome.verdict.value for outcome in study.conclude(found)]
 
 
+@pytest.mark.long
 def test_a_regulator_that_learns_nothing_misses_its_claim():
     learned = regulators.learned_deg(regulators.light, learning=0.0)
     assert claims_of(regulators.disturbed(), (learned,) * 4) == ["FAIL", "FAIL", "FAIL"]

@@ -190,6 +190,7 @@ def test_in_the_shadow_the_field_alone_is_linear():
     assert (known.by_sun, known.by_earth, len(known.values)) == ((), (), 3)
 
 
+@pytest.mark.long
 class TestInformation:
     """A satellite at rest in a steady field: cells alone show the rotation about it, and all are wrong."""
 

@@ -126,6 +126,7 @@ class TestExcess:
         assert later.covariance[place, place] == pytest.approx(EXCESS_SIGMA**2, rel=1e-2)
         assert abs(later.covariance[place, 0:3]).max() < 0.1 * crossed
 
+    @pytest.mark.long
     def test_a_lasting_excess_is_no_white_noise(self):
         """A thousand samples of cells that are all 0.1 too bright must not make the filter sure of them."""
         estimate = mekf.start(Q_BODY_FROM_ECI, (0.0,) * 3, CONFIG)

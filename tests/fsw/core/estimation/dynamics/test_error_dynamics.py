@@ -61,11 +61,13 @@ def by_differences(satellite, estimate, flow, driven_am2=DRIVEN_AM2, step=1e-4):
 
 
 class TestTransition:
+    @pytest.mark.long
     def test_is_the_derivative_of_the_flow(self, satellite, nonlinear_flow):
         estimate = strong(satellite)
         expected = by_differences(satellite, estimate, nonlinear_flow)
         np.testing.assert_allclose(transition(satellite, estimate), expected, rtol=0.0, atol=1e-7)
 
+    @pytest.mark.long
     def test_is_it_while_no_coil_is_driven(self, full, nonlinear_flow):
         """The residual dipole turns the satellite all the same, and more as the field turns in its axes."""
         estimate = strong(full)
@@ -74,6 +76,7 @@ class TestTransition:
         undriven = transition(full, strong(full, dipole_body_am2=ZERO), ZERO)
         assert np.abs(transition(full, estimate, ZERO) - undriven)[3:6, 0:3].max() > 1e-3
 
+    @pytest.mark.long
     @pytest.mark.parametrize("wheel_body_nms", [ZERO, (0.3, -0.2, 0.4)], ids=["no wheel", "wheel"])
     def test_is_it_with_another_inertia_than_the_table_s(self, wheel_body_nms, full, nonlinear_flow):
         satellite = replace(full, wheel_body_nms=wheel_body_nms)

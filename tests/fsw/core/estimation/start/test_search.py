@@ -52,6 +52,7 @@ def fitted(samples, model=MODEL):
     return end_of(start_search(samples, model), samples, model)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("q", "omega"), STARTS)
 def test_over_minutes_three_cells_tell_the_motion(q, omega):
     """Also where only one or two of them ever see the Sun."""
@@ -79,6 +80,7 @@ def test_the_field_alone_does_not():
     assert fitted(samples) is None
 
 
+@pytest.mark.long
 def test_what_fits_no_motion_is_not_believed():
     """Cells 1 and 3 connected crosswise."""
     samples, _, _ = flight(*STARTS[0], 25)
@@ -110,6 +112,7 @@ class TestSettled:
             work(search, samples, None, MODEL)
         return search
 
+    @pytest.mark.long
     def test_a_motion_that_is_not_the_best_goes_through_the_samples_again(self):
         samples, q, omega = flight(*STARTS[0], 25)
         estimate, count = self.passes(samples, 12.0)
@@ -125,6 +128,7 @@ class TestSettled:
         assert self.passes(samples, 0.0) == (None, search_module.CARRIED)
 
 
+@pytest.mark.long
 def test_what_it_finds_of_the_parameters_goes_into_the_filter_with_what_is_left():
     samples, _, _ = flight(*STARTS[0], 25)
     estimate, parts = fitted(samples), CONFIG.layout
@@ -143,6 +147,7 @@ def test_what_it_finds_of_the_parameters_goes_into_the_filter_with_what_is_left(
     assert np.abs(estimate.covariance[parts.cells, parts.earth_light]).max() > 0.0
 
 
+@pytest.mark.long
 def test_what_it_finds_of_the_cells_is_nearer_to_the_truth_than_the_table():
     samples, q, _ = flight(*STARTS[0], 25)
     known = fitted(samples).parameters
@@ -152,6 +157,7 @@ def test_what_it_finds_of_the_cells_is_nearer_to_the_truth_than_the_table():
     assert np.linalg.norm((beyond - EXCESS)[lit]) < np.linalg.norm(EXCESS[lit])
 
 
+@pytest.mark.long
 def test_fewer_cells_than_there_may_be_leave_the_others_as_they_were():
     few = replace(CELLS, normals_body=CELLS.normals_body[:5], full_sun=CELLS.full_sun[:5], shades=((),) * 5)
     samples, _, _ = flight(*STARTS[0], 25)
@@ -162,6 +168,7 @@ def test_fewer_cells_than_there_may_be_leave_the_others_as_they_were():
     assert all(known.cell_excess[:5])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("q", "omega"), STARTS)
 def test_the_errors_of_the_cells_are_not_counted_once_more(q, omega):
     """The last sample again, which the attitude rests on already, makes it little surer."""
@@ -197,6 +204,7 @@ class TestLinear:
         return replace(begun_at, covariance=covariance)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("bad", [float("nan"), 1e300])
 def test_damaged_samples_give_none(bad):
     samples, _, _ = flight(*STARTS[0], 25)
@@ -218,6 +226,7 @@ def left_over(numbers, q, samples):
     return np.hstack((*parts, motions.numbers[:, 3:] / MODEL.prior[6:])), q[0], omega[0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("q", "omega"), STARTS[:2])
 def test_it_ends_where_least_squares_of_all_samples_at_once_end(q, omega):
     """Which another method finds from the true motion, with all residuals in one vector."""
@@ -276,6 +285,7 @@ def batches(samples):
 
 
 class TestByTicks:
+    @pytest.mark.long
     def test_the_motion_is_found_and_carried_to_the_tick_with_the_samples_that_came_meanwhile(self, samples):
         batch, estimate = started(samples)
         assert len(batch.samples) > 22
@@ -285,6 +295,7 @@ class TestByTicks:
         assert off @ np.linalg.solve(estimate.covariance[0:6, 0:6], off) < 16.8
         assert np.degrees(np.linalg.norm(off[:3])) < 6.0
 
+    @pytest.mark.long
     def test_it_is_what_it_is_at_once(self, samples, batches):
         """From the samples that were there when it began, then on through the rest."""
         batch, estimate = started(samples)
@@ -358,6 +369,7 @@ class TestByTicks:
         for place in range(0, count_doubles(search), 997):
             assert pack(flip(search, place, 3)) != sound
 
+    @pytest.mark.long
     @pytest.mark.filterwarnings("error")
     def test_a_flipped_bit_ends_in_an_estimate_that_is_one_or_none(self, batches):
         batch = next(one for one in batches if one.search and one.search.steps == 12)

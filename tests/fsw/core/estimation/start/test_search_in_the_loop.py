@@ -41,6 +41,7 @@ def inbox_of(plant):
     return Inbox(sync.tick, sync.unix_time_s, tuple(frames))
 
 
+@pytest.mark.long
 def test_it_goes_on_by_a_few_samples_in_each_tick(searching):
     config, state, inbox = searching
     after, _ = stepped(state, inbox, config)

@@ -63,6 +63,7 @@ def test_of_one_that_ends_before_its_only_tick_none(judged_at):
     assert judged_at(1, 333, 1 / 3) == []
 
 
+@pytest.mark.long
 def test_a_sound_coil_whose_pulse_ends_just_before_the_tick_is_not_named(make_world):
     """At 3 Hz: 1333 ms of 1333.3 ms, and a current that is gone in a tenth of a ms."""
     coils = {"pulse_s": 1.4, "time_constant_s": 1e-4, "backoff_s": 20.0, "backoff": "shared"}

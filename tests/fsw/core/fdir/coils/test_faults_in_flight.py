@@ -79,6 +79,7 @@ def conduct(plant, coil, ampere):
     plant._coils.advance = stuck
 
 
+@pytest.mark.long
 @pytest.mark.requirement("REQ-COIL-01", "REQ-COIL-02", "REQ-COIL-03")
 @pytest.mark.parametrize(("factor", "kind"), [(0.0, 1), (0.1, 1), (0.5, 2), (-1.0, 3)])
 def test_a_wrong_current_names_the_coil_at_its_second_pulse(make_world, factor, kind):
@@ -162,6 +163,7 @@ def test_a_coil_that_was_not_fired_is_not_judged(make_world):
             assert health == CoilHealth()
 
 
+@pytest.mark.long
 def test_a_single_wrong_current_names_nobody(make_world):
     world = make_world()
     world.fly(90)
@@ -263,6 +265,7 @@ class TestStuck:
             100 * (coil + 1) + 4
         ]
 
+    @pytest.mark.long
     @pytest.mark.requirement("REQ-COIL-04")
     @pytest.mark.parametrize("flown", [90, 106, 700], ids=["before any pulse", "after one", "settled"])
     def test_a_current_that_turns_nothing_leads_to_safe_and_names_nobody(self, make_world, flown):

@@ -56,6 +56,7 @@ def test_a_coil_that_does_nothing_is_named_though_every_other_pulse_is_in_doubt(
     assert faults(said)[:1] == [101]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("skipped", [1, 2, 3, 5])
 def test_the_rate_is_as_uncertain_as_ticks_skipped_in_a_pulse_leave_it(make_world, skipped):
     """The pulse goes on meanwhile: the filter takes it for done, and a part of it for uncertain."""

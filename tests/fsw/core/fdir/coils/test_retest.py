@@ -80,6 +80,7 @@ class TestInFlight:
         assert events == [(Event.COIL_READMITTED, 202), (Event.COIL_FAULT, 201)]
         assert len(fired) == 2
 
+    @pytest.mark.long
     def test_one_that_conducts_by_itself_is_not_tried(self, world):
         isolate(world, 0, CoilFault.STUCK, 0, until=(0, 5, 0))
         events, fired = fly(world, 600)
@@ -87,6 +88,7 @@ class TestInFlight:
         assert world.state.health.coils.faults == (0, CoilFault.STUCK, 0)
 
 
+@pytest.mark.long
 class TestTime:
     @pytest.fixture
     def config(self, world):
@@ -113,6 +115,7 @@ class TestTime:
         assert health == CoilHealth((CoilFault.WEAK, 0, 0))
 
 
+@pytest.mark.long
 def test_what_the_filter_has_learnt_of_its_gain_is_forgotten(make_world):
     world = make_world(flight={"uncertainty": {"coil_gain_percent": 5.0}})
     world.fly(SETTLED)

@@ -132,6 +132,7 @@ def faults(health):
     return [one.watch.fault for one in health]
 
 
+@pytest.mark.long
 def test_sound_cells_are_not_accused():
     health = watched(sound, 300)
     assert faults(health) == [0] * 6
@@ -169,6 +170,7 @@ def in_shadow(change, ticks, health=None):
     return watched(change, ticks, health, seen=None, shadow=True, sure=False)
 
 
+@pytest.mark.long
 def test_a_cell_that_is_dark_in_the_shadow_more_often_than_bright_is_no_lamp():
     """As in a message of nonsense, of which those ticks count in which at most two of six cells are lit."""
     random = np.random.default_rng(7)
@@ -176,6 +178,7 @@ def test_a_cell_that_is_dark_in_the_shadow_more_often_than_bright_is_no_lamp():
     assert faults(health) == [0] * 6
 
 
+@pytest.mark.long
 def test_a_lamp_that_goes_out_is_readmitted_by_the_shadow_alone():
     lamp = in_shadow(set_to(4, 0.3), ENOUGH)
     assert faults(lamp) == [0, 0, 0, 0, SensorFault.UNLIT, 0]
@@ -184,6 +187,7 @@ def test_a_lamp_that_goes_out_is_readmitted_by_the_shadow_alone():
     assert faults(in_shadow(set_to(4, 0.3), 600, lamp))[4] == SensorFault.UNLIT
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("fault", [SensorFault.STRENGTH, SensorFault.FROZEN, SensorFault.REFUSED])
 def test_the_shadow_says_nothing_for_a_cell_that_fails_in_the_light(fault):
     """A dead cell is dark there, as it should be."""
@@ -208,6 +212,7 @@ def test_a_current_that_rightly_stays_is_not_stuck():
     assert faults(health) == [0] * 6
 
 
+@pytest.mark.long
 def test_a_coarse_cell_may_stay_for_a_step_longer():
     cells, step = set(LIT), 0.12
     _, undeclared = watched_coarse(sound, step, 0.0, 300)
@@ -217,6 +222,7 @@ def test_a_coarse_cell_may_stay_for_a_step_longer():
     assert faults(health) == [0] * 6
 
 
+@pytest.mark.long
 def test_a_stuck_coarse_cell_is_found_all_the_same():
     cell, step = LIT[1], 0.12
     stuck = set_to(cell, step * round(ideal()[cell] / step))
@@ -307,6 +313,7 @@ class TestASecondCell:
         assert health[LIT[1]].watch.fault
         assert not is_contradicted(health)
 
+    @pytest.mark.long
     def test_one_that_is_readmitted_counts_no_longer(self):
         again = watched(sound, 300, watched(dead(LIT[0])))
         health = watched(dead(LIT[1]), ENOUGH, again)
@@ -314,12 +321,14 @@ class TestASecondCell:
         assert not is_contradicted(health)
 
 
+@pytest.mark.long
 def test_one_that_is_right_again_is_readmitted_after_a_while():
     dead = watched(set_to(LIT[0], 0.0))
     assert watched(sound, 60, dead)[LIT[0]].watch.fault
     assert faults(watched(sound, 300, dead)) == [0] * 6
 
 
+@pytest.mark.long
 def test_one_that_stays_dead_is_not():
     dead = watched(set_to(LIT[0], 0.0))
     assert watched(set_to(LIT[0], 0.0), 400, dead)[LIT[0]].watch.fault == SensorFault.STRENGTH
@@ -362,6 +371,7 @@ class TestGain:
         assert gains[LIT[1]] == 0.0
         assert state.estimate.covariance[place, place] == CONFIG.initial_covariance[place, place]
 
+    @pytest.mark.long
     def test_right_again_it_comes_back_under_the_same_estimate(self):
         isolated = flown(self.learnt(), [], 1.0 + self.LEARNT, ENOUGH)
         assert flown(*isolated, 1.0, 60)[1][LIT[1]].watch.fault
@@ -369,6 +379,7 @@ class TestGain:
         assert faults(health) == [0] * 6
         assert faults(flown(state, health, 1.0, 60)[1]) == [0] * 6, "and stays"
 
+    @pytest.mark.long
     def test_as_wrong_as_before_it_does_not(self):
         isolated = flown(self.learnt(), [], 1.0 + self.LEARNT, ENOUGH)
         assert flown(*isolated, 1.0 + self.LEARNT, 600)[1][LIT[1]].watch.fault == SensorFault.STRENGTH

@@ -94,6 +94,7 @@ class Watcher:
         return [(tick, argument) for tick, which, argument in self.told if which == event]
 
 
+@pytest.mark.long
 @pytest.mark.requirement("REQ-SENSOR-01", "REQ-SENSOR-02", "REQ-SENSOR-03", "REQ-SENSOR-04", "REQ-SENSOR-05")
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_fault_is_named_borne_and_forgotten(make_world, name):
@@ -165,6 +166,7 @@ def test_in_eclipse_the_attitude_is_kept(make_world, name):
     assert not any(valid[lasts_s:])
 
 
+@pytest.mark.long
 @pytest.mark.requirement("REQ-SENSOR-09")
 def test_a_lamp_in_the_earth_s_shadow_is_no_sun(make_world):
     """It shows the direction in which the Sun is: the filter would take it."""
@@ -215,6 +217,7 @@ FROM_BOOT = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.requirement("REQ-SENSOR-04", "REQ-SENSOR-07")
 @pytest.mark.parametrize("name", FROM_BOOT)
 def test_of_a_pair_that_was_never_right_nobody_is_named(make_world, name):
@@ -329,6 +332,7 @@ def test_a_step_that_is_not_declared_looks_like_a_fault(make_world, settings, na
     assert [argument for _, argument in watcher.of(Event.SENSOR_ISOLATED)] == [named]
 
 
+@pytest.mark.long
 @pytest.mark.requirement("REQ-SENSOR-03")
 @pytest.mark.parametrize(
     ("sensors", "wrap", "named", "within_s"),

@@ -11,6 +11,8 @@ from fsw.core.fdir.faults import SensorFault
 from fsw.core.gate.sync_watch import FEW_TICKS
 from fsw.wire.messages import MagField, SunVector
 
+pytestmark = pytest.mark.long
+
 WITHOUT_LOSS_S = 30
 """Until a magnetometer that is off by 15 uT is named where no SYNC is lost."""
 

@@ -130,6 +130,7 @@ def test_nothing_ahead_is_no_pulse():
     assert first_pulse([0.1] * 9, [], SHARED, READY) == NO_PULSE
 
 
+@pytest.mark.long
 def test_of_more_sequences_than_go_on_one_of_the_best_is_found():
     """Of 6859: what it leaves to gain of what the best of them gains."""
     assert SEQUENCES < 19**2

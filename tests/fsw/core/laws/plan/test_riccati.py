@@ -83,6 +83,7 @@ def test_the_resting_torque_is_that_of_the_design(wheel):
     assert resting_torque(INERTIA, wheel, W0) == pytest.approx(linear.resting_torque(body), rel=1e-9)
 
 
+@pytest.mark.long
 def test_gains_tend_to_the_regulator_of_the_design_as_steps_shorten():
     """Another implementation: Hamiltonian transitions in u, no step held."""
 

@@ -57,6 +57,7 @@ FAST = replace(CASE, omega_body_radps=10.0 * CASE.omega_body_radps)
 """More than a turn a step."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", [CASE, SLOW, FAST], ids=["tumbling", "slow", "fast"])
 def test_the_cost_is_that_of_the_motion(case):
     energies = flown_energies(case, PLAN)
@@ -82,6 +83,7 @@ def test_the_reference_takes_energy_away_and_keeps_the_limits():
     assert weak == pytest.approx(-4.0 / pi * np.cross(b, CASE.omega_body_radps))
 
 
+@pytest.mark.long
 def test_the_course_of_the_damping_law_damps():
     case = replace(CASE, steepness=3e6)
     course = damping_course(case)
@@ -98,6 +100,7 @@ def test_with_a_reference_the_weight_is_of_its_dipole():
     assert 0.0 < more <= 2.0 * 3 * 2.0**2
 
 
+@pytest.mark.long
 def test_the_descent_ends_where_no_single_dipole_is_better():
     plan, cost, made = descend(CASE, np.zeros((4, 3)), -inf, 60)
     assert made > 1

@@ -19,6 +19,7 @@ def test_response_and_delay_are_found_in_a_field_that_turns(pulsed, delay):
     assert found.pulses == (2, 2, 2)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("tick_hz", "delay_s"), [(4, 2.0), (10, 0.66), (10, 3.0), (40, 0.55)])
 def test_so_are_they_with_many_ticks_a_second(pulsed, tick_hz, delay_s):
     found = coil_response(pulsed(RESPONSE, delay_s * tick_hz, noise_nt=100.0, tick_hz=tick_hz), LEVELS)
@@ -45,6 +46,7 @@ def test_a_delay_beyond_what_is_looked_for_is_not_told(pulsed, delay):
     assert (found.delay_ticks, found.delay_sigma) == (None, None)
 
 
+@pytest.mark.long
 def test_errors_are_as_large_as_it_says(pulsed):
     found = coil_response(pulsed(RESPONSE, 1.46, noise_nt=200.0, pulses=18), LEVELS)
     off = (found.nt_per_am2 - RESPONSE) / found.sigma
@@ -73,6 +75,7 @@ def test_pulses_of_two_coils_without_a_pause_between_them_tell_nothing_of_either
     assert found.pulses == (1, 1, 1)
 
 
+@pytest.mark.long
 def test_a_pulse_whose_report_was_lost_is_not_taken_for_none(pulsed):
     """Nor does it shorten the delays that are looked for, or spoil the pulses beside it."""
     samples = pulsed(RESPONSE, 2.0, pulses=12, every=20)

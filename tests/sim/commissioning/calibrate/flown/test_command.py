@@ -80,6 +80,7 @@ def poor(found):
     return replace(found, field=replace(found.field, covariance=1e8 * found.field.covariance))
 
 
+@pytest.mark.long
 def test_tables_and_page_are_written(a_run, good, calibrated_as):
     calibrated_as(good)
     result = run(a_run, "--out", "c.toml", "--page", "c.html")
@@ -90,6 +91,7 @@ def test_tables_and_page_are_written(a_run, good, calibrated_as):
     assert "[calibration.magnetometer]" in Path("c.html").read_text()
 
 
+@pytest.mark.long
 def test_a_log_too_poor_for_the_tables_still_gives_page_and_document(a_run, good, calibrated_as):
     calibrated_as(poor(good))
     result = run(a_run, "--out", "c.toml", "--page", "c.html")

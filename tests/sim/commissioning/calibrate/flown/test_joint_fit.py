@@ -8,6 +8,7 @@ from sim.commissioning.calibrate.flown.joint_fit import FitPrior, joint_fit
 NEAR = FitPrior(np.eye(3), 0.1, 1e5)
 
 
+@pytest.mark.long
 def test_without_noise_it_finds_what_is_there(observed, truth):
     matrix, offset = truth
     found = joint_fit(observed(), NEAR)
@@ -15,6 +16,7 @@ def test_without_noise_it_finds_what_is_there(observed, truth):
     assert found.offset_nt == pytest.approx(offset, abs=1.0)
 
 
+@pytest.mark.long
 def test_errors_are_as_large_as_it_says(observed, truth):
     """Of 12 numbers in 12 draws, in standard deviations."""
     matrix, offset = truth
@@ -27,6 +29,7 @@ def test_errors_are_as_large_as_it_says(observed, truth):
     assert np.mean(np.abs(off) < 3.0) > 0.98
 
 
+@pytest.mark.long
 def test_the_noise_of_a_body_that_hardly_turns_is_not_taken_for_a_small_scale_and_an_offset(
     observed_slowly, truth
 ):
@@ -39,6 +42,7 @@ def test_the_noise_of_a_body_that_hardly_turns_is_not_taken_for_a_small_scale_an
     assert np.mean([one.chi2 / one.numbers for one in found]) == pytest.approx(1.0, abs=0.03)
 
 
+@pytest.mark.long
 def test_without_the_sun_the_turn_stays_as_unknown_as_before(observed, truth):
     """|b| is blind to a turn; offset and scale it tells."""
     found = joint_fit(observed(noise_nt=50.0, sun=False), NEAR)
@@ -63,6 +67,7 @@ def test_a_body_that_does_not_turn_with_a_field_that_hardly_does_leaves_the_offs
     assert sigma[9:].max() > 1000.0
 
 
+@pytest.mark.long
 def test_a_mirrored_sensor_is_found_from_a_mirrored_start(observed, truth):
     mirror = np.diag([1.0, -1.0, 1.0])
     samples = observed()

@@ -62,6 +62,7 @@ def found():
     return calibrated(log(), TABLE)
 
 
+@pytest.mark.long
 def test_the_wiring_is_found_first(found):
     assert found.wiring == WIRING
 
@@ -91,6 +92,7 @@ def test_the_coils_field_is_known_no_better_than_matrix_and_response_together(fo
     assert said == pytest.approx(np.std(products, axis=0), rel=0.08)
 
 
+@pytest.mark.long
 def test_a_short_log_of_a_sensor_noisier_than_the_table_says_is_less_sure():
     short = log(ticks=700)
     noise = 570.0 * np.random.default_rng(9).normal(size=short.field_nt.shape)
@@ -146,6 +148,7 @@ def test_it_is_said_in_words(found):
     assert "turn against the Sun sensor" in text
 
 
+@pytest.mark.long
 def test_without_pulses_field_and_delay_are_not_told():
     text = list_undetermined(calibrated(replace_delay(log(pulses=False)), TABLE))
     assert sum("gave no pulse" in one for one in text) == 3
@@ -179,12 +182,14 @@ def test_dipoles_that_are_none_of_coils_are_not_written(found):
     assert any("no dipoles of coils" in one for one in list_undetermined(found))
 
 
+@pytest.mark.long
 def test_in_the_dark_nothing_is_claimed():
     dark = log()
     with pytest.raises(HarnessError, match="the Sun was seen in 0 samples"):
         calibrated(replace(dark, sun=np.full_like(dark.sun, np.nan)), TABLE)
 
 
+@pytest.mark.long
 def test_outliers_are_left_out(found):
     bad = log()
     field = bad.field_nt.copy()
