@@ -230,7 +230,12 @@ def inertial_error_deg(gravity: bool) -> float:
 def wheel_flight() -> LawFlight:
     """A nearly even body with a wheel along the orbit normal."""
     even = ((1.9, 0.0, 0.0), (0.0, 1.95, 0.0), (0.0, 0.0, 2.0))
-    rest: dict[str, Any] = {"wheel_body_nms": (0.0, 0.0, 0.05), "step_s": 5.0, "orbits": 4.0, "attitude_known": False}
+    rest: dict[str, Any] = {
+        "wheel_body_nms": (0.0, 0.0, 0.05),
+        "step_s": 5.0,
+        "orbits": 4.0,
+        "attitude_known": False,
+    }
     return flight("field_direction", 20.0, inertia_kgm2=even, k_w=1e7, k_a=2000.0, **rest)
 
 

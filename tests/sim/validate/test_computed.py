@@ -9,7 +9,7 @@ from sim.design.theory.bodies import BODIES
 from sim.design.theory.floquet import degree_of_stability, monodromy
 from sim.design.theory.linear import Gains, closed_loop
 from sim.validate import computed
-from sim.validate.controlled_plant import ControlledPlant
+from sim.validate.computed import ControlledPlant
 
 FIFTY = replace(BODIES[2], inertia_kgm2=computed.FULL)
 GAINS = computed.KNOWN_BEST["50 kg"][1]
