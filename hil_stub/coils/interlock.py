@@ -1,4 +1,4 @@
-"""The coil interlock: what may be driven, by integers alone.
+"""The coil interlock: enforces length of a pulse, back-off, one coil and three levels, by integers alone.
 
 Invariant, whatever is requested and however often the board restarts: no pulse lasts longer than
 ``pulse_ms``, no pulse starts earlier than ``backoff_ms`` after the end of the one before it (of any coil,

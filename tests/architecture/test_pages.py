@@ -1,6 +1,8 @@
 """The pages: files, links and commands that they name exist."""
 
+import ast
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -81,3 +83,32 @@ def test_figures_of_a_law_name_the_test_or_the_command_that_gives_them(figures):
     tests = re.findall(r"`((?:\w+/)*test_\w+\.py)`", figures)
     assert tests or re.search(r"`(torquer|make) ", figures)
     assert all(list((ROOT / "tests" / "fsw" / "core" / "laws").rglob(name)) for name in tests)
+
+
+MOST_FOUND = 5
+"""Modules among which a newcomer finds the one that is meant."""
+
+
+@cache
+def first_sentences():
+    """The first paragraph of each module's docstring, in lower case."""
+    files = [file for tree in ("fsw", "hil_stub", "sim") for file in (ROOT / tree).rglob("*.py")]
+    texts = {file: ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or "" for file in files}
+    return {
+        file.relative_to(ROOT).as_posix(): " ".join(text.split("\n\n")[0].split()).lower()
+        for file, text in texts.items()
+    }
+
+
+ANSWERS = re.findall(r"(?m)^\| [^|]+\? \| ([^|]+) \| (`.*`) \|$", (ROOT / "docs" / "design.md").read_text())
+
+
+@pytest.mark.parametrize(("word", "answers"), ANSWERS)
+def test_a_plain_word_leads_to_the_module_that_answers(word, answers):
+    found = [file for file, sentence in first_sentences().items() if word.lower() in sentence]
+    assert set(re.findall("`([^`]+)`", answers)) <= set(found)
+    assert len(found) <= MOST_FOUND
+
+
+def test_there_are_questions():
+    assert len(ANSWERS) >= 10
