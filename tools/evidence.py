@@ -97,7 +97,10 @@ def main(words: Sequence[str] | None = None) -> int:
     before, lines, worst = rows_of(DOCS), [], 0
     for stage in [stage for stage in STAGES if stage in chosen]:
         began = time.monotonic()
-        code = run(stage)
+        try:
+            code = run(stage)
+        except KeyboardInterrupt:  # the stage itself has it too, and has said so
+            code = 130
         lines.append(f"{stage}: {time.monotonic() - began:.0f} s, exit code {code}")
         print(lines[-1], file=sys.stderr, flush=True)
         if code not in (0, 1):

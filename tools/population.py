@@ -86,6 +86,9 @@ def main(words: Sequence[str] | None = None) -> int:
     except HarnessError as error:
         print(f"population: {error}", file=sys.stderr)
         return error.exit_code
+    except KeyboardInterrupt:
+        print("population: interrupted; flights that are done are not flown again", file=sys.stderr)
+        return 130
     print(arguments.out)
     return int(not met)
 

@@ -56,6 +56,9 @@ def main(words: Sequence[str] | None = None) -> int:
     except (HarnessError, TableError) as error:
         print(f"pulse_limits: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("pulse_limits: interrupted; flights that are done are not flown again", file=sys.stderr)
+        return 130
     flown = {name: values[0] for name, values in rows.items()}
     draw(flown, arguments.out.with_suffix(".svg"))
     replace_text(arguments.out, page(flown, agreements(rows), platform_line()))

@@ -159,6 +159,9 @@ def main(words: Sequence[str] | None = None) -> int:
     except (HarnessError, TableError) as error:
         print(f"sizing: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("sizing: interrupted; flights that are done are not flown again", file=sys.stderr)
+        return 130
     replace_text(arguments.out, page(rows))
     print("\n".join([*faults(rows), str(arguments.out)]))
     return int(bool(faults(rows)))

@@ -67,6 +67,15 @@ def test_a_stage_that_is_not_completed_ends_all(run, capsys, code):
     assert capsys.readouterr().err.endswith("evidence: validate was not completed\n")
 
 
+def test_an_interrupt_ends_all_with_its_exit_code(docs, monkeypatch, capsys):
+    def stopped(stage):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(evidence, "run", stopped)
+    assert main([]) == 130
+    assert capsys.readouterr().err.endswith("evidence: gains was not completed\n")
+
+
 def test_another_verdict_is_named_and_other_rows_are_counted(run, capsys):
     main(["sizing"])
     out = capsys.readouterr().out

@@ -47,3 +47,14 @@ def test_a_whole_flight_that_differs_fails():
 def test_a_whole_flight_without_a_figure_fails():
     name = WHOLE[0][0]
     assert any(name in found for found in faults(ROWS | {name: [float("nan"), 0.52, 0.49]}))
+
+
+def test_ctrl_c_is_one_sentence_and_writes_no_page(tmp_path, monkeypatch, capsys):
+    def stopped(workers):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(pulse_limits, "fly_all", stopped)
+    assert main(["--out", str(tmp_path / "page.md")]) == 130
+    said = "pulse_limits: interrupted; flights that are done are not flown again\n"
+    assert capsys.readouterr().err == said
+    assert list(tmp_path.iterdir()) == []
