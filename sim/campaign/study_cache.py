@@ -12,6 +12,7 @@ import pickle
 import time
 import zlib
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields, is_dataclass, replace
 from enum import Enum
 from functools import partial
@@ -54,17 +55,26 @@ class CachedTask:
 def with_cache(studies: Sequence[Study], folder: Path | None = None) -> list[Study]:
     """The studies, each task that flies one whose result is kept; how many are known is noted.
 
+    Where the user's cache folder cannot be made, all is computed.
+
     Args:
         studies: any; those without flights stay as they are.
         folder: None: ``cache_folder()``.
 
     Raises:
-        HarnessError: the folder cannot be made.
+        HarnessError: the folder that the environment names cannot be made.
     """
     folder = folder or cache_folder()
     if folder is None:
         return list(studies)
-    _prepare(folder)
+    try:
+        _prepare(folder)
+    except OSError as error:
+        why = f"{folder} keeps no results ({error.strerror})"
+        if VARIABLE in os.environ:
+            raise HarnessError(f"{VARIABLE}: {why}") from None
+        note(f"{why}: all is computed")
+        return list(studies)
     cached = [_cached(study, folder) if study.has_flights else study for study in studies]
     tasks = [task for study in cached for task in study.tasks if isinstance(task, CachedTask)]
     if known := sum(task.path.exists() for task in tasks):
@@ -77,20 +87,18 @@ def cache_folder() -> Path | None:
     named = os.environ.get(VARIABLE)
     if named is not None:
         return Path(named) if named else None
-    of_user = os.environ.get("XDG_CACHE_HOME") or "~/.cache"
-    return Path(of_user).expanduser() / "torquer"
+    of_user = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    return None if of_user.startswith("~") else Path(of_user) / "torquer"
 
 
 def _prepare(folder: Path) -> None:
     """Make it, for this user alone, and delete from it what is old."""
     oldest = time.time() - KEPT_FOR_S
-    try:
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        for path in folder.glob(f"*/*{SUFFIX}"):
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    for path in folder.glob(f"*/*{SUFFIX}"):
+        with suppress(FileNotFoundError):  # another process may have been first
             if path.stat().st_mtime < oldest:
-                path.unlink(missing_ok=True)
-    except OSError as error:
-        raise HarnessError(f"{VARIABLE}: {folder} keeps no results ({error.strerror})") from None
+                path.unlink()
 
 
 def _write(path: Path, result: object) -> None:

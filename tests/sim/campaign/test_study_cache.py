@@ -107,10 +107,22 @@ def test_what_no_one_has_asked_for_is_deleted_and_what_was_read_is_not(computed,
     assert found == [1, 2]
 
 
-def test_a_folder_that_can_be_none_is_one_sentence(computed, tmp_path):
+def test_a_named_folder_that_can_be_none_is_one_sentence(computed, tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
     (tmp_path / "file").write_text("")
     with pytest.raises(HarnessError, match=r"_CACHE: .*file/cache keeps no results \(Not a directory\)"):
         with_cache([computed[1](1)], tmp_path / "file" / "cache")
+
+
+def test_without_a_folder_of_the_user_all_is_computed(computed, tmp_path, monkeypatch, capsys):
+    found, study = computed
+    (tmp_path / "file").write_text("")
+    monkeypatch.delenv(VARIABLE)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    for _ in range(2):
+        results(study(1), None)
+    assert found == [1, 1]
+    assert "file/torquer keeps no results (Not a directory): all is computed\n" in capsys.readouterr().err
 
 
 def test_the_folder_is_the_users_own(computed, folder):
@@ -133,6 +145,13 @@ def test_the_folder_is_that_of_the_environment_or_of_the_user(monkeypatch, envir
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
     assert cache_folder() == expected
+
+
+def test_who_has_no_home_keeps_nothing(monkeypatch):
+    for name in (VARIABLE, "XDG_CACHE_HOME", "HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(os.path, "expanduser", lambda path: path)
+    assert cache_folder() is None
 
 
 class Level(Enum):
