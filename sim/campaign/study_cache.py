@@ -132,13 +132,13 @@ def _canonical(value: object) -> object:
     """A value as one that JSON can write, the same for equal values and another for others.
 
     Raises:
-        TypeError: it cannot be told from others.
+        TypeError: it cannot be told from others, as a path, which does not say what is in the file.
     """
     if value is None or (isinstance(value, bool | int | float | str) and not isinstance(value, Enum)):
         return value
     kind = f"{type(value).__module__}.{type(value).__qualname__}"
     parts: object
-    if isinstance(value, Enum | Path):
+    if isinstance(value, Enum):
         parts = str(value)
     elif isinstance(value, FunctionType):
         parts = _of_project(value)

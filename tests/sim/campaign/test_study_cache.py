@@ -181,7 +181,7 @@ DIFFERENT = (
     replace(ORDER, measure=consistency_figures),
     *(1, 1.0, True, "1", None, 0.0, -0.0, float("nan"), float("inf")),
     *((1, 2), [1, 2], (1, (2,)), {"a": 1}, {"b": 1}, {}),
-    *(Body((1.0, 2.0)), Body((1.0, 2.5)), Body((1.0, 2.0), Level.HIGH), Level.LOW, "low", Path("low")),
+    *(Body((1.0, 2.0)), Body((1.0, 2.5)), Body((1.0, 2.0), Level.HIGH), Level.LOW, "low"),
 )
 
 
@@ -210,7 +210,14 @@ def other(order):
 
 
 @pytest.mark.parametrize(
-    "task", [partial(other, ORDER), partial(fly_order, object()), lambda: 1, partial(fly_order, {1: 2})]
+    "task",
+    [
+        partial(other, ORDER),
+        partial(fly_order, object()),
+        partial(fly_order, Path("pass.csv")),
+        partial(fly_order, {1: 2}),
+        lambda: 1,
+    ],
 )
 def test_what_cannot_be_told_from_others_is_not_kept(task, folder):
     assert task_digest(task) is None
