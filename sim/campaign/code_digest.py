@@ -1,7 +1,8 @@
 """A digest that distinguishes the code of one flight from that of another: all that is loaded for it.
 
-That is the module which flies, what it imports, whatever these import in turn, data files beside them, and
-the versions of Python and of the libraries that compute. Nothing is listed by hand.
+That is the module which flies, what it imports, whatever these import in turn, data files beside them, the
+versions of Python and of the libraries that compute, and whether the filter's kernel is built. Nothing of the
+project is listed by hand.
 """
 
 import ast
@@ -12,9 +13,11 @@ import tokenize
 from collections.abc import Iterator
 from functools import cache
 from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 
 import sim
+from fsw.kernel import KERNEL
 
 PROJECT = Path(sim.__file__).resolve().parents[1]
 PACKAGES = ("fsw", "hil_stub", "sim", "torquer")
@@ -35,6 +38,7 @@ def code_digest(module: str = FLIGHT, project: Path = PROJECT) -> str:
     digest = hashlib.sha256(platform.python_version().encode())
     for library in LIBRARIES:
         digest.update(version(library).encode())
+    digest.update(b"kernel" if find_spec(KERNEL) else b"filterpy")
     for file in loaded_files(module, project):
         digest.update(file.relative_to(project).as_posix().encode() + _content(file))
     return digest.hexdigest()[:16]

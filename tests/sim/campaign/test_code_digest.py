@@ -68,6 +68,12 @@ def test_what_is_not_loaded_may_change(project, digest, name):
     assert digest() == before
 
 
+def test_without_the_filter_s_kernel_other_code_flies(digest, monkeypatch):
+    before = digest()
+    monkeypatch.setattr(module, "find_spec", lambda name: None if "kernel" in name else 1 / 0)
+    assert digest() != before
+
+
 def test_it_is_the_same_for_the_same_code_elsewhere(project, digest, tmp_path_factory):
     other = tmp_path_factory.mktemp("other") / "copy"
     shutil.copytree(project, other)
