@@ -81,7 +81,7 @@ def fed_by_any(self, tick):
 
 
 def deaf_to_equals(self, tick):
-    return [] if tick == self._strange_sync else follow(self, tick)
+    return [] if tick == self._unexpected_sync else follow(self, tick)
 
 
 def never_back(self, tick):
@@ -89,9 +89,9 @@ def never_back(self, tick):
 
 
 def never_forgets(self, tick):
-    kept = self._strange_sync
+    kept = self._unexpected_sync
     frames = follow(self, tick)
-    self._strange_sync = self._strange_sync or kept
+    self._unexpected_sync = self._unexpected_sync or kept
     return frames
 
 
