@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields, is_dataclass, replace
 from enum import Enum
+from errno import EPERM
 from functools import partial
 from pathlib import Path
 from types import FunctionType
@@ -43,13 +44,14 @@ class CachedTask:
     def __call__(self) -> Any:  # noqa: ANN401  (as in Task)
         """The result."""
         try:
-            content = zlib.decompress(self.path.read_bytes())
-            os.utime(self.path)
-        except (OSError, zlib.error):
+            result = pickle.loads(zlib.decompress(self.path.read_bytes()))
+        except Exception:
             result = self.task()
             _write(self.path, result)
             return result
-        return pickle.loads(content)
+        with suppress(OSError):  # then it counts as old a little earlier
+            os.utime(self.path)
+        return result
 
 
 def with_cache(studies: Sequence[Study], folder: Path | None = None) -> list[Study]:
@@ -95,6 +97,8 @@ def _prepare(folder: Path) -> None:
     """Make it, for this user alone, and delete from it what is old."""
     oldest = time.time() - KEPT_FOR_S
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    if os.name == "posix" and (folder.stat().st_uid != os.getuid() or folder.stat().st_mode & 0o022):
+        raise PermissionError(EPERM, "others may write there, and what is read from it runs as this user")
     for path in folder.glob(f"*/*{SUFFIX}"):
         with suppress(FileNotFoundError):  # another process may have been first
             if path.stat().st_mtime < oldest:

@@ -2,6 +2,7 @@
 
 import os
 import pickle
+import zlib
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import partial
@@ -75,7 +76,7 @@ def test_a_task_that_fails_is_not_kept(folder, monkeypatch):
             results(study, folder)
 
 
-@pytest.mark.parametrize("damage", [b"", b"\0" * 40, "half"])
+@pytest.mark.parametrize("damage", [b"", b"\0" * 40, "half", zlib.compress(b"no pickle"), zlib.compress(b"")])
 def test_what_is_damaged_is_computed_again(computed, folder, damage):
     found, study = computed
     results(study(1), folder)
@@ -123,6 +124,16 @@ def test_without_a_folder_of_the_user_all_is_computed(computed, tmp_path, monkey
         results(study(1), None)
     assert found == [1, 1]
     assert "file/torquer keeps no results (Not a directory): all is computed\n" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(os.name != "posix", reason="permissions are those of POSIX")
+@pytest.mark.parametrize("mode", [0o777, 0o770, 0o702])
+def test_a_folder_that_others_may_write_to_is_refused(computed, folder, monkeypatch, mode):
+    folder.mkdir()
+    folder.chmod(mode)
+    monkeypatch.setenv(VARIABLE, str(folder))
+    with pytest.raises(HarnessError, match=r"keeps no results \(others may write there"):
+        with_cache([computed[1](1)])
 
 
 def test_the_folder_is_the_users_own(computed, folder):
