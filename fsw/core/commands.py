@@ -97,7 +97,7 @@ def _ack(message: Telecommand, result: TcAckResult, tick: int) -> TcAck:
 def _mode(state: FlightState, message: TcMode, situation: Situation) -> TcAckResult:
     """SAFE at any time; out of it when all is well, but for a rate that DETUMBLE is to end.
 
-    To a law that needs the attitude while it is valid.
+    To a law that needs the attitude while it is usable.
     """
     if message.mode not in list(Mode):
         return TcAckResult.UNKNOWN
@@ -106,7 +106,7 @@ def _mode(state: FlightState, message: TcMode, situation: Situation) -> TcAckRes
         situation.violated, mode
     )
     needs_attitude = mode in (Mode.ACQUIRE, Mode.POINT)
-    if mode is not Mode.SAFE and not (free and (state.attitude.valid or not needs_attitude)):
+    if mode is not Mode.SAFE and not (free and (state.attitude.usable or not needs_attitude)):
         return TcAckResult.NOT_ALLOWED
     modes.request_mode(state.modes, mode, state.tick)
     return TcAckResult.ACCEPTED

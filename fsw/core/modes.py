@@ -108,17 +108,17 @@ def judge_conditions(
     cosine = q0 * q0 + q1 * q1 - q2 * q2 - q3 * q3 if config.axis_only else 2.0 * q0 * q0 - 1.0
     w1, w2, w3 = attitude.omega_body_orbit_radps
     rate = norm((w1 - spin_radps, w2, w3))
-    valid = attitude.valid
-    blind = not (valid or can_act)
+    usable = attitude.usable
+    blind = not (usable or can_act)
     return (
         tripped,
         not (tripped or blind or state.held) and state.trips < config.trips_to_stay_safe,
-        not valid,
+        not usable,
         blind,
-        valid and rate < config.slow_radps,
-        valid and rate > config.fast_radps,
-        valid and cosine > config.near_cosine,
-        valid and cosine < config.far_cosine,
+        usable and rate < config.slow_radps,
+        usable and rate > config.fast_radps,
+        usable and cosine > config.near_cosine,
+        usable and cosine < config.far_cosine,
     )
 
 

@@ -493,6 +493,10 @@ def _write_attitude(out: BytesWriter, value: Attitude) -> None:
     write_f64_le(out, value.sigma3_attitude_rad)
     write_f64_le(out, value.sigma3_rate_radps)
     write_i64_le(out, value.valid)
+    usable = value.usable
+    out.append(usable is not None)
+    if usable is not None:
+        write_i64_le(out, usable)
 
 
 def _write_mode_state(out: BytesWriter, value: ModeState) -> None:

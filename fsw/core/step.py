@@ -163,7 +163,14 @@ def _update(
     findings = fdir.examine(measurements, state.health, reference, config.fdir, known)
     fdir.judge_samples(measurements, state.health, findings)
     used = update(state.estimator, measurements, reference, config.estimator, wheel_nms)
-    attitude = orbital_attitude(state.estimator.estimate, reference, config.estimator.valid_sigma_rad)
+    limits = config.estimator
+    attitude = orbital_attitude(
+        state.estimator.estimate,
+        reference,
+        limits.valid_sigma_rad,
+        limits.usable_sigma_rad,
+        state.attitude.valid,
+    )
     return Observation(measurements, reference, state.estimator, attitude, used, findings)
 
 
@@ -180,12 +187,12 @@ def _judge(state: FlightState, observation: Observation, wheel_nms: Vec3, config
 def _law_input(
     state: FlightState, observation: Observation, model: EphemerisModel, config: FlightConfig
 ) -> LawInput:
-    """The field is the modelled one where the attitude is valid, otherwise the last one measured."""
+    """The field is the modelled one where the attitude is usable, otherwise the last one measured."""
     measurements, reference, attitude = observation.measurements, observation.reference, state.attitude
     usable = usable_field(measurements)
     sample = FieldSample(usable, state.tick) if usable is not None else state.sample
     b_body_t = sample.b_body_t
-    if attitude.valid and reference is not None:
+    if attitude.usable and reference is not None:
         b_orbit_t = rotate(reference.q_orbit_from_eci, reference.b_eci_t)
         b_body_t = rotate(attitude.q_body_from_orbit, b_orbit_t)
     estimate, faults = state.estimator.estimate, state.health.coils.faults

@@ -2,7 +2,11 @@
 
 from math import ceil, hypot, radians, sqrt
 
+import numpy as np
+
+from fsw.core.algebra.vector import inverse
 from fsw.core.estimation.cells.cell_set import CellSet
+from fsw.core.estimation.changes import EDGE_S, Changes
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.kalman import Algebra
 from fsw.core.estimation.mekf_config import mekf_config
@@ -41,6 +45,8 @@ TORQUE_NOISE_RTS = 0.05
 LEAST_NOISE_RTS = 1e-10
 """Its least value over the mean moment of inertia, rad/s^2 sqrt(s): it covers rounding."""
 ORBIT_RADIUS_M = 7.0e6
+QUARTER_PULSATION_S = 75.0
+"""A quarter of the time in which the field of a storm pulsates."""
 
 
 def estimator_config(table: FlightTable) -> EstimatorConfig:
@@ -74,10 +80,26 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
             max_field_error_t=limits.field_t + limits.field_part * LARGEST_FIELD_T,
             max_angle_error_rad=limits.angle_rad + limits.field_t / LEAST_FIELD_T,
             min_separation_rad=MIN_SEPARATION_RAD,
+            albedo_error=0.5 * known.albedo,
         ),
         restart_after_rejections=MAX_REFUSALS_S * table.time.tick_hz,
         valid_sigma_rad=radians(tuning.valid_sigma_deg),
+        usable_sigma_rad=radians(tuning.usable_sigma_deg),
         blank_ticks=ceil(known.latency_s * table.time.tick_hz - 1e-9),
+        changes=_changes(table, known),
+    )
+
+
+def _changes(table: FlightTable, known: Uncertainty) -> Changes:
+    """What changes in orbit, from its bounds."""
+    pulsed = table.coils.driver == "pulsed"  # what a continuous driver leaves lasts for less than a tick
+    kick = SIDE * known.shadow_impulse_nms * np.array(inverse(table.body.inertia))
+    return Changes(
+        edge_bias_t2ps=(SIDE * known.mag_shadow_t) ** 2 / EDGE_S,
+        edge_dipole_a2m4ps=(SIDE * known.shadow_dipole_am2) ** 2 / EDGE_S,
+        storm_t2ps=(SIDE * known.storm_t) ** 2 / QUARTER_PULSATION_S,
+        remanent_ps=2.0 * (SIDE * known.remanence_part) ** 2 / table.coils.pulse_s if pulsed else 0.0,
+        edge_rate=kick @ kick.T / EDGE_S if known.shadow_impulse_nms else None,
     )
 
 
@@ -128,7 +150,8 @@ def plausibility_config(table: FlightTable) -> PlausibilityConfig:
     known, tuning, sigmas = table_bounds(table), table.estimator, sqrt(GATE_NIS)
     noise_t, noise_rad = field_noise_nt(tuning) * NT, _sun_sigma_rad(table)
     model = known.mag_scale_part + 3.0 * known.along_track_m / ORBIT_RADIUS_M
-    field_t = sqrt(3.0) * (known.mag_bias_t + sigmas * noise_t)
+    bias_t = known.mag_bias_t + known.mag_orbit_t + known.mag_shadow_t + known.storm_t
+    field_t = sqrt(3.0) * (bias_t + sigmas * noise_t)
     sensor = table.calibration.magnetometer or MagnetometerTable()
     measurable_t = largest_field_nt(sensor.offset_nt, sensor.matrix, sensor.most_nt) * NT
     return PlausibilityConfig(
@@ -140,6 +163,7 @@ def plausibility_config(table: FlightTable) -> PlausibilityConfig:
         late_ticks=ceil(known.latency_s * table.time.tick_hz - 1e-9),
         cells=_cells(table, known),
         steps=_steps(table),
+        most_albedo=known.albedo,
     )
 
 

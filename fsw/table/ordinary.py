@@ -5,6 +5,8 @@ from fsw.core.algebra.vector import Mat3
 REFERENCE_KGM2 = 1.6
 """Mean moment of inertia of the 50 kg satellite for which the next two hold."""
 DIPOLE_AM2, TORQUE_NM = 0.1, 3e-8
+SNAP_RADPS = 6e-5
+"""Change of the rate at the shadow's edge."""
 DRAG_KM, DENSITY_POWER = 780.0, 8.8
 """Height h of the perigee below which drag outweighs light; the density goes as h^-DENSITY_POWER."""
 
@@ -23,6 +25,11 @@ def relative_volume(inertia_kgm2: Mat3) -> float:
 def ordinary_dipole_am2(inertia_kgm2: Mat3) -> float:
     """Residual dipole by component, A m^2: it grows with the volume."""
     return DIPOLE_AM2 * relative_volume(inertia_kgm2)
+
+
+def ordinary_shadow_impulse_nms(inertia_kgm2: Mat3) -> float:
+    """Impulse of a snap at the shadow's edge by component, N m s: it grows with the inertia."""
+    return SNAP_RADPS * mean_moment(inertia_kgm2)
 
 
 def ordinary_torque_nm(inertia_kgm2: Mat3, perigee_km: float) -> float:

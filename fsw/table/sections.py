@@ -232,10 +232,12 @@ class ControlTable(Section):
 
 
 class EstimatorTable(Section):
-    """Noise of the sensors, rate at start-up, and standard deviation up to which the attitude is valid.
+    """Noise of the sensors, rate at start-up, and standard deviations up to which the attitude serves.
 
-    ``magnetometer_quantum_nt`` and ``sun_quantum`` are steps of a component of field and Sun vector, where
-    they are coarser than those of the bus; 0: they are not. ``algebra``: what computes the filter's matrices.
+    ``usable_sigma_deg``: up to which laws and modes go by it; it becomes valid below ``valid_sigma_deg``, and
+    stays so while it is usable. ``magnetometer_quantum_nt`` and ``sun_quantum`` are steps of a component of
+    field and Sun vector, where they are coarser than those of the bus; 0: they are not. ``algebra``: what
+    computes the filter's matrices.
     """
 
     magnetometer_sigma_nt: Positive
@@ -244,6 +246,7 @@ class EstimatorTable(Section):
     sun_quantum: StepOfOne = 0.0
     rate_sigma_degps: Positive
     valid_sigma_deg: Positive
+    usable_sigma_deg: Positive
     algebra: Literal["kernel", "filterpy"] = "kernel"
 
 

@@ -32,7 +32,7 @@ from fsw.input.schema import (
 from fsw.table.calibration import CalibrationTable
 from fsw.table.cells import CellTable
 from fsw.table.flown_elements import check_tle
-from fsw.table.ordinary import ordinary_dipole_am2, ordinary_torque_nm
+from fsw.table.ordinary import ordinary_dipole_am2, ordinary_shadow_impulse_nms, ordinary_torque_nm
 from fsw.table.own_law import named
 from fsw.table.sections import (
     CIRCULAR_KEYS,
@@ -59,7 +59,11 @@ from fsw.table.uncertainty import (
 from fsw.table.wheel import WheelTable, check_wheel_inertia
 from fsw.wire.coil_current import MOST_MA, STEP_MA
 
-LATER_BOUNDS = ("torque_variation_nm", "cell_gain_percent", "cell_light_percent")
+LATER_BOUNDS = (
+    *("torque_variation_nm", "cell_gain_percent", "cell_light_percent"),
+    *("magnetometer_orbit_nt", "magnetometer_shadow_nt", "storm_nt", "remanence_percent", "albedo_percent"),
+    *("shadow_impulse_nms", "shadow_dipole_am2"),
+)
 """Keys of ``[uncertainty]`` that earlier tables do not have."""
 LATER_STEPS = (
     ("estimator", "magnetometer_quantum_nt"),
@@ -161,7 +165,12 @@ class FlightTable(Section):
         """Ordinary bounds of this satellite in its orbit; torque at most what its coils can counteract."""
         inertia = self.body.inertia
         torque_nm = min(ordinary_torque_nm(inertia, self.orbit.perigee_km), self._most_torque_nm)
-        return Ordinary(ordinary_dipole_am2(inertia), torque_nm, 1.0 / self.time.tick_hz)
+        return Ordinary(
+            ordinary_dipole_am2(inertia),
+            torque_nm,
+            1.0 / self.time.tick_hz,
+            ordinary_shadow_impulse_nms(inertia),
+        )
 
     @property
     def _most_torque_nm(self) -> float:

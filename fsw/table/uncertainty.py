@@ -11,7 +11,7 @@ lies between zero and its bound.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import radians, sqrt
+from math import hypot, radians, sqrt
 from typing import NamedTuple
 
 from pydantic import Field
@@ -41,6 +41,13 @@ class UncertaintyTable(Section):
     torque_variation_nm: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
     along_track_km: float | None = Field(default=None, ge=0.0, le=20.0)
     latency_s: float | None = Field(default=None, ge=0.0, le=3.0)
+    magnetometer_orbit_nt: float | None = Field(default=None, ge=0.0, le=3000.0)
+    magnetometer_shadow_nt: float | None = Field(default=None, ge=0.0, le=3000.0)
+    storm_nt: float | None = Field(default=None, ge=0.0, le=3000.0)
+    shadow_dipole_am2: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
+    remanence_percent: float | None = Field(default=None, ge=0.0, le=5.0)
+    albedo_percent: float | None = Field(default=None, ge=0.0, le=60.0)
+    shadow_impulse_nms: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
     cell_gain_percent: float | None = Field(default=None, ge=0.0, le=30.0)
     cell_light_percent: float | None = Field(default=None, ge=0.0, le=50.0)
 
@@ -91,12 +98,21 @@ class Uncertainty:
     torque_variation_nm: float
     along_track_m: float
     latency_s: float
+    mag_orbit_t: float
+    mag_shadow_t: float
+    storm_t: float
+    shadow_dipole_am2: float
+    remanence_part: float
+    albedo: float
+    shadow_impulse_nms: float
     cell_gain_part: float = 0.0
     cell_light: float = 0.0
     cell_excess: float = 0.0
     earth_light: float = 0.0
 
 
+SHADOW_PART = 0.2
+"""Of the residual dipole, what changes at the shadow's edge with the currents of the solar cells."""
 UNEVEN = 0.5
 """Fraction of the error of the Earth's light that differs from cell to cell: clouds are uneven."""
 
@@ -107,6 +123,7 @@ class Ordinary(NamedTuple):
     dipole_am2: float
     torque_nm: float
     latency_s: float
+    shadow_impulse_nms: float
 
 
 def bounds(table: UncertaintyTable, ordinary: Ordinary, albedo: float | None = None) -> Uncertainty:
@@ -116,11 +133,12 @@ def bounds(table: UncertaintyTable, ordinary: Ordinary, albedo: float | None = N
     half of it, or where it is 0 all of the Earth's light.
     """
     torque_nm = _or(table.torque_nm, ordinary.torque_nm)
+    dipole_am2 = _or(table.residual_dipole_am2, ordinary.dipole_am2)
     cell_gain, cell_light = (0.0, 0.0) if albedo is None else _of_cells(table, albedo)
     return Uncertainty(
         inertia_part=0.01 * _or(table.inertia_percent, 10.0),
         products_part=0.01 * _or(table.products_percent, 2.0),
-        dipole_am2=_or(table.residual_dipole_am2, ordinary.dipole_am2),
+        dipole_am2=dipole_am2,
         coil_gain_part=0.01 * _or(table.coil_gain_percent, 5.0),
         coil_turn_rad=radians(_or(table.coil_misalignment_deg, 0.5)),
         mag_bias_t=1e-9 * _or(table.magnetometer_bias_nt, 1000.0),
@@ -131,6 +149,13 @@ def bounds(table: UncertaintyTable, ordinary: Ordinary, albedo: float | None = N
         torque_variation_nm=_or(table.torque_variation_nm, 0.2 * torque_nm),
         along_track_m=1000.0 * _or(table.along_track_km, 5.0),
         latency_s=_or(table.latency_s, ordinary.latency_s),
+        mag_orbit_t=1e-9 * _or(table.magnetometer_orbit_nt, 400.0),
+        mag_shadow_t=1e-9 * _or(table.magnetometer_shadow_nt, 400.0),
+        storm_t=1e-9 * _or(table.storm_nt, 150.0),
+        shadow_dipole_am2=_or(table.shadow_dipole_am2, SHADOW_PART * dipole_am2),
+        remanence_part=0.01 * _or(table.remanence_percent, 0.3),
+        albedo=0.0 if albedo is not None else 0.01 * _or(table.albedo_percent, 35.0),
+        shadow_impulse_nms=_or(table.shadow_impulse_nms, ordinary.shadow_impulse_nms),
         cell_gain_part=cell_gain,
         cell_light=cell_light,
         cell_excess=cell_light * (UNEVEN if albedo else 1.0),
@@ -153,6 +178,9 @@ SIDE = 1.0 / sqrt(3.0)
 BALL = 1.0 / sqrt(5.0)
 """Standard deviation by axis of a vector that is uniform in the ball of radius 1."""
 DAY_S = 86400.0
+QUARTER_ORBIT_S = 1500.0
+CLOUDY = 0.001
+"""Walk of the albedo, as a part of its bound, per root of a second."""
 
 
 class Shape(NamedTuple):
@@ -188,6 +216,12 @@ def priors(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, Prior]:
         for name, largest in limits(known, inertia_kgm2).items()
         if any(largest)
     }
+    if "mag_bias_t" in found:
+        walk = (hypot(found["mag_bias_t"].walk[0], SIDE * known.mag_orbit_t / sqrt(QUARTER_ORBIT_S)),) * 3
+        found["mag_bias_t"] = replace(found["mag_bias_t"], walk=walk)
+    if known.albedo:  # with a Sun sensor
+        half = 0.5 * known.albedo
+        found["earth_light"] = Prior((SIDE * half,), (CLOUDY * known.albedo,), (half,))
     if "torque_body_nm" in found:
         walk = (known.torque_variation_nm / sqrt(DAY_S),) * 3
         found["torque_body_nm"] = replace(found["torque_body_nm"], walk=walk)
@@ -200,7 +234,7 @@ def limits(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, tuple[float, ...
     product = mean_moment(inertia_kgm2) * known.products_part
     gain, axis = known.coil_gain_part, known.coil_turn_rad
     return {
-        "mag_bias_t": (known.mag_bias_t,) * 3,
+        "mag_bias_t": (hypot(known.mag_bias_t, known.mag_orbit_t, known.mag_shadow_t),) * 3,
         "torque_body_nm": (known.torque_nm,) * 3,
         "dipole_body_am2": (known.dipole_am2,) * 3,
         "coil_error": (gain, axis, axis, axis, gain, axis, axis, axis, gain),

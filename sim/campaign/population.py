@@ -11,7 +11,9 @@ from math import sqrt
 
 import numpy as np
 
+from fsw.core.algebra.vector import Mat3
 from fsw.input.schema import Nested, merge
+from fsw.table.ordinary import mean_moment
 from sim.campaign.consistency import consistency_figures
 from sim.campaign.flight import Order
 from sim.scenario.schema import Scenario, load
@@ -27,8 +29,8 @@ START_DEG, START_DEGPS = 60.0, 0.05
 class Tolerances:
     """By how much a satellite may differ from its table; uniform within that, except for the dipole.
 
-    The last three have no bound of their own on board; they stay within what the magnetometer's misalignment
-    and the dipole leave of theirs.
+    That of ``non_orthogonality_deg`` has no bound of its own on board: with it the magnetometer stays within
+    that of its misalignment. The light of the Earth never exceeds its bound, which is near the most there is.
 
     Attributes:
         residual_dipole_am2: least and most, any direction; its logarithm is uniform.
@@ -46,8 +48,13 @@ class Tolerances:
         along_track_km: by which the satellite is ahead of its elements, or behind them.
         latency_s: of both sensors; every satellite has it in full.
         non_orthogonality_deg: per pair of axes of the magnetometer.
-        eclipse_dipole_percent: of the dipole, what points in another direction in the Earth's shadow.
-        remanence_percent: of the largest dipole, what pulses at the highest level may leave behind.
+        eclipse_dipole_percent: of the largest dipole, what the Earth's shadow adds to it at most.
+        remanence_percent: of the dipole of a pulse, what its coil keeps.
+        magnetometer_orbit_nt: amplitude per axis with which its bias follows the orbit, at any phase.
+        magnetometer_shadow_nt: per axis, by which it changes in the shadow.
+        storm_nt: of the field at high latitude.
+        albedo_percent: of sunlight, what the Earth reflects onto the Sun sensor; it varies over the clouds.
+        snap_radps: change of the rate per axis at the shadow's edge.
     """
 
     residual_dipole_am2: Interval
@@ -64,19 +71,30 @@ class Tolerances:
     along_track_km: float = 5.0
     latency_s: float = 1.0
     non_orthogonality_deg: float = 0.1
-    eclipse_dipole_percent: float = 10.0
-    remanence_percent: float = 2.0
+    eclipse_dipole_percent: float = 20.0
+    remanence_percent: float = 0.3
+    magnetometer_orbit_nt: float = 400.0
+    magnetometer_shadow_nt: float = 400.0
+    storm_nt: float = 150.0
+    albedo_percent: float = 35.0
+    snap_radps: float = 6e-5
 
-    def declared(self) -> Nested:
+    def declared(self, inertia_kgm2: Mat3) -> Nested:
         """The bounds as ``[uncertainty]`` of an onboard table."""
         values = {key: value for key, value in asdict(self).items() if key not in NOT_DECLARED}
         values["residual_dipole_am2"] = self.residual_dipole_am2[1]
         values["torque_nm"] = values.pop("declared_torque_nm")
         values["torque_variation_nm"] = 0.2 * values["torque_nm"]
+        values["shadow_dipole_am2"] = 0.01 * self.eclipse_dipole_percent * self.residual_dipole_am2[1]
+        values["shadow_impulse_nms"] = self.snap_radps * mean_moment(inertia_kgm2)
         return values
 
 
-NOT_DECLARED = ("non_orthogonality_deg", "eclipse_dipole_percent", "remanence_percent")
+NOT_DECLARED = ("non_orthogonality_deg", "eclipse_dipole_percent", "snap_radps")
+CLOUDY = 0.3
+"""Largest relative standard deviation of the Earth's light over the clouds."""
+PENUMBRA_S = 10.0
+"""What a satellite in low orbit takes to cross it, at least."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,18 +125,18 @@ def satellite(
         declared: the onboard table declares the bounds; otherwise it assumes ordinary ones.
     """
     chosen, factor = POPULATIONS[kind], 2.0 if twice else 1.0
-    random, more = (_stream(kind, seed, number) for number in ((), (1,)))
+    random, more, changing = (_stream(kind, seed, number) for number in ((), (1,), (2,)))
     nominal = nominal_scenario(chosen.scenario)
     body = nominal.body
     overrides = _hardware(random, chosen.tolerances, factor)
-    unmodelled = _unmodelled(more, overrides, nominal.coils.levels_am2[2], chosen.tolerances, factor)
-    overrides = merge(overrides, unmodelled)
+    overrides = merge(overrides, _skew(more, overrides, chosen.tolerances, factor))
+    overrides = merge(overrides, _changes(changing, nominal, chosen.tolerances, factor))
     overrides["initial"] = _start(random, rate_degps)
     overrides["body"] = {
         "inertia_kgm2": _inertia(random, np.array(body.inertia), chosen.tolerances, factor).tolist()
     }
     overrides["flight"] = {"body": {"inertia_kgm2": list(body.inertia_kgm2)}}
-    limits = chosen.tolerances.declared()
+    limits = chosen.tolerances.declared(body.inertia)
     overrides["flight"]["uncertainty"] = limits if declared else dict.fromkeys(limits)
     return overrides
 
@@ -188,36 +206,46 @@ def _hardware(random: np.random.Generator, tolerances: Tolerances, factor: float
     }
 
 
-def _unmodelled(
-    random: np.random.Generator, drawn: Nested, level_am2: float, tolerances: Tolerances, factor: float
-) -> Nested:
-    """What the filter has no parameter for: a non-orthogonal magnetometer, a dipole that changes.
+def _skew(random: np.random.Generator, drawn: Nested, tolerances: Tolerances, factor: float) -> Nested:
+    """A magnetometer that is not orthogonal, for which the filter has no parameter.
 
-    No axis of the magnetometer is off by more than the bound on its misalignment, with its skew included, and
-    the dipole never exceeds its bound: in shadow a fraction of its size points in a random direction, and the
-    cores of all three coils together keep no more than is left.
-
-    Args:
-        random: the stream.
-        drawn: by ``_hardware``.
-        level_am2: nominal dipole of a coil's highest level.
-        tolerances: the bounds.
-        factor: of the bounds.
+    None of its axes is off by more than the bound on its misalignment, skew included.
     """
     turn_deg = float(np.linalg.norm(drawn["sensors"]["magnetometer"]["misalignment_deg"]))
     left_deg = (factor * tolerances.magnetometer_misalignment_deg - turn_deg) / sqrt(2.0)
     skew_deg = min(factor * tolerances.non_orthogonality_deg, left_deg) * random.uniform(-1.0, 1.0, 3)
-    dipole = np.array(drawn["disturbance"]["residual_dipole_am2"])
-    size, most = float(np.linalg.norm(dipole)), factor * tolerances.residual_dipole_am2[1]
-    elsewhere = 0.01 * tolerances.eclipse_dipole_percent * random.uniform()
-    in_shadow = (1.0 - elsewhere) * dipole + elsewhere * size * _direction(random)
-    kept_am2 = min(0.01 * tolerances.remanence_percent * most, most - size) * random.uniform()
-    pulses_am2 = sqrt(3.0) * level_am2 * max(drawn["coils"]["dipole_scale"])
+    return {"sensors": {"magnetometer": {"non_orthogonality_deg": skew_deg.tolist()}}}
+
+
+def _changes(random: np.random.Generator, nominal: Scenario, tolerances: Tolerances, factor: float) -> Nested:
+    """What changes in orbit: bias, dipole, light of the Earth, field, and the rate at the shadow's edge."""
+
+    def within(bound: float) -> list[float]:
+        drawn: list[float] = (factor * bound * random.uniform(-1.0, 1.0, 3)).tolist()
+        return drawn
+
+    def part(bound: float) -> float:
+        return factor * bound * float(random.uniform())
+
+    dipole_am2 = 0.01 * tolerances.eclipse_dipole_percent * tolerances.residual_dipole_am2[1]
+    impulse_nms = tolerances.snap_radps * mean_moment(nominal.body.inertia)
     return {
-        "sensors": {"magnetometer": {"non_orthogonality_deg": skew_deg.tolist()}},
+        "sensors": {
+            "magnetometer": {
+                "orbit_bias_nt": within(tolerances.magnetometer_orbit_nt),
+                "orbit_bias_phase_deg": random.uniform(0.0, 360.0, 3).tolist(),
+                "shadow_bias_nt": within(tolerances.magnetometer_shadow_nt),
+            },
+            "sun": {
+                "albedo": part(0.01 * tolerances.albedo_percent / factor),
+                "albedo_spread": CLOUDY * float(random.uniform()),
+            },
+        },
+        "field": {"storm_nt": part(tolerances.storm_nt)},
         "disturbance": {
-            "residual_dipole_eclipse_am2": (in_shadow - dipole).tolist(),
-            "remanence_part": kept_am2 / pulses_am2,
+            "residual_dipole_eclipse_am2": (part(dipole_am2) * _direction(random)).tolist(),
+            "remanence_part": part(0.01 * tolerances.remanence_percent),
+            "penumbra_torque_nm": within(impulse_nms / PENUMBRA_S),
         },
     }
 

@@ -49,10 +49,12 @@ class FieldConfig:
     Attributes:
         model: IGRF-14; its degree 1 alone; or the dipole along the Earth's axis.
         degree: highest degree of ``igrf14``, 1 to 13.
+        storm_t: what a storm adds to it at high latitude at most, as in ``environment.field.Storm``.
     """
 
     model: FieldModel = "igrf14"
     degree: int = 13
+    storm_t: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,6 +151,7 @@ class DisturbanceConfig:
         torque_noise_nm_rts: root of the spectral density of a white torque per axis [N m s^(1/2)].
         torque_daily_part: amplitude of the daily variation of ``torque_body_nm``, as a fraction of it.
         residual_dipole_eclipse_body_am2: what the Earth's shadow adds to the residual dipole, body axes.
+        penumbra_torque_body_nm: torque while the Sun is partly hidden, body axes.
 
     Raises:
         ValueError: a quantity that cannot be negative is, or the daily part is above 1.
@@ -162,6 +165,7 @@ class DisturbanceConfig:
     torque_noise_nm_rts: float = 0.0
     torque_daily_part: float = 0.0
     residual_dipole_eclipse_body_am2: Vec3 = ZERO
+    penumbra_torque_body_nm: Vec3 = ZERO
 
     def __post_init__(self) -> None:
         for name in ("density_scale", "solar_flux_wpm2", "eddy_nms_per_t2", "torque_noise_nm_rts"):

@@ -115,7 +115,7 @@ class Plant:
         """
         tick, coils, wheel = self._tick, self._coils, self._wheel
         faulty, sample = self.interference, self._sample
-        b_t, b_valid = self._magnetometer.measure(self._b_body_t, coils.dipole_body_am2)
+        b_t, b_valid = self._magnetometer.measure(self._b_body_t, coils.dipole_body_am2, self.t_s, sample.lit)
         b_t, b_valid = faulty.field(b_t, b_valid)
         view = SunView(self._body_from_eci, sample.r_eci_m, sample.sun_eci, self._sun_body, sample.lit)
         frames: list[Frame] = []
@@ -246,8 +246,8 @@ class Plant:
         return torques.BodyTorque(self._inertia, add(m_body_am2, residual), bias, self._effects)
 
     def _bias_body_nm(self) -> Vec3:
-        """The constant torque with its daily variation, at the instant of the tick."""
-        return bias_torque(self._disturbance, self.t_s)
+        """The constant torque with its daily variation, and that of the penumbra, now."""
+        return bias_torque(self._disturbance, self.t_s, self._sample.lit)
 
     def _initial_motion(self) -> Motion:
         sample, initial = self._environment.sample(0), self._config.initial

@@ -18,6 +18,10 @@ class MagnetometerConfig:
     Attributes:
         noise_t: standard deviation per axis and sample.
         bias_t: constant offset, sensor axes.
+        orbit_bias_t: amplitude by axis of an offset that follows the orbit, a sin(2 pi t / period + phase).
+        orbit_bias_phase_rad: its phase by axis at tick 0.
+        orbit_s: its period.
+        shadow_bias_t: offset in the Earth's shadow, beside the others.
         scale: factor per sensor axis.
         misalignment_rad: rotation vector that turns the body axes into the sensor's.
         non_orthogonality_rad: right angle minus the angles xy, xz and yz between the sensor axes.
@@ -30,6 +34,10 @@ class MagnetometerConfig:
 
     noise_t: float = 0.0
     bias_t: Vec3 = ZERO
+    orbit_bias_t: Vec3 = ZERO
+    orbit_bias_phase_rad: Vec3 = ZERO
+    orbit_s: float = 6000.0
+    shadow_bias_t: Vec3 = ZERO
     scale: Vec3 = ONES
     misalignment_rad: Vec3 = ZERO
     non_orthogonality_rad: Vec3 = ZERO
@@ -51,7 +59,8 @@ class SunSensorConfig:
         latency_s: age of the values in a sample.
         fov_half_rad: half the opening angle of each cone of view.
         boresights_body: unit axes of the cones, body axes; none: it sees in all directions.
-        albedo: whether the light of the Earth deflects the measured direction.
+        albedo: mean fraction of sunlight that the Earth reflects, which deflects the measured direction.
+        albedo_spread: standard deviation of its variation over the clouds, as a fraction of it.
     """
 
     noise_rad: float = 0.0
@@ -60,7 +69,8 @@ class SunSensorConfig:
     latency_s: float = 0.0
     fov_half_rad: float = pi
     boresights_body: tuple[Vec3, ...] = ()
-    albedo: bool = False
+    albedo: float = 0.0
+    albedo_spread: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

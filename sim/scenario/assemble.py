@@ -19,7 +19,7 @@ from sim.plant.sensor_config import AS_NAMED, CellConfig, MagnetometerConfig, Su
 from sim.plant.wheel_config import WheelConfig
 from sim.scenario.coil_limits import coil_limits
 from sim.scenario.own_effects import own_effects
-from sim.scenario.schema import Scenario
+from sim.scenario.schema import Scenario, orbit_period_s
 from sim.scenario.sections import CellsSection, ScenarioWheel
 from sim.value_types import Vec3
 
@@ -45,7 +45,7 @@ def _config(scenario: Scenario, seed: int) -> PlantConfig:
         tick_hz=tick_hz,
         seed=seed,
         orbit=_orbit(scenario),
-        field=FieldConfig(scenario.field.model, scenario.field.degree),
+        field=FieldConfig(scenario.field.model, scenario.field.degree, scenario.field.storm_nt * NT),
         body=_body(scenario),
         initial=_initial(scenario),
         disturbance=_disturbance(scenario),
@@ -115,6 +115,7 @@ def _disturbance(scenario: Scenario) -> DisturbanceConfig:
         torque_noise_nm_rts=section.torque_noise_nm_rts,
         torque_daily_part=section.torque_daily_part,
         residual_dipole_eclipse_body_am2=section.residual_dipole_eclipse_am2,
+        penumbra_torque_body_nm=section.penumbra_torque_nm,
     )
 
 
@@ -160,6 +161,10 @@ def _magnetometer(scenario: Scenario) -> MagnetometerConfig:
     return MagnetometerConfig(
         noise_t=section.noise_nt * NT,
         bias_t=_scaled(section.bias_nt, NT),
+        orbit_bias_t=_scaled(section.orbit_bias_nt, NT),
+        orbit_bias_phase_rad=_radians(section.orbit_bias_phase_deg),
+        orbit_s=orbit_period_s(scenario),
+        shadow_bias_t=_scaled(section.shadow_bias_nt, NT),
         scale=section.scale,
         misalignment_rad=_radians(section.misalignment_deg),
         non_orthogonality_rad=_radians(section.non_orthogonality_deg),
@@ -180,7 +185,8 @@ def _sun_sensor(scenario: Scenario) -> SunSensorConfig:
         latency_s=section.latency_s,
         fov_half_rad=radians(section.fov_half_deg or 180.0),
         boresights_body=tuple(_unit(axis) for axis in section.boresights),
-        albedo=section.albedo,
+        albedo=section.mean_albedo,
+        albedo_spread=section.albedo_spread,
     )
 
 

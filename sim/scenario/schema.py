@@ -61,10 +61,14 @@ class ScenarioTime(TimeTable):
 
 
 class TruthField(Section):
-    """Field model of the plant; ``degree`` applies to igrf14. The onboard model is the same to degree 10."""
+    """Field model of the plant; ``degree`` applies to igrf14. The onboard model is the same to degree 10.
+
+    ``storm_nt`` is what a geomagnetic storm adds at high latitude at most.
+    """
 
     model: Literal["igrf14", "tilted_dipole", "direct_dipole"] = "igrf14"
     degree: int = Field(default=13, ge=1, le=13)
+    storm_nt: float = Field(default=0.0, ge=0.0, le=5000.0)
 
 
 class InitialState(Section):

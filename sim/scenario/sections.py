@@ -117,12 +117,17 @@ def onboard_wheel(section: ScenarioWheel) -> Nested:
 class MagnetometerSection(Section):
     """Physics of the magnetometer, body axes.
 
+    ``orbit_bias_nt`` is the amplitude of an offset that follows the orbit as a sine, beside ``bias_nt``, by
+    axis, ``orbit_bias_phase_deg`` its phase at the epoch, ``shadow_bias_nt`` an offset in the Earth's shadow,
     ``non_orthogonality_deg`` is a right angle minus the angles xy, xz and yz between its axes,
     ``wiring``, by channel, the sensor axis that it shows, negative for its opposite.
     """
 
     noise_nt: NotNegative = 200.0
     bias_nt: Triple = (0.0, 0.0, 0.0)
+    orbit_bias_nt: Triple = (0.0, 0.0, 0.0)
+    orbit_bias_phase_deg: Triple = (0.0, 0.0, 0.0)
+    shadow_bias_nt: Triple = (0.0, 0.0, 0.0)
     scale: Triple = (1.0, 1.0, 1.0)
     misalignment_deg: Triple = (0.0, 0.0, 0.0)
     non_orthogonality_deg: Annotated[tuple[Skew, Skew, Skew], Strict(False)] = (0.0, 0.0, 0.0)
@@ -140,7 +145,8 @@ class MagnetometerSection(Section):
 class SunSensorSection(Section):
     """Physics of the Sun sensor, body axes: in view within ``fov_half_deg`` of a boresight.
 
-    With ``albedo`` the light of the Earth deflects the measured direction.
+    ``albedo`` is the mean fraction of sunlight that the Earth reflects, true for 0.3, and deflects the
+    measured direction; ``albedo_spread`` its relative standard deviation over the clouds.
     """
 
     noise_deg: NotNegative = 0.5
@@ -149,7 +155,8 @@ class SunSensorSection(Section):
     latency_s: Latency = 0.0
     fov_half_deg: float | None = Field(default=None, gt=0.0, le=180.0)
     boresights: Annotated[tuple[Triple, ...], Strict(False)] = ()
-    albedo: bool = False
+    albedo: bool | Part = False
+    albedo_spread: Part = 0.0
 
     @model_validator(mode="after")
     def _has_cones(self) -> Self:
@@ -158,6 +165,11 @@ class SunSensorSection(Section):
         if not all(any(axis) for axis in self.boresights):
             raise ValueError("boresights must not be zero")
         return self
+
+    @property
+    def mean_albedo(self) -> float:
+        """The fraction of sunlight that the Earth reflects, 0 for none."""
+        return self.albedo if isinstance(self.albedo, float) else MEAN_ALBEDO * self.albedo
 
 
 class CellsSection(CellShapes):
@@ -212,12 +224,14 @@ class DisturbanceSection(Section):
 
     ``torque_noise_nm_rts`` is the root of the spectral density of the white torque per axis,
     ``torque_daily_part`` the amplitude of the constant torque's daily variation as a fraction of it,
-    ``residual_dipole_eclipse_am2`` what is added to the residual dipole in shadow, ``remanence_part`` the
-    fraction of its last pulse's dipole that a coil keeps until its next.
+    ``penumbra_torque_nm`` is added while the Sun is partly hidden, ``residual_dipole_eclipse_am2`` to the
+    residual dipole in shadow; ``remanence_part`` is the fraction of its last pulse's dipole that a coil keeps
+    until its next.
     """
 
     torque_nm: Triple = (0.0, 0.0, 0.0)
     torque_daily_part: Part = 0.0
+    penumbra_torque_nm: Triple = (0.0, 0.0, 0.0)
     residual_dipole_am2: Triple = (0.0, 0.0, 0.0)
     residual_dipole_eclipse_am2: Triple = (0.0, 0.0, 0.0)
     remanence_part: Part = 0.0
@@ -249,6 +263,8 @@ def _coarser(step: float, of_bus: float) -> float:
     return step if step > of_bus else 0.0
 
 
+MEAN_ALBEDO = 0.3
+"""0.05 over open ocean, 0.6 over high clouds or ice (ECSS-E-ST-10-04C, annex F)."""
 LEAST_CELL_NOISE_PERCENT = 0.1
 BUS_STEP_NT, BUS_STEP_SUN, BUS_STEP_PERCENT = 2.0, 2.0**-14, 100.0 * 2.0**-7
 """Steps of field, Sun vector and cell current in their messages."""

@@ -9,11 +9,15 @@ from fsw.wire.value import Value
 
 @final
 class Attitude(Value):
-    """Attitude and rate of the body relative to the orbital frame, with 3 sigma of each."""
+    """Attitude and rate of the body relative to the orbital frame, with 3 sigma of each.
+
+    ``valid``: as certain as others may rely on; ``usable``: proven, and certain enough to be controlled by;
+    by default if it is valid.
+    """
 
     FIELDS = (
         *("q_body_from_orbit", "omega_body_orbit_radps"),
-        *("sigma3_attitude_rad", "sigma3_rate_radps", "valid"),
+        *("sigma3_attitude_rad", "sigma3_rate_radps", "valid", "usable"),
     )
     __slots__ = FIELDS
 
@@ -24,15 +28,17 @@ class Attitude(Value):
         sigma3_attitude_rad: float,
         sigma3_rate_radps: float,
         valid: bool,
+        usable: bool | None = None,
     ) -> None:
         self.q_body_from_orbit = q_body_from_orbit
         self.omega_body_orbit_radps = omega_body_orbit_radps
         self.sigma3_attitude_rad = sigma3_attitude_rad
         self.sigma3_rate_radps = sigma3_rate_radps
         self.valid = valid
+        self.usable = valid if usable is None else usable
 
     def invalid(self) -> "Attitude":
-        """The same attitude, which is not valid."""
+        """The same attitude, neither valid nor usable."""
         return Attitude(
             self.q_body_from_orbit,
             self.omega_body_orbit_radps,

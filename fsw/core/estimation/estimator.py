@@ -10,6 +10,7 @@ from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.cells.relinearise import Linear, linear_about, relinearise
 from fsw.core.estimation.cells.update import NO_CELLS, CellsUsed, fade, update_cells
+from fsw.core.estimation.changes import NO_CHANGES, Changes, widen
 from fsw.core.estimation.dynamics.error_dynamics import (
     FAST_SQUARE,
     KNOWN_VARIANCE,
@@ -18,7 +19,7 @@ from fsw.core.estimation.dynamics.error_dynamics import (
     Driven,
 )
 from fsw.core.estimation.kalman import largest_variance
-from fsw.core.estimation.measurement import field_sampled
+from fsw.core.estimation.measurement import deflected_sun, field_sampled
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig, WheelMotion
 from fsw.core.estimation.parameters import Parameters
@@ -67,7 +68,9 @@ class EstimatorConfig:
     start: StartLimits
     restart_after_rejections: int
     valid_sigma_rad: float
+    usable_sigma_rad: float
     blank_ticks: int = 0
+    changes: Changes = NO_CHANGES
 
 
 @final
@@ -145,7 +148,7 @@ def predict(
     if len(driven) * config.mekf.tick_s > MAX_ELAPSED_S + 1e-6:
         restart(state)
         return
-    _predict(state.estimate, reference, driven, config.mekf, wheel)
+    _predict(state.estimate, reference, driven, config, wheel)
     if not mekf.healthy(state.estimate):
         restart(state)
 
@@ -154,14 +157,16 @@ def _predict(
     estimate: Estimate,
     reference: Reference,
     driven: Sequence[Driven],
-    config: MekfConfig,
+    config: EstimatorConfig,
     wheel: WheelMotion | None,
 ) -> None:
+    tuning = config.mekf
     gravity = 3.0 * MU_M3PS2 / reference.radius_m**3
     for left, one in enumerate(driven, 1 - len(driven)):
-        e1_eci, b_eci_t = earlier(reference, -left * config.tick_s)
-        mekf.predict(estimate, e1_eci, b_eci_t, gravity, one.m_body_am2, config, one.doubted_am2, wheel)
-        fade(estimate, config)
+        e1_eci, b_eci_t = earlier(reference, -left * tuning.tick_s)
+        mekf.predict(estimate, e1_eci, b_eci_t, gravity, one.m_body_am2, tuning, one.doubted_am2, wheel)
+        widen(estimate, reference, one.m_body_am2, tuning, config.changes)
+        fade(estimate, tuning)
 
 
 def update(
@@ -199,14 +204,16 @@ def update(
         seen = light(reference.r_eci_m, reference.sun_eci, cells.albedo) if currents else None
         known = linear_about(estimate, b, seen, config.mekf, cells)
     took_field = took_sun = False
+    s_eci, slope_eci = deflected_sun(estimate.parameters, reference, config.mekf)
     if field is not None and sun is not None:
         took_field = took_sun = mekf.update_both(
-            estimate, field, b, sun, reference.sun_eci, config.mekf, open_body, frozen, wheel_nms
+            estimate, field, b, sun, s_eci, config.mekf, open_body, frozen, wheel_nms, slope_eci
         )
     if field is not None and not took_field:
         took_field = mekf.update_field(estimate, field, b, config.mekf, open_body, frozen, wheel_nms)
     if sun is not None and not took_sun:
-        took_sun = mekf.update_sun(estimate, sun, reference.sun_eci, config.mekf, frozen, wheel_nms)
+        s_eci, slope_eci = deflected_sun(estimate.parameters, reference, config.mekf)  # the field moved them
+        took_sun = mekf.update_sun(estimate, sun, s_eci, config.mekf, frozen, wheel_nms, slope_eci)
     rejected = (field is not None and not took_field) + (sun is not None and not took_sun)
     by_cell = NO_CELLS
     if cells is not None and known is not None:

@@ -1,13 +1,25 @@
 """What each sensor should measure, and how that depends on every part of the error state."""
 
 from fsw.core.algebra.quaternion import Quaternion, rotate
-from fsw.core.algebra.vector import Vec3, add, cross, is_zero, scale, sub
+from fsw.core.algebra.vector import ZERO, Vec3, add, cross, is_zero, scale, sub
 from fsw.core.estimation.kalman import Matrix, sensitivity
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import Parameters
+from fsw.core.orbit.ephemeris import Reference
+from fsw.core.orbit.sun import apparent_sun
 
 Prediction = tuple[Vec3, Matrix]
 """What should be measured, and its sensitivity H, (3, n)."""
+
+
+def deflected_sun(parameters: Parameters, reference: Reference, config: MekfConfig) -> tuple[Vec3, Vec3]:
+    """What a Sun sensor takes for the Sun by the estimated albedo, and its derivative by that; eci.
+
+    Cells see both lights apart: for them, as where the filter does not carry it, the albedo deflects nothing.
+    """
+    if config.layout.earth_light is None or config.cells is not None:
+        return reference.sun_eci, ZERO
+    return apparent_sun(reference.r_eci_m, reference.sun_eci, parameters.earth_light[0])
 
 
 def field_prediction(
@@ -30,11 +42,21 @@ def field_sampled(parameters: Parameters, b_eci_t: Vec3, b_rate_eci_tps: Vec3) -
 
 
 def sun_prediction(
-    q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, s_eci: Vec3, config: MekfConfig
+    q_body_from_eci: Quaternion,
+    omega: Vec3,
+    parameters: Parameters,
+    s_eci: Vec3,
+    config: MekfConfig,
+    slope_eci: Vec3 = ZERO,
 ) -> Prediction:
-    """The Sun sensor: z = R(turn) C(t - delay) s, R the misalignment; body axes."""
+    """The Sun sensor: z = R(turn) C(t - delay) s, R the misalignment; body axes.
+
+    ``slope_eci``: the derivative of s by the Earth's light.
+    """
     s, age_s = _sun_at_sample(q_body_from_eci, omega, parameters, s_eci), parameters.delay_s[1]
-    return s, sensitivity(config.sun_sensitivity, s, omega, (age_s,), config.sun_places)
+    rows = sensitivity(config.sun_sensitivity, s, omega, (age_s,), config.sun_places)
+    _fill_slope(rows, 0, q_body_from_eci, slope_eci, config)
+    return s, rows
 
 
 def both_prediction(
@@ -44,12 +66,23 @@ def both_prediction(
     b_eci_t: Vec3,
     s_eci: Vec3,
     config: MekfConfig,
+    slope_eci: Vec3 = ZERO,
 ) -> tuple[Vec3, Vec3, Matrix]:
-    """Magnetometer and Sun sensor; the sensitivity of both is (6, n)."""
+    """Magnetometer and Sun sensor, as above; the sensitivity of both is (6, n)."""
     b = _field_at_sample(q_body_from_eci, omega, parameters, b_eci_t)
     s = _sun_at_sample(q_body_from_eci, omega, parameters, s_eci)
     rows = sensitivity(config.both_sensitivity, (b, s), omega, parameters.delay_s, config.both_places)
+    _fill_slope(rows, 3, q_body_from_eci, slope_eci, config)
     return _field_shown(b, parameters), s, rows
+
+
+def _fill_slope(
+    rows: Matrix, first: int, q_body_from_eci: Quaternion, slope_eci: Vec3, config: MekfConfig
+) -> None:
+    """Fill in how the Sun's direction, from row ``first`` on, depends on the Earth's light."""
+    place = config.layout.earth_light
+    if place is not None and not is_zero(slope_eci):
+        rows[first : first + 3, place.start] = rotate(q_body_from_eci, slope_eci)
 
 
 def _field_at_sample(q_body_from_eci: Quaternion, omega: Vec3, parameters: Parameters, b_eci_t: Vec3) -> Vec3:

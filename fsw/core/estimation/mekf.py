@@ -37,6 +37,7 @@ from fsw.core.estimation.kalman import (
     Matrix,
     Trace,
     carry_trace,
+    largest_variance,
     total_variance,
     unexplained,
 )
@@ -58,6 +59,8 @@ LAG_S: Final = 60.0
 """Time over which innovations are averaged."""
 Lag = tuple[float, float, float, float, float, float]
 NO_LAG: Lag = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+DOUBT_OF_LIGHT: Final = 0.3
+"""Part of the variance of the Sun's deflection that counts as noise too."""
 MAX_VARIANCE: Final = 1e6
 """Beyond it (1000 rad) an estimate is worthless, and the algebra nears overflow."""
 
@@ -234,14 +237,19 @@ def update_sun(
     config: MekfConfig,
     frozen: bool = False,
     wheel_nms: Vec3 = ZERO,
+    slope_eci: Vec3 = ZERO,
 ) -> bool:
-    """Take a Sun direction; False when the gate rejects it."""
-    predicted, sensitivity = sun_prediction(
-        estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters, s_eci, config
-    )
-    innovation = sub(s_body, predicted)
-    noise, gate_nis = config.sun_noise, config.gate_nis
-    return take(estimate, innovation, sensitivity, noise, config, gate_nis, 3, frozen, wheel_nms)
+    """Take a Sun direction; False when the gate rejects it.
+
+    ``slope_eci``: as for ``sun_prediction``.
+    """
+    q, omega, parameters = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
+    predicted, sensitivity = sun_prediction(q, omega, parameters, s_eci, config, slope_eci)
+    innovation, noise = sub(s_body, predicted), config.sun_noise
+    doubt = _doubt_of_light(estimate, slope_eci, config)
+    if doubt > 0.0:
+        noise = _with_doubt(noise, 0, doubt)
+    return take(estimate, innovation, sensitivity, noise, config, config.gate_nis, 3, frozen, wheel_nms)
 
 
 def update_both(
@@ -254,13 +262,16 @@ def update_both(
     open_body: Vec3 | None = None,
     frozen: bool = False,
     wheel_nms: Vec3 = ZERO,
+    slope_eci: Vec3 = ZERO,
 ) -> bool:
     """Take field and Sun in one update; False when it is uncertain that each would pass the gate by itself.
 
     The NIS of a part never exceeds that of the whole, so the gate for one, applied to both, is stricter.
     """
     q, omega, parameters = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
-    b_predicted, s_predicted, sensitivity = both_prediction(q, omega, parameters, b_eci_t, s_eci, config)
+    b_predicted, s_predicted, sensitivity = both_prediction(
+        q, omega, parameters, b_eci_t, s_eci, config, slope_eci
+    )
     b1, b2, b3 = sub(b_body_t, b_predicted)
     s1, s2, s3 = sub(s_body, s_predicted)
     innovation = (b1, b2, b3, s1, s2, s3)
@@ -268,7 +279,30 @@ def update_both(
     if open_body is not None:
         noise = noise.copy()
         noise[0:3, 0:3] += open_noise(open_body)
+    doubt = _doubt_of_light(estimate, slope_eci, config)
+    if doubt > 0.0:
+        noise = _with_doubt(noise, 3, doubt)
     return take(estimate, innovation, sensitivity, noise, config, config.gate_nis, 0, frozen, wheel_nms)
+
+
+def _doubt_of_light(estimate: Estimate, slope_eci: Vec3, config: MekfConfig) -> float:
+    """Variance by which the Sun's direction counts as noisier while the Earth's light is uncertain, rad^2.
+
+    To first order its error is in the error state; what that leaves out does not average out as noise does.
+    """
+    place = config.layout.earth_light
+    if place is None or is_zero(slope_eci):
+        return 0.0
+    variance = dot(slope_eci, slope_eci) * largest_variance(estimate.covariance, place.start, place.stop)
+    return DOUBT_OF_LIGHT * variance
+
+
+def _with_doubt(noise: Matrix, first: int, variance: float) -> Matrix:
+    """The noise with this variance added to the Sun's components, from number ``first`` on."""
+    more = noise.copy()
+    for place in range(first, first + 3):
+        more[place, place] += variance
+    return more
 
 
 def take(

@@ -271,6 +271,6 @@ def _means(priors: Mapping[str, Prior], with_cells: bool) -> Parameters:
         name: (0.0,) * size for name, size in OF_CELLS.items() if with_cells or name in priors
     }
     for name, prior in priors.items():
-        if prior.mean and name not in OF_CELLS:
+        if prior.mean:
             means[name] = prior.mean
     return Parameters(**means)

@@ -9,8 +9,18 @@ from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.ephemeris import Reference
 
 
-def orbital_attitude(estimate: Estimate | None, reference: Reference, valid_sigma_rad: float) -> Attitude:
-    """The estimate relative to the orbital frame, valid up to this standard deviation of its worst axis."""
+def orbital_attitude(
+    estimate: Estimate | None,
+    reference: Reference,
+    valid_sigma_rad: float,
+    usable_sigma_rad: float,
+    was_valid: bool = False,
+) -> Attitude:
+    """The estimate relative to the orbital frame.
+
+    Usable up to ``usable_sigma_rad`` about its worst axis; valid up to ``valid_sigma_rad``, and from then on
+    while it is usable: what is known for sure does not change when a shadow makes it less certain.
+    """
     if estimate is None:
         return UNKNOWN
     q = canonical(multiply(conjugate(reference.q_orbit_from_eci), estimate.q_body_from_eci))
@@ -18,11 +28,13 @@ def orbital_attitude(estimate: Estimate | None, reference: Reference, valid_sigm
     omega = sub(estimate.omega_body_radps, scale(reference.orbit_rate_radps, e3_body))
     sigma_attitude = largest_variance(estimate.covariance, 0, 3) ** 0.5
     sigma_rate = largest_variance(estimate.covariance, 3, 6) ** 0.5
-    return Attitude(q, omega, 3.0 * sigma_attitude, 3.0 * sigma_rate, sigma_attitude <= valid_sigma_rad)
+    usable = sigma_attitude <= usable_sigma_rad
+    valid = usable and (was_valid or sigma_attitude <= valid_sigma_rad)
+    return Attitude(q, omega, 3.0 * sigma_attitude, 3.0 * sigma_rate, valid, usable)
 
 
 def perfect_attitude(measurements: Measurements, before: Attitude) -> Attitude:
-    """The attitude the reference messages give; the one before, no longer valid, where they are missing."""
+    """The attitude the reference messages give; the one before, no longer usable, where they are missing."""
     attitude, rate = measurements.ref_attitude, measurements.ref_rate
     if attitude is None or rate is None or not attitude.valid or not rate.valid:
         return before.invalid()

@@ -130,15 +130,15 @@ def judge(
         config: limits.
 
     Returns:
-        The attitude, which is not valid while a fault may have falsified it. The estimator is corrected or
+        The attitude, which is not usable while a fault may have falsified it. The estimator is corrected or
         restarted where a fault was found.
     """
     sensors, coils, used, weights = health.sensors, health.coils, evidence.used, config.sensors.weights
     if not evidence.settled:
         pair.skip_judgement(sensors.pair, used, estimator.estimate, weights)
-        valid = attitude.valid and not _is_inconclusive(health, used, config)
+        usable = attitude.usable and not _is_inconclusive(health, used, config)
         discard_trace(estimator)
-        return attitude if valid else attitude.invalid()
+        return attitude if usable else attitude.invalid()
     field_before, sun_before = sensors.field.fault, sensors.sun.fault
     cells_before = cell_faults(sensors.cells)
     reference = evidence.reference

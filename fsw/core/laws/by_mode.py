@@ -11,11 +11,11 @@ from fsw.wire.messages import Mode
 
 
 def detumble(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """By the estimated rate if it is valid: predictive with pulses, proportional without. Otherwise B-dot.
+    """By the estimated rate if it is usable: predictive with pulses, proportional without. Otherwise B-dot.
 
     B-dot too where the estimate is beyond what the monitor allows: it may be wrong.
     """
-    if not inputs.attitude.valid or not rate_bounded(inputs.attitude):
+    if not inputs.attitude.usable or not rate_bounded(inputs.attitude):
         return bdot(inputs, memory, setpoint, config)
     law = predictive if config.pulsed else rate_damping
     return law(inputs, memory, setpoint, config)
@@ -51,7 +51,7 @@ def _net(wanted: Demand, inputs: LawInput) -> Demand:
     So too where a law wants none for lack of what it needs: nothing is gained by leaving the residual dipole
     to act.
     """
-    if wanted.impulse_body_nms is not None or wanted.pulse is not None or not inputs.attitude.valid:
+    if wanted.impulse_body_nms is not None or wanted.pulse is not None or not inputs.attitude.usable:
         return wanted
     m_body_am2 = sub(wanted.m_body_am2, inputs.dipole_body_am2)
     return Demand(m_body_am2, memory=wanted.memory, wheel_torque_nm=wanted.wheel_torque_nm)

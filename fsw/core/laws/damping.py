@@ -85,7 +85,7 @@ def switched_gain(b_dot_tps: Vec3, b_body_t: Vec3, k_w: float, below_radps: floa
 
 def rate_damping(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Damping of the rate relative to the orbital frame, down to the spin of the setpoint."""
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand()
     w1, w2, w3 = inputs.attitude.omega_body_orbit_radps
     return Demand(rate_damping_dipole(inputs.b_body_t, (w1 - setpoint.spin_radps, w2, w3), setpoint.k_w))

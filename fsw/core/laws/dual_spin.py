@@ -96,7 +96,7 @@ def dual_spin(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Cont
     frame would destabilise the satellite.
     """
     gains: DualSpinGains = config.gains["dual_spin"]
-    if not inputs.attitude.valid or config.wheel_body_nms[2] <= 0.0:
+    if not inputs.attitude.usable or config.wheel_body_nms[2] <= 0.0:
         return Demand()
     c = dcm(inputs.attitude.q_body_from_orbit)
     omega = inputs.attitude.omega_body_orbit_radps

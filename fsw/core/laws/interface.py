@@ -31,7 +31,7 @@ class FieldSample(Value):
 class LawInput(Value):
     """What a law receives in one tick.
 
-    ``b_body_t`` is the modelled field where the attitude is valid, otherwise the last measured one;
+    ``b_body_t`` is the modelled field where the attitude is usable, otherwise the last measured one;
     ``sample`` and ``before`` are the last usable field sample of this tick and of the tick before;
     ``sun_body`` is the measured Sun direction, with Sun cells the coarse one of three lit ones, None where
     there is none; ``reference`` is orbit, field and Sun as modelled, None where no orbit is known;

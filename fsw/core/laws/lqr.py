@@ -197,7 +197,7 @@ def lqr(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlCon
 
 def by_schedule(inputs: LawInput, table: Schedule | None, config: ControlConfig) -> Demand:
     """The dipole by the gain tabulated for this argument of latitude; nothing without what it needs."""
-    if not inputs.attitude.valid or inputs.reference is None or table is None:
+    if not inputs.attitude.usable or inputs.reference is None or table is None:
         return Demand()
     gain = table.gains[node(latitude_argument(inputs.reference))].ravel().tolist()
     return Demand(

@@ -12,7 +12,7 @@ on where the satellite is,
 
 x = (Omega, theta) and the torque d in orbital axes, as in ``riccati``. The source has the integral of the
 error as states; here the torque that the filter estimates takes its place. The field is
-the modelled one, as for every law with a valid attitude.
+the modelled one, as for every law with a usable attitude.
 
 Source: Psiaki 2001, as in Ovchinnikov, Roldugin 2019, section 3.2, where the functional is damaged; the
 discrete form is derived here from the step of ``riccati``.
@@ -108,7 +108,7 @@ def gain_at(problem: Problem, both: Array, b_orbit_t: Array) -> Array:
 def lqr_averaged(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The dipole M(b) (Omega, theta, d), b the field in orbital axes, d as for ``lqr``."""
     table = config.schedules.get("lqr_averaged")
-    if not inputs.attitude.valid or inputs.reference is None or table is None:
+    if not inputs.attitude.usable or inputs.reference is None or table is None:
         return Demand()
     back = transpose(dcm(inputs.attitude.q_body_from_orbit))
     gain = gain_at(table.problem, table.costs[0], np.array(transform(back, inputs.b_body_t)))

@@ -150,7 +150,7 @@ def _periodic_parts(problem: Problem, b_orbit_t: Array, plain: Schedule) -> tupl
 def lqr_disturbed(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The gain of (Omega, theta, d, c); c is learned and remembered."""
     table, reference = config.schedules.get("lqr_disturbed"), inputs.reference
-    if not inputs.attitude.valid or reference is None or table is None:
+    if not inputs.attitude.usable or reference is None or table is None:
         return Demand(memory=memory)
     gains: DisturbedGains = config.gains["lqr_disturbed"]
     u_rad = latitude_argument(reference)

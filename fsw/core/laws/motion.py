@@ -17,9 +17,9 @@ class InertialMotion(NamedTuple):
 
 
 def motion(inputs: LawInput, config: ControlConfig) -> InertialMotion | None:
-    """Omega = Omega_rel + w0 e3 and h = J omega + h_wheel; None without a valid attitude or an orbit."""
+    """Omega = Omega_rel + w0 e3 and h = J omega + h_wheel; None without a usable attitude or an orbit."""
     attitude, reference = inputs.attitude, inputs.reference
-    if not attitude.valid or reference is None:
+    if not attitude.usable or reference is None:
         return None
     normal_body = rotate(attitude.q_body_from_orbit, (0.0, 0.0, 1.0))
     omega = add(attitude.omega_body_orbit_radps, scale(reference.orbit_rate_radps, normal_body))

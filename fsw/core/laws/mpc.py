@@ -104,7 +104,7 @@ def by_plan(
         applied: steps of a plan that are applied, at most as many as it has.
     """
     table = config.schedules.get(law)
-    if not inputs.attitude.valid or inputs.reference is None or table is None:
+    if not inputs.attitude.usable or inputs.reference is None or table is None:
         return Demand(memory=memory)
     step = _step(memory, inputs.tick, config.tick_s / table.problem.step_s, applied)
     if step is None:

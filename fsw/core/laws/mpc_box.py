@@ -85,7 +85,7 @@ def programme(
 def mpc_box(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The first dipole of the programme; it is remembered with the tick of its start and given for a step."""
     table, reference, model = config.schedules.get("mpc_box"), inputs.reference, inputs.ephemeris
-    if not inputs.attitude.valid or reference is None or model is None or table is None:
+    if not inputs.attitude.usable or reference is None or model is None or table is None:
         return Demand(memory=memory)
     step_s = table.problem.step_s
     if len(memory) == 4 and 0.0 <= (inputs.tick - memory[0]) * config.tick_s < step_s:

@@ -69,8 +69,8 @@ def follow(q_body_from_orbit: Quaternion, followed: Quaternion, part: float) -> 
 
 
 def output_feedback(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """The PD law on the lagged rate; memory is z, which begins at the first valid attitude."""
-    if not inputs.attitude.valid:
+    """The PD law on the lagged rate; memory is z, which begins at the first usable attitude."""
+    if not inputs.attitude.usable:
         return Demand()
     q = inputs.attitude.q_body_from_orbit
     gains: FilterGains = config.gains["output_feedback"]

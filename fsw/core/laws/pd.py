@@ -60,7 +60,7 @@ def bounded_integral(integral_s: Vec3, b_body_t: Vec3, k_i: float, mean_dipole_a
 def pd(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The dipole m = -k_w b x Omega - k_a b x S - k_i b x I, I the integral of S; memory: I."""
     integral_s = _integral(memory)
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand(memory=integral_s)
     error = attitude_error(dcm(inputs.attitude.q_body_from_orbit))
     if setpoint.k_i > 0.0:
@@ -76,7 +76,7 @@ def pd_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Control
     It is limited here too: k_i may have been raised since it grew.
     """
     integral_s = _integral(memory)
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand(memory=integral_s)
     integral_s = bounded_integral(integral_s, inputs.b_body_t, setpoint.k_i, config.mean_dipole_am2)
     return _demand(inputs, far_error(inputs.attitude.q_body_from_orbit), integral_s, setpoint)

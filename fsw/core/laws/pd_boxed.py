@@ -62,14 +62,14 @@ def boxed_dipole(torque_body_nm: Vec3, b_body_t: Vec3, most_am2: float) -> Vec3:
 
 def boxed(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The PD torque by least squares within the limits."""
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand()
     return _boxed(inputs, attitude_error(dcm(inputs.attitude.q_body_from_orbit)), setpoint, config)
 
 
 def boxed_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The same far from the goal, by the error that does not vanish upside down."""
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand()
     return _boxed(inputs, far_error(inputs.attitude.q_body_from_orbit), setpoint, config)
 

@@ -47,7 +47,7 @@ def mean_rate(
 
 def delayed(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The PD law on the mean rate; memory: tick and attitude of the older and of the newer kept attitude."""
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand()
     q, now = inputs.attitude.q_body_from_orbit, float(inputs.tick)
     gains: DelayGains = config.gains["pd_delayed"]

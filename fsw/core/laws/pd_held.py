@@ -83,7 +83,7 @@ def _cycle(
     near: bool,
 ) -> Demand:
     """One tick of the cycle; memory: its first tick, whether the dipole is computed (1 or 0), the dipole."""
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand()
     measure_s, act_s = spans_s
     begun, computed, held = float(inputs.tick), 0.0, ZERO

@@ -65,7 +65,7 @@ def unit_inputs(error: float, rate_radps: float, orbit_rate_radps: float) -> tup
 
 def neural(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The law; memory: v1 and v2 of both units, which begin at their steady state."""
-    if not inputs.attitude.valid or inputs.reference is None:
+    if not inputs.attitude.usable or inputs.reference is None:
         return Demand()
     gains: NeuralGains = config.gains["pd_neural"]
     omega, error = inputs.attitude.omega_body_orbit_radps, far_error(inputs.attitude.q_body_from_orbit)

@@ -44,14 +44,14 @@ def error_when_slow(error: Vec3, omega_body_orbit_radps: Vec3, slow_radps: float
 
 def slow_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Far from the goal, by the error that does not vanish upside down."""
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand()
     return _demand(inputs, far_error(inputs.attitude.q_body_from_orbit), setpoint, config)
 
 
 def slow_near(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Near the goal, by S."""
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand()
     return _demand(inputs, attitude_error(dcm(inputs.attitude.q_body_from_orbit)), setpoint, config)
 

@@ -86,7 +86,7 @@ def pitch_wheel(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Co
     """
     gains: PitchWheelGains = config.gains["pitch_wheel"]
     wheel, h = config.wheel, inputs.wheel_nms
-    if wheel is None or h is None or not inputs.attitude.valid or wheel.axis_body[2] < LEAST_COSINE:
+    if wheel is None or h is None or not inputs.attitude.usable or wheel.axis_body[2] < LEAST_COSINE:
         return Demand()
     c, omega = dcm(inputs.attitude.q_body_from_orbit), inputs.attitude.omega_body_orbit_radps
     torque_nm = pitch_torque(pitch(c), omega[2], config.inertia_kgm2[2][2], gains)

@@ -51,7 +51,7 @@ def free_rate_change(
 
 
 def free_change(inputs: LawInput, reference: Reference, config: ControlConfig) -> Vec3:
-    """The same for what a law sees, with a valid attitude and the orbit ``reference``."""
+    """The same for what a law sees, with a usable attitude and the orbit ``reference``."""
     return free_rate_change(
         inputs.attitude.omega_body_orbit_radps,
         dcm(inputs.attitude.q_body_from_orbit),
@@ -92,7 +92,7 @@ def disturbance_nm(inputs: LawInput) -> Vec3:
 def predictive(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The impulse missing at the end of a pulse fired now."""
     attitude, reference = inputs.attitude, inputs.reference
-    if not attitude.valid or reference is None:
+    if not attitude.usable or reference is None:
         return Demand()
     change = free_change(inputs, reference, config)
     disturbed = transform(config.inertia_inverse, disturbance_nm(inputs))

@@ -93,28 +93,28 @@ def reference_torque(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, 
 
 def weighted(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Near the goal, by S: the PD torque by the weighted projection."""
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand()
     return _weighted(inputs, attitude_error(dcm(inputs.attitude.q_body_from_orbit)), setpoint, config)
 
 
 def weighted_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The same far from the goal, by the error that does not vanish upside down."""
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand()
     return _weighted(inputs, far_error(inputs.attitude.q_body_from_orbit), setpoint, config)
 
 
 def regularised(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Near the goal, by S: the PD torque by the regularised inverse."""
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand()
     return _regularised(inputs, attitude_error(dcm(inputs.attitude.q_body_from_orbit)), setpoint, config)
 
 
 def regularised_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The same far from the goal, by the error that does not vanish upside down."""
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand()
     return _regularised(inputs, far_error(inputs.attitude.q_body_from_orbit), setpoint, config)
 

@@ -157,7 +157,7 @@ class PulseMpcGains:
 def pulse_mpc(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The pulse to fire in answer to this tick; memory is the tick from which one may be demanded."""
     pulses, schedule = config.pulse_model, config.schedules.get("pulse_mpc")
-    known = inputs.attitude.valid and inputs.reference is not None and inputs.ephemeris is not None
+    known = inputs.attitude.usable and inputs.reference is not None and inputs.ephemeris is not None
     if not known or pulses is None or schedule is None:
         return Demand(memory=memory)
     if 0 not in inputs.wait_ticks:

@@ -62,7 +62,7 @@ def rate_damping_matrix(
 ) -> Demand:
     """Damping of the rate relative to the orbital frame, down to the spin of the setpoint."""
     gains: MatrixGains = config.gains["rate_damping_matrix"]
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand()
     w1, w2, w3 = inputs.attitude.omega_body_orbit_radps
     rate = (w1 - setpoint.spin_radps, w2, w3)

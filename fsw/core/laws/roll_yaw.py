@@ -49,4 +49,4 @@ def pitch_holding_dipole(inputs: LawInput, setpoint: Setpoint) -> Vec3:
 
 def can_hold(inputs: LawInput, config: ControlConfig) -> bool:
     """Whether the attitude is known and there is a wheel along the orbit normal."""
-    return inputs.attitude.valid and config.wheel_body_nms[2] > 0.0
+    return inputs.attitude.usable and config.wheel_body_nms[2] > 0.0

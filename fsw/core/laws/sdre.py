@@ -177,7 +177,7 @@ def _attitude(state: Array) -> Quaternion:
 def sdre(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The step of the solution in memory (tick of its start, its gains); a new one where it has ended."""
     table, reference, model = config.schedules.get("sdre"), inputs.reference, inputs.ephemeris
-    if not inputs.attitude.valid or reference is None or model is None or table is None:
+    if not inputs.attitude.usable or reference is None or model is None or table is None:
         return Demand()
     attitude, step_s = inputs.attitude, table.problem.step_s
     _, q1, q2, q3 = canonical(attitude.q_body_from_orbit)

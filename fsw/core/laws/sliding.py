@@ -79,7 +79,7 @@ def lost_torque(torque_body_nm: Vec3, b_body_t: Vec3) -> Vec3:
 
 def sliding(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """M_ref = -c s on the surface without integrals, projected."""
-    if not inputs.attitude.valid or inputs.reference is None:
+    if not inputs.attitude.usable or inputs.reference is None:
         return Demand()
     gains: SlidingGains = config.gains["sliding"]
     w0 = inputs.reference.orbit_rate_radps
@@ -93,7 +93,7 @@ def sliding_integral(inputs: LawInput, memory: Memory, setpoint: Setpoint, confi
     Each is bounded where it alone would demand more than the coils can give on average.
     """
     held = _held(memory)
-    if not inputs.attitude.valid or inputs.reference is None:
+    if not inputs.attitude.usable or inputs.reference is None:
         return Demand(memory=(*held[0], *held[1]))
     gains: SlidingIntegralGains = config.gains["sliding_integral"]
     w0 = inputs.reference.orbit_rate_radps

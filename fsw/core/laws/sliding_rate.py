@@ -72,7 +72,7 @@ def sliding_rate_modified(
 
 
 def _demand(inputs: LawInput, config: ControlConfig, gains: RateSurfaceGains, *, holds: bool) -> Demand:
-    if not inputs.attitude.valid or inputs.reference is None:
+    if not inputs.attitude.usable or inputs.reference is None:
         return Demand()
     w0, omega = inputs.reference.orbit_rate_radps, inputs.attitude.omega_body_orbit_radps
     q0, q1, q2, q3 = canonical(inputs.attitude.q_body_from_orbit)

@@ -101,7 +101,7 @@ def error_and_rate(attitude: Attitude) -> tuple[Vec3, Vec3]:
 def sliding_realisable(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The torque to the surface, projected; memory: the six elements of K in units of K0's."""
     square, reference = dot(inputs.b_body_t, inputs.b_body_t), inputs.reference
-    if not inputs.attitude.valid or reference is None or square <= 0.0:
+    if not inputs.attitude.usable or reference is None or square <= 0.0:
         return Demand(memory=memory)
     gains: RealisableGains = config.gains["sliding_realisable"]
     w0, tick_s = reference.orbit_rate_radps, config.tick_s
@@ -124,7 +124,7 @@ def fixed_torque(
     """M0 = -c s - J f - K e', the torque for a constant K, body axes, N m.
 
     Args:
-        inputs: with a valid attitude.
+        inputs: with a usable attitude.
         reference: its orbit.
         matrix: K in K0.
         stiffness_nms: K0.

@@ -45,7 +45,7 @@ def relay_dipole(s_radps: Vec3, b_body_t: Vec3, m0_am2: float, layer_radps: floa
 
 def sliding_sphere(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The relay on the surface in the rate."""
-    if not inputs.attitude.valid or inputs.reference is None:
+    if not inputs.attitude.usable or inputs.reference is None:
         return Demand()
     gains: SphereSlidingGains = config.gains["sliding_sphere"]
     w0 = inputs.reference.orbit_rate_radps

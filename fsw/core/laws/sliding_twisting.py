@@ -75,7 +75,7 @@ def sliding_twisting(inputs: LawInput, memory: Memory, setpoint: Setpoint, confi
     """The torque to the terminal surface, projected; memory: v, limited to what the coils can hold."""
     held = (memory[0], memory[1], memory[2]) if len(memory) == 3 else ZERO
     square = dot(inputs.b_body_t, inputs.b_body_t)
-    if not inputs.attitude.valid or inputs.reference is None or square <= 0.0:
+    if not inputs.attitude.usable or inputs.reference is None or square <= 0.0:
         return Demand(memory=held)
     gains: SuperTwistingGains = config.gains["sliding_twisting"]
     w0, moment = inputs.reference.orbit_rate_radps, mean_moment(config)

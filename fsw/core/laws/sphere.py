@@ -95,7 +95,7 @@ def vertical_torque(
 
 def sphere_vertical(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The axis held to the vertical, the rate about it damped."""
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand()
     gains: VerticalGains = config.gains["sphere_vertical"]
     radius = rotate(inputs.attitude.q_body_from_orbit, RADIUS)
@@ -136,7 +136,7 @@ def observed(
 
 def sphere_output(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The PD law on the observer's rate; memory: z, w and what the coils gave of the dipole."""
-    if not inputs.attitude.valid or inputs.reference is None:
+    if not inputs.attitude.usable or inputs.reference is None:
         return Demand()
     gains: ObserverGains = config.gains["sphere_output"]
     q, w0 = inputs.attitude.q_body_from_orbit, inputs.reference.orbit_rate_radps

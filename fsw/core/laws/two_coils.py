@@ -67,7 +67,7 @@ def two_coils(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Cont
     Without a wheel whose momentum is known, or with the field normal to it, nothing.
     """
     wheel = config.wheel
-    if wheel is None or inputs.wheel_nms is None or not inputs.attitude.valid:
+    if wheel is None or inputs.wheel_nms is None or not inputs.attitude.usable:
         return Demand()
     effort = two_coils_and_wheel(_wanted(inputs, config), inputs.b_body_t, wheel.axis_body)
     return _demand(None if effort is None else shortened(effort, *_limits(config, wheel)))
@@ -76,7 +76,7 @@ def two_coils(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Cont
 def two_coils_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """Far from the goal, where the wheel may be normal to the field: all three coils, the least effort."""
     wheel = config.wheel
-    if wheel is None or inputs.wheel_nms is None or not inputs.attitude.valid:
+    if wheel is None or inputs.wheel_nms is None or not inputs.attitude.usable:
         return Demand()
     wanted, limits = _wanted(inputs, config), _limits(config, wheel)
     return _demand(affordable(wanted, inputs.b_body_t, wheel.axis_body, *limits))

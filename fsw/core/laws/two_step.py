@@ -85,7 +85,7 @@ def _across(n: Vec3) -> tuple[Vec3, Vec3]:
 def two_step(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The turns one after the other; memory: the stage, and P, body from orbit."""
     reference = inputs.reference
-    if not inputs.attitude.valid or reference is None or dot(inputs.b_body_t, inputs.b_body_t) <= 0.0:
+    if not inputs.attitude.usable or reference is None or dot(inputs.b_body_t, inputs.b_body_t) <= 0.0:
         return Demand()
     gains: TwoStepGains = config.gains["two_step"]
     q = inputs.attitude.q_body_from_orbit

@@ -149,7 +149,7 @@ def wheel_allocation(inputs: LawInput, memory: Memory, setpoint: Setpoint, confi
     """
     gains: AllocationGains = config.gains["wheel_allocation"]
     wheel = config.wheel
-    if wheel is None or inputs.wheel_nms is None or not inputs.attitude.valid:
+    if wheel is None or inputs.wheel_nms is None or not inputs.attitude.usable:
         return Demand()
     wanted = compensated_torque(inputs, config, gains.frequency_radps, gains.damping)
     b, axis, most_am2, most_nm = inputs.b_body_t, wheel.axis_body, config.mean_dipole_am2, wheel.max_torque_nm

@@ -2,7 +2,7 @@
 
 from math import cos, radians, sin
 
-from fsw.core.algebra.vector import Vec3, dot
+from fsw.core.algebra.vector import ZERO, Vec3, add, dot, is_zero, norm, scale, sub
 from fsw.core.orbit.earth import RADIUS_M, days_since_j2000
 
 
@@ -28,3 +28,28 @@ def lit(r_eci_m: Vec3, sun_eci: Vec3, radius_m: float = RADIUS_M) -> bool:
     """
     along = dot(r_eci_m, sun_eci)
     return along >= 0.0 or dot(r_eci_m, r_eci_m) - along * along > radius_m * radius_m
+
+
+def earthlight_eci(r_eci_m: Vec3, sun_eci: Vec3) -> Vec3:
+    """The light of an Earth that reflects all, relative to the Sun's: -(R / r)^2 max(0, e . s) e.
+
+    It comes from the point below the satellite, e being the radius direction: a Sun sensor whose cells vary
+    with the cosine of the incidence sees the sum of this and the Sun's (Bhanderi and Bak 2005, Modeling Earth
+    Albedo for Satellites in Earth Orbit).
+    """
+    square_m2, along_m = dot(r_eci_m, r_eci_m), dot(r_eci_m, sun_eci)
+    return scale(-RADIUS_M * RADIUS_M * max(0.0, along_m) / (square_m2 * square_m2), r_eci_m)
+
+
+def apparent_sun(r_eci_m: Vec3, sun_eci: Vec3, albedo: float) -> tuple[Vec3, Vec3]:
+    """What a Sun sensor takes for the Sun, u = unit(s + albedo a), and its derivative by the albedo; eci.
+
+    a is the light of an Earth that reflects all.
+    """
+    a = earthlight_eci(r_eci_m, sun_eci)
+    if is_zero(a):
+        return sun_eci, ZERO
+    light = add(sun_eci, scale(albedo, a))
+    factor = 1.0 / norm(light)
+    u = scale(factor, light)
+    return u, scale(factor, sub(a, scale(dot(u, a), u)))

@@ -11,20 +11,26 @@ from sim.plant.random_streams import Normals
 from sim.plant.rotation import Mat3, Vec3, transform
 
 
-def bias_torque(disturbance: DisturbanceConfig, t_s: float) -> Vec3:
-    """T (1 + p cos(2 pi t / day)), body axes [N m]: constant torque T and its daily variation.
+def bias_torque(disturbance: DisturbanceConfig, t_s: float, lit: float = 1.0) -> Vec3:
+    """T (1 + p cos(2 pi t / day)) + T_p, body axes [N m]: constant and varying daily; of the penumbra.
 
-    It stands for what is not modelled, such as outgassing, and what varies daily, such as the air.
+    The first stands for what is not modelled, such as outgassing, and what varies daily, such as the air. The
+    second acts while the Sun is partly hidden: a body that warms or cools fast snaps (Thornton and Kim 1993,
+    Thermally induced bending vibrations of a flexible rolled-up solar array).
 
     Args:
-        disturbance: T and p.
+        disturbance: T, p and T_p.
         t_s: time since tick 0.
+        lit: visible fraction of the Sun's disc.
     """
-    if not disturbance.torque_daily_part:
-        return disturbance.torque_body_nm
-    factor = 1.0 + disturbance.torque_daily_part * cos(2.0 * pi * t_s / DAY_S)
     x, y, z = disturbance.torque_body_nm
-    return (factor * x, factor * y, factor * z)
+    if disturbance.torque_daily_part:
+        factor = 1.0 + disturbance.torque_daily_part * cos(2.0 * pi * t_s / DAY_S)
+        x, y, z = factor * x, factor * y, factor * z
+    if 0.0 < lit < 1.0:
+        px, py, pz = disturbance.penumbra_torque_body_nm
+        x, y, z = x + px, y + py, z + pz
+    return (x, y, z)
 
 
 def residual_dipole(disturbance: DisturbanceConfig, lit: float, remanence_body_am2: Vec3) -> Vec3:

@@ -49,8 +49,45 @@ class DirectDipole:
         return b_eci_t
 
 
+class Storm:
+    """A field with that of a geomagnetic storm: currents above the auroral zones, and a ring far away.
+
+    Above 50 deg of geomagnetic latitude, in full from 60 deg on, pulsations about three axes with periods of
+    7, 4 and 11 min, of the class Pc 5 and longer (Jacobs et al. 1964); everywhere a fifth of that along -z,
+    against the dipole, as of the ring current (Daglis et al. 1999).
+
+    Args:
+        quiet: the field without it.
+        amplitude_t: of each pulsation.
+    """
+
+    def __init__(self, quiet: Field, amplitude_t: float) -> None:
+        self._quiet = quiet
+        self._amplitude_t = amplitude_t
+
+    def at(self, t_s: Array, r_eci_m: Array) -> Array:
+        """The field, as in ``Field``."""
+        b_eci_t = self._quiet.at(t_s, r_eci_m)
+        r_m, b_t = np.linalg.norm(r_eci_m, axis=1), np.linalg.norm(b_eci_t, axis=1)
+        dip_rad = np.arcsin(np.clip(np.abs((r_eci_m * b_eci_t).sum(axis=1)) / (r_m * b_t), 0.0, 1.0))
+        latitude_deg = np.degrees(np.arctan(0.5 * np.tan(dip_rad)))
+        part = np.clip((latitude_deg - 50.0) / 10.0, 0.0, 1.0)
+        waves = [np.sin(2.0 * np.pi * t_s / period_s + phase) for period_s, phase in PULSATIONS]
+        ring = np.array([0.0, 0.0, -RING_PART])
+        storm_t: Array = self._amplitude_t * (part[:, None] * np.stack(waves, axis=1) + ring)
+        return b_eci_t + storm_t
+
+
+PULSATIONS = ((420.0, 0.0), (240.0, 0.7), (660.0, 2.0))
+"""Period and phase about each axis, s and rad."""
+RING_PART = 0.2
+
+
 def make_field(config: FieldConfig, epoch_unix_s: int) -> Field:
     """The configured field."""
+    quiet: Field
     if config.model == "direct_dipole":
-        return DirectDipole()
-    return RotatingIgrf(1 if config.model == "tilted_dipole" else config.degree, epoch_unix_s)
+        quiet = DirectDipole()
+    else:
+        quiet = RotatingIgrf(1 if config.model == "tilted_dipole" else config.degree, epoch_unix_s)
+    return Storm(quiet, config.storm_t) if config.storm_t else quiet

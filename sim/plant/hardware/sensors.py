@@ -1,6 +1,6 @@
 """Sensor physics: the readings of the boards' instruments."""
 
-from math import cos, sin, sqrt
+from math import cos, pi, sin, sqrt
 from typing import final
 
 from sim.plant.random_streams import Normals
@@ -46,7 +46,7 @@ class Delay:
 
 @final
 class MagnetometerPhysics:
-    """b = scale (N R (b_body + K m)) + bias + noise, then quantised and limited to the range.
+    """b = scale (N R (b_body + K m)) + bias(t, shadow) + noise, then quantised and limited to the range.
 
     R turns body into sensor axes, N takes them to the directions in which the three sensors point, which need
     not be orthogonal; K m is the coils' own field. The field is that of ``latency_s`` ago. Finally the wiring
@@ -66,12 +66,16 @@ class MagnetometerPhysics:
             self._sensor_from_body = _skewed(config.non_orthogonality_rad, self._sensor_from_body)
         self._noise = Normals(seed, "magnetometer")
 
-    def measure(self, b_body_t: Vec3, m_body_am2: Vec3) -> tuple[Vec3, bool]:
+    def measure(
+        self, b_body_t: Vec3, m_body_am2: Vec3, t_s: float = 0.0, lit: float = 1.0
+    ) -> tuple[Vec3, bool]:
         """The reading [T] and whether it is valid: within the range on every axis.
 
         Args:
             b_body_t: the Earth's field at this instant.
             m_body_am2: the coils' dipole at this instant.
+            t_s: this instant, since tick 0.
+            lit: visible fraction of the Sun's disc.
         """
         config, noise = self._config, self._noise
         if m_body_am2 != ZERO:
@@ -81,7 +85,7 @@ class MagnetometerPhysics:
         if self._delay is not None:
             late = self._delay.take((bx, by, bz))
             bx, by, bz = late[0], late[1], late[2]
-        (sx, sy, sz), (ox, oy, oz) = config.scale, config.bias_t
+        (sx, sy, sz), (ox, oy, oz) = config.scale, self._bias_t(t_s, lit)
         sigma, quantum, most = config.noise_t, config.quantum_t, config.saturation_t
         x = quantise(sx * bx + ox + sigma * noise.next(), quantum)
         y = quantise(sy * by + oy + sigma * noise.next(), quantum)
@@ -90,6 +94,19 @@ class MagnetometerPhysics:
             return wired((x, y, z), config.wiring), True
         limited = (min(max(x, -most), most), min(max(y, -most), most), min(max(z, -most), most))
         return wired(limited, config.wiring), False
+
+    def _bias_t(self, t_s: float, lit: float) -> Vec3:
+        """The constant offset, that which follows the orbit, and that of the shadow."""
+        config = self._config
+        x, y, z = config.bias_t
+        if config.orbit_bias_t != ZERO:
+            (ax, ay, az), (px, py, pz) = config.orbit_bias_t, config.orbit_bias_phase_rad
+            angle = 2.0 * pi * t_s / config.orbit_s
+            x, y, z = x + ax * sin(angle + px), y + ay * sin(angle + py), z + az * sin(angle + pz)
+        if lit < 1.0 and config.shadow_bias_t != ZERO:
+            dark, (dx, dy, dz) = 1.0 - lit, config.shadow_bias_t
+            x, y, z = x + dark * dx, y + dark * dy, z + dark * dz
+        return (x, y, z)
 
 
 @final

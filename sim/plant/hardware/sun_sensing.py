@@ -76,6 +76,31 @@ CLOUDS_S = 300.0
 
 
 @final
+class CloudyEarth:
+    """The light that the Earth reflects, which varies over the clouds: a first-order Markov process.
+
+    Args:
+        albedo: its mean, a fraction of sunlight.
+        spread: its standard deviation, as a fraction of the mean.
+        seed: of the stream ``clouds``.
+        tick_hz: steps a second.
+    """
+
+    def __init__(self, albedo: float, spread: float, seed: int, tick_hz: int) -> None:
+        self._albedo = albedo
+        self._spread = spread
+        self._clouds = Normals(seed, "clouds")
+        self._keep = exp(-1.0 / (CLOUDS_S * tick_hz))
+        self._cloud = self._clouds.next()
+
+    def reflected(self) -> float:
+        """The fraction of sunlight that the Earth in view reflects, a step later."""
+        keep = self._keep
+        self._cloud = keep * self._cloud + sqrt(1.0 - keep * keep) * self._clouds.next()
+        return self._albedo * min(max(0.0, 1.0 + self._spread * self._cloud), 2.0)
+
+
+@final
 class SunCellPhysics:
     """c = g (lit max(0, n . s) + A light(n)) + noise, then quantised, and 0 below the threshold.
 
@@ -93,9 +118,8 @@ class SunCellPhysics:
         self._config = config
         self._delay = Delay(config.latency_s, tick_hz) if config.latency_s else None
         self._normals = [_turned(cell.normal_body, cell.turn_rad) for cell in config.cells]
-        self._noise, self._clouds = Normals(seed, "sun_cells"), Normals(seed, "clouds")
-        self._keep = exp(-1.0 / (CLOUDS_S * tick_hz))
-        self._cloud = self._clouds.next()
+        self._noise = Normals(seed, "sun_cells")
+        self._earth = CloudyEarth(config.albedo, config.albedo_spread, seed, tick_hz)
 
     def measure(self, body_from_eci: Mat3, r_eci_m: Vec3, sun_eci: Vec3, lit: float) -> tuple[float, ...]:
         """The current of each cell, relative to the nominal one in full sunlight.
@@ -111,17 +135,11 @@ class SunCellPhysics:
         light = [lit * _cosine(cells[k], normals[k], sun_body) for k in range(len(cells))]
         if config.albedo:
             parts = earth_view(r_eci_m, sun_eci, np.array(normals) @ np.array(body_from_eci)).tolist()
-            reflected = self._reflected()
+            reflected = self._earth.reflected()
             light = [light[k] + reflected * parts[k] for k in range(len(cells))]
         if self._delay is not None:
             light = list(self._delay.take(tuple(light)))
         return tuple([self._current(cells[k], light[k]) for k in range(len(cells))])
-
-    def _reflected(self) -> float:
-        """The fraction of the light that the Earth in view reflects now."""
-        keep, config = self._keep, self._config
-        self._cloud = keep * self._cloud + sqrt(1.0 - keep * keep) * self._clouds.next()
-        return config.albedo * min(max(0.0, 1.0 + config.albedo_spread * self._cloud), 2.0)
 
     def _current(self, cell: CellConfig, light: float) -> float:
         current = cell.gain * light + self._config.noise * self._noise.next()
@@ -146,12 +164,8 @@ def _turned(normal: Vec3, turn_rad: Vec3) -> Vec3:
 
 # --- Sunlight that the Earth reflects, at the satellite
 
-ALBEDO = 0.3
-"""Fraction of sunlight that the Earth reflects on average; 0.05 over open ocean, 0.6 over high clouds or ice
-(ECSS-E-ST-10-04C, annex F)."""
 
-
-def earthlight(r_eci_m: Vec3, sun_eci: Vec3) -> Vec3:
+def earthlight(r_eci_m: Vec3, sun_eci: Vec3, albedo: float) -> Vec3:
     """Vector a = -A (R / r)^2 max(0, e . s) e, e = r / |r|: Earth's light relative to the Sun's, ``eci``.
 
     The vector of irradiance, towards its source: a plate with the normal n that sees all of the Earth gets
@@ -167,11 +181,12 @@ def earthlight(r_eci_m: Vec3, sun_eci: Vec3) -> Vec3:
     Args:
         r_eci_m: position of the satellite.
         sun_eci: unit vector s to the Sun.
+        albedo: A, the fraction of sunlight that the Earth reflects.
     """
     (x, y, z), (sx, sy, sz) = r_eci_m, sun_eci
     r2_m2 = x * x + y * y + z * z
     towards_m = max(0.0, x * sx + y * sy + z * sz)
-    factor = -ALBEDO * EARTH_RADIUS_M**2 * towards_m / (r2_m2 * r2_m2)
+    factor = -albedo * EARTH_RADIUS_M**2 * towards_m / (r2_m2 * r2_m2)
     return (factor * x, factor * y, factor * z)
 
 
@@ -210,14 +225,18 @@ class FineSunSensing(SunSensing):
 
     def __init__(self, sensor: SunSensorConfig, seed: int, tick_hz: int) -> None:
         self._physics = SunSensorPhysics(sensor, seed, tick_hz)
-        self._albedo, self._tick_hz = sensor.albedo, tick_hz
+        self._tick_hz = tick_hz
+        self._earth: CloudyEarth | None = None
+        if sensor.albedo:
+            self._earth = CloudyEarth(sensor.albedo, sensor.albedo_spread, seed, tick_hz)
         self.restart()
 
     def begin_tick(self, tick: int, view: SunView, faulty: Interference) -> list[Frame]:
         """``SUN_VECTOR``, deflected by the Earth's light if that disturbs the sensor."""
         around = ZERO
-        if self._albedo:
-            around = transform(view.body_from_eci, earthlight(view.r_eci_m, view.sun_eci))
+        if self._earth is not None:
+            light_eci = earthlight(view.r_eci_m, view.sun_eci, self._earth.reflected())
+            around = transform(view.body_from_eci, light_eci)
         sun_body, valid = self._physics.measure(view.sun_body, view.lit, around)
         sun_body, valid = faulty.sun(sun_body, valid)
         return self._board.begin_tick(tick, sun_body, valid)

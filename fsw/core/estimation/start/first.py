@@ -11,6 +11,7 @@ from fsw.core.algebra.vector import ZERO, Vec3, norm
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import CellSet, light
 from fsw.core.estimation.cells.coarse_sun import coarse_sun
+from fsw.core.estimation.measurement import deflected_sun
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.estimation.parameters import Parameters, component_places, with_component
@@ -25,11 +26,15 @@ from fsw.core.orbit.ephemeris import Reference
 @final
 @dataclass(frozen=True, slots=True)
 class StartLimits:
-    """Largest errors of field strength and field-Sun angle, and least separation of the two: T, rad, rad."""
+    """Largest errors of field strength and field-Sun angle, and least separation of the two: T, rad, rad.
+
+    ``albedo_error``: largest error of the albedo, by which the Earth's light turns the Sun's direction.
+    """
 
     max_field_error_t: float
     max_angle_error_rad: float
     min_separation_rad: float
+    albedo_error: float = 0.0
 
 
 def first_estimate(
@@ -46,10 +51,9 @@ def first_estimate(
     """
     if field is None or sun is None or not reference.lit:
         return None
-    b, s = reference.b_eci_t, reference.sun_eci
-    if not consistent(
-        field, sun, b, s, limits.max_field_error_t, limits.max_angle_error_rad, limits.min_separation_rad
-    ):
+    b, (s, slope) = reference.b_eci_t, deflected_sun(config.initial_parameters, reference, config)
+    angle_rad = limits.max_angle_error_rad + limits.albedo_error * norm(slope)
+    if not consistent(field, sun, b, s, limits.max_field_error_t, angle_rad, limits.min_separation_rad):
         return None
     return mekf.start(triad(sun, field, s, b), ZERO, config)
 

@@ -19,7 +19,13 @@ from fsw.core.algebra.vector import Vec3, sub
 from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.kalman import Matrix, inverse
-from fsw.core.estimation.measurement import Prediction, field_prediction, field_sampled, sun_prediction
+from fsw.core.estimation.measurement import (
+    Prediction,
+    deflected_sun,
+    field_prediction,
+    field_sampled,
+    sun_prediction,
+)
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.fdir.evidence import INFLATION, EvidenceWeights
@@ -190,7 +196,8 @@ def _sun_fits(
     if sample is None or estimate is None:
         return None
     q, omega, parameters = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
-    prediction = sun_prediction(q, omega, parameters, reference.sun_eci, mekf)
+    s_eci, slope_eci = deflected_sun(parameters, reference, mekf)
+    prediction = sun_prediction(q, omega, parameters, s_eci, mekf, slope_eci)
     return not findings.sun_cause and _fits(estimate, sample, prediction, mekf.sun_noise, mekf)
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import acos
 from typing import Final, final
 
-from fsw.core.algebra.vector import Vec3, dot, norm
+from fsw.core.algebra.vector import ZERO, Vec3, dot, norm
 from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.samples import coils_idle, sensed_sun, usable_cells, usable_field
@@ -21,7 +21,7 @@ from fsw.core.fdir.sensors.standstill import ReadingMotion, Steps, is_frozen, up
 from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.earth import RADIUS_M
 from fsw.core.orbit.ephemeris import Reference
-from fsw.core.orbit.sun import lit
+from fsw.core.orbit.sun import apparent_sun, lit
 
 SHADOW_M: Final = RADIUS_M - 100e3
 """Radius of what is certainly shadow: the Earth is flattened by 21 km, half the penumbra of a low orbit is
@@ -40,7 +40,8 @@ class PlausibilityConfig:
 
     ``in_range_t``: in a field up to that strength no axis of the magnetometer saturates; ``sun_norm``: of the
     Sun vector's length; ``late_ticks``: how long a sample may be repeated; ``cells``: those that give the Sun
-    in place of a sensor; ``steps``: of the measurements, None if both are continuous.
+    in place of a sensor; ``steps``: of the measurements, None if both are continuous; ``most_albedo``: by
+    which the Earth's light may turn the Sun's direction.
     """
 
     field_t: float
@@ -51,6 +52,7 @@ class PlausibilityConfig:
     late_ticks: int
     cells: CellSet | None = None
     steps: Steps | None = None
+    most_albedo: float = 0.0
 
 
 @final
@@ -207,8 +209,11 @@ def _are_apart(
     if not norm(field) * norm(sun) > 0.0:
         return False
     measured = dot(field, sun) / (norm(field) * norm(sun))
-    expected = dot(reference.b_eci_t, reference.sun_eci) / modelled_t
-    limit_rad = limits.angle_rad + limits.field_t / modelled_t
+    s_eci, slope_eci = reference.sun_eci, ZERO
+    if limits.most_albedo:
+        s_eci, slope_eci = apparent_sun(reference.r_eci_m, s_eci, 0.5 * limits.most_albedo)
+    expected = dot(reference.b_eci_t, s_eci) / modelled_t
+    limit_rad = limits.angle_rad + limits.field_t / modelled_t + 0.5 * limits.most_albedo * norm(slope_eci)
     return not abs(_angle(measured) - _angle(expected)) <= limit_rad
 
 

@@ -1,0 +1,97 @@
+"""What changes in orbit: by how much it widens the estimate, and where.
+
+Bias and residual dipole step at the shadow's edge, where temperatures and currents change, and the body may
+snap; the field model is wrong where the currents of a storm flow, at high geomagnetic latitude; a coil keeps
+another part of each pulse. None has a parameter of its own: the covariance of those that it moves grows by
+what the table's bounds allow.
+"""
+
+from dataclasses import dataclass
+from typing import Final, final
+
+import numpy as np
+
+from fsw.core.algebra.vector import Vec3, dot, is_zero, norm
+from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.mekf import Estimate
+from fsw.core.estimation.mekf_config import MekfConfig
+from fsw.core.orbit.earth import RADIUS_M
+from fsw.core.orbit.ephemeris import Reference
+from fsw.core.orbit.sun import lit
+
+EDGE_M: Final = 60e3
+"""By so much the shadow's edge may be off that of a cylinder of the Earth's radius: half the penumbra, the
+flattening, air, an error of the position."""
+EDGE_S: Final = 18.0
+"""What the satellite takes at least for twice that way."""
+STORMY_SINE: Final = 0.894
+"""Of the field's dip: above it, from 45 deg of geomagnetic latitude on, tan(dip) = 2 tan(latitude), storms
+disturb the field."""
+
+
+@final
+@dataclass(frozen=True, slots=True)
+class Changes:
+    """How variances grow: of bias, dipole and rate at the shadow's edge, of the bias where it is stormy.
+
+    ``remanent_ps``: of the dipole that a coil keeps, as a part of the square of the dipole driven, 1/s;
+    ``edge_rate``: of the rate, rad^2/s^3, (3, 3).
+    """
+
+    edge_bias_t2ps: float
+    edge_dipole_a2m4ps: float
+    storm_t2ps: float
+    remanent_ps: float
+    edge_rate: Matrix | None
+
+
+NO_CHANGES: Final = Changes(0.0, 0.0, 0.0, 0.0, None)
+
+
+def widen(
+    estimate: Estimate, reference: Reference, m_body_am2: Vec3, config: MekfConfig, changes: Changes
+) -> None:
+    """Add to the covariance what a tick may have changed.
+
+    Args:
+        estimate: predicted over the tick.
+        reference: of its end.
+        m_body_am2: dipole driven in it, body axes.
+        config: the filter.
+        changes: the variances.
+    """
+    parts, h, grown = config.layout, config.tick_s, []
+    bias_t2 = 0.0
+    at_edge = _is_at_edge(reference)
+    if parts.mag_bias is not None:
+        if at_edge:
+            bias_t2 += changes.edge_bias_t2ps * h
+        if changes.storm_t2ps and _is_stormy(reference):
+            bias_t2 += changes.storm_t2ps * h
+        if bias_t2:
+            grown.append((parts.mag_bias, np.eye(3) * bias_t2))
+    if at_edge and parts.dipole is not None and changes.edge_dipole_a2m4ps:
+        grown.append((parts.dipole, np.eye(3) * (changes.edge_dipole_a2m4ps * h)))
+    if parts.dipole is not None and changes.remanent_ps and not is_zero(m_body_am2):
+        x, y, z = m_body_am2
+        part = changes.remanent_ps * h
+        grown.append((parts.dipole, np.diag([part * x * x, part * y * y, part * z * z])))
+    if at_edge and changes.edge_rate is not None:
+        grown.append((slice(3, 6), changes.edge_rate * h))
+    if not grown:
+        return
+    covariance = estimate.covariance.copy()
+    for place, more in grown:
+        covariance[place, place] += more
+    estimate.covariance = covariance
+
+
+def _is_at_edge(reference: Reference) -> bool:
+    """Whether the satellite may be crossing the edge of the Earth's shadow."""
+    r, s = reference.r_eci_m, reference.sun_eci
+    return lit(r, s, RADIUS_M - EDGE_M) != lit(r, s, RADIUS_M + EDGE_M)
+
+
+def _is_stormy(reference: Reference) -> bool:
+    r, b = reference.r_eci_m, reference.b_eci_t
+    return abs(dot(r, b)) > STORMY_SINE * norm(r) * norm(b)
