@@ -1,5 +1,7 @@
 """The attitude relative to the orbital frame: as estimated, or as the reference messages give it."""
 
+from typing import Final
+
 from fsw.core.algebra.quaternion import canonical, conjugate, multiply, normalise, rotate
 from fsw.core.algebra.vector import scale, sub
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
@@ -7,6 +9,9 @@ from fsw.core.estimation.kalman import largest_variance
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.ephemeris import Reference
+
+KEPT: Final = 1.5
+"""Times the sigma at which an attitude becomes valid: up to that it stays so."""
 
 
 def orbital_attitude(
@@ -18,8 +23,8 @@ def orbital_attitude(
 ) -> Attitude:
     """The estimate relative to the orbital frame.
 
-    Usable up to ``usable_sigma_rad`` about its worst axis; valid up to ``valid_sigma_rad``, and from then on
-    while it is usable: what is known for sure does not change when a shadow makes it less certain.
+    Usable up to ``usable_sigma_rad`` about its worst axis. It becomes valid at ``valid_sigma_rad``, and stays
+    so up to ``KEPT`` times that: in a shadow it is less certain for a while, not wrong.
     """
     if estimate is None:
         return UNKNOWN
@@ -29,7 +34,7 @@ def orbital_attitude(
     sigma_attitude = largest_variance(estimate.covariance, 0, 3) ** 0.5
     sigma_rate = largest_variance(estimate.covariance, 3, 6) ** 0.5
     usable = sigma_attitude <= usable_sigma_rad
-    valid = usable and (was_valid or sigma_attitude <= valid_sigma_rad)
+    valid = usable and sigma_attitude <= (KEPT if was_valid else 1.0) * valid_sigma_rad
     return Attitude(q, omega, 3.0 * sigma_attitude, 3.0 * sigma_rate, valid, usable)
 
 
