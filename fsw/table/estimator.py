@@ -92,13 +92,12 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
 
 def _changes(table: FlightTable, known: Uncertainty) -> Changes:
     """What changes in orbit, from its bounds."""
-    pulsed = table.coils.driver == "pulsed"  # what a continuous driver leaves lasts for less than a tick
     kick = SIDE * known.shadow_impulse_nms * np.array(inverse(table.body.inertia))
     return Changes(
         edge_bias_t2ps=(SIDE * known.mag_shadow_t) ** 2 / EDGE_S,
         edge_dipole_a2m4ps=(SIDE * known.shadow_dipole_am2) ** 2 / EDGE_S,
         storm_t2ps=(SIDE * known.storm_t) ** 2 / QUARTER_PULSATION_S,
-        remanent_ps=2.0 * (SIDE * known.remanence_part) ** 2 / table.coils.pulse_s if pulsed else 0.0,
+        remanent_ps=2.0 * (SIDE * known.remanence_part) ** 2 / table.coils.pulse_s,
         edge_rate=kick @ kick.T / EDGE_S if known.shadow_impulse_nms else None,
     )
 

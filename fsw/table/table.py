@@ -50,6 +50,7 @@ from fsw.table.sections import (
 )
 from fsw.table.uncertainty import (
     LARGEST_FIELD_T,
+    QUARTER_ORBIT_S,
     Ceiling,
     Ordinary,
     UncertaintyTable,
@@ -137,6 +138,10 @@ class FlightTable(Section):
                 f"what a coil of {coils.largest_am2:g} A m^2 gives in the mean, pulse and back-off, in a "
                 "strong field",
             ),
+            "shadow_dipole_am2": Ceiling(coils.largest_am2, "the largest dipole of a coil"),
+            "shadow_impulse_nms": Ceiling(
+                self._most_torque_nm * QUARTER_ORBIT_S, "what a coil gives in a quarter of an orbit"
+            ),
             "coil_gain_percent": Ceiling(gain, "so that no sound coil is below fdir.weak_coil_part"),
         }
         bound_nm = bounds(self.uncertainty, self.ordinary).torque_nm
@@ -170,6 +175,7 @@ class FlightTable(Section):
             torque_nm,
             1.0 / self.time.tick_hz,
             ordinary_shadow_impulse_nms(inertia),
+            self.coils.levels_am2[2] if self.coils.driver == "pulsed" else 0.0,
         )
 
     @property

@@ -103,6 +103,7 @@ class Uncertainty:
     storm_t: float
     shadow_dipole_am2: float
     remanence_part: float
+    pulse_am2: float
     albedo: float
     shadow_impulse_nms: float
     cell_gain_part: float = 0.0
@@ -118,12 +119,17 @@ UNEVEN = 0.5
 
 
 class Ordinary(NamedTuple):
-    """Ordinary bounds of what depends on the satellite: dipole, torque by component, age of samples."""
+    """Ordinary bounds of what depends on the satellite, by component; its largest pulse.
+
+    Dipole, torque, age of samples, impulse at the shadow's edge; the dipole of the strongest pulse, 0 without
+    pulses: what a continuous driver leaves lasts for less than a tick.
+    """
 
     dipole_am2: float
     torque_nm: float
     latency_s: float
     shadow_impulse_nms: float
+    pulse_am2: float = 0.0
 
 
 def bounds(table: UncertaintyTable, ordinary: Ordinary, albedo: float | None = None) -> Uncertainty:
@@ -153,7 +159,8 @@ def bounds(table: UncertaintyTable, ordinary: Ordinary, albedo: float | None = N
         mag_shadow_t=1e-9 * _or(table.magnetometer_shadow_nt, 400.0),
         storm_t=1e-9 * _or(table.storm_nt, 150.0),
         shadow_dipole_am2=_or(table.shadow_dipole_am2, SHADOW_PART * dipole_am2),
-        remanence_part=0.01 * _or(table.remanence_percent, 0.3),
+        remanence_part=0.01 * _or(table.remanence_percent, 0.3) if ordinary.pulse_am2 else 0.0,
+        pulse_am2=ordinary.pulse_am2,
         albedo=0.0 if albedo is not None else 0.01 * _or(table.albedo_percent, 35.0),
         shadow_impulse_nms=_or(table.shadow_impulse_nms, ordinary.shadow_impulse_nms),
         cell_gain_part=cell_gain,
@@ -179,8 +186,6 @@ BALL = 1.0 / sqrt(5.0)
 """Standard deviation by axis of a vector that is uniform in the ball of radius 1."""
 DAY_S = 86400.0
 QUARTER_ORBIT_S = 1500.0
-CLOUDY = 0.001
-"""Walk of the albedo, as a part of its bound, per root of a second."""
 
 
 class Shape(NamedTuple):
@@ -221,7 +226,7 @@ def priors(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, Prior]:
         found["mag_bias_t"] = replace(found["mag_bias_t"], walk=walk)
     if known.albedo:  # with a Sun sensor
         half = 0.5 * known.albedo
-        found["earth_light"] = Prior((SIDE * half,), (CLOUDY * known.albedo,), (half,))
+        found["earth_light"] = Prior((SIDE * half,), (0.0,), (half,))
     if "torque_body_nm" in found:
         walk = (known.torque_variation_nm / sqrt(DAY_S),) * 3
         found["torque_body_nm"] = replace(found["torque_body_nm"], walk=walk)
@@ -233,10 +238,11 @@ def limits(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, tuple[float, ...
     moments = [inertia_kgm2[axis][axis] * known.inertia_part for axis in range(3)]
     product = mean_moment(inertia_kgm2) * known.products_part
     gain, axis = known.coil_gain_part, known.coil_turn_rad
+    remanent_am2 = known.remanence_part * known.pulse_am2
     return {
         "mag_bias_t": (hypot(known.mag_bias_t, known.mag_orbit_t, known.mag_shadow_t),) * 3,
         "torque_body_nm": (known.torque_nm,) * 3,
-        "dipole_body_am2": (known.dipole_am2,) * 3,
+        "dipole_body_am2": (hypot(known.dipole_am2, known.shadow_dipole_am2, remanent_am2),) * 3,
         "coil_error": (gain, axis, axis, axis, gain, axis, axis, axis, gain),
         "inertia_error_kgm2": (*moments, product, product, product),
         "mag_turn_rad": (known.mag_turn_rad,) * 3,

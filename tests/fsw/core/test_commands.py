@@ -66,7 +66,7 @@ class TestMode:
     @pytest.mark.parametrize("before", Mode)
     def test_safe_is_given_always_and_held(self, obey, state, before, trips, violated):
         start = altered(state, modes=ModeState(before, 7, trips=trips))
-        start = altered(start, attitude=start.attitude.replace(valid=False))
+        start = altered(start, attitude=start.attitude.invalid())
         after, results = obey(start, TcMode(Mode.SAFE), violated=violated)
         assert results == [TcAckResult.ACCEPTED]
         assert (after.modes.mode, after.modes.held, after.modes.trips) == (Mode.SAFE, True, trips)
@@ -99,11 +99,11 @@ class TestMode:
 
     @pytest.mark.parametrize("mode", [Mode.ACQUIRE, Mode.POINT])
     def test_a_law_that_needs_the_attitude_waits_until_it_is_known(self, refused, state, mode):
-        lost = altered(state, attitude=state.attitude.replace(valid=False), modes=ModeState(Mode.DETUMBLE))
+        lost = altered(state, attitude=state.attitude.invalid(), modes=ModeState(Mode.DETUMBLE))
         refused(TcAckResult.NOT_ALLOWED, TcMode(mode), start=lost)
 
     def test_detumbling_needs_no_attitude(self, obey, state):
-        lost = altered(state, attitude=state.attitude.replace(valid=False))
+        lost = altered(state, attitude=state.attitude.invalid())
         after, _ = obey(lost, TcMode(Mode.DETUMBLE))
         assert after.modes.mode is Mode.DETUMBLE
 

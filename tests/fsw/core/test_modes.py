@@ -235,10 +235,10 @@ class TestConditions:
     def test_an_attitude_that_is_not_valid_says_nothing_but_that(self):
         for rate in (0.0, 1.0):
             for angle in (0.0, 90.0):
-                assert judged(known(angle, rate).replace(valid=False)) == {"clear", "lost_attitude"}
+                assert judged(known(angle, rate).invalid()) == {"clear", "lost_attitude"}
 
     def test_without_a_field_and_an_attitude_nothing_can_act(self):
-        lost = known().replace(valid=False)
+        lost = known().invalid()
         assert judged(lost, has_field=False) == {"lost_attitude", "blind"}
         assert judged(known(30.0, 0.45), has_field=False) == {"clear"}
 

@@ -1,7 +1,7 @@
 """From the bounds of what a table may be wrong by to the priors of the filter."""
 
 from dataclasses import fields
-from math import radians, sqrt
+from math import hypot, radians, sqrt
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from fsw.table.table import flight_table
 from fsw.table.uncertainty import Ordinary, Uncertainty, UncertaintyTable, bounds, priors
 
 INERTIA = ((1.2, 0.03, -0.02), (0.03, 1.5, 0.05), (-0.02, 0.05, 2.1))
-ORDINARY = Ordinary(dipole_am2=0.07, torque_nm=2e-8, latency_s=0.25)
+ORDINARY = Ordinary(dipole_am2=0.07, torque_nm=2e-8, latency_s=0.25, shadow_impulse_nms=5e-5, pulse_am2=6.0)
 EXACT = dict.fromkeys(UncertaintyTable.model_fields, 0.0)
 GIVEN = {
     "inertia_percent": 8.0,
@@ -28,6 +28,13 @@ GIVEN = {
     "torque_variation_nm": 9e-9,
     "along_track_km": 11.0,
     "latency_s": 1.8,
+    "magnetometer_orbit_nt": 300.0,
+    "magnetometer_shadow_nt": 700.0,
+    "storm_nt": 220.0,
+    "shadow_dipole_am2": 0.03,
+    "remanence_percent": 0.2,
+    "albedo_percent": 40.0,
+    "shadow_impulse_nms": 3e-5,
 }
 CARRIED_BY = {
     "inertia_percent": "inertia_error_kgm2",
@@ -43,6 +50,13 @@ CARRIED_BY = {
     "torque_variation_nm": None,
     "along_track_km": None,
     "latency_s": "delay_s",
+    "magnetometer_orbit_nt": "mag_bias_t",
+    "magnetometer_shadow_nt": "mag_bias_t",
+    "storm_nt": None,
+    "shadow_dipole_am2": "dipole_body_am2",
+    "remanence_percent": "dipole_body_am2",
+    "albedo_percent": "earth_light",
+    "shadow_impulse_nms": None,
 }
 
 
@@ -70,6 +84,14 @@ class TestBounds:
             torque_variation_nm=9e-9,
             along_track_m=pytest.approx(11e3),
             latency_s=1.8,
+            mag_orbit_t=pytest.approx(3e-7),
+            mag_shadow_t=pytest.approx(7e-7),
+            storm_t=pytest.approx(2.2e-7),
+            shadow_dipole_am2=0.03,
+            remanence_part=pytest.approx(0.002),
+            pulse_am2=6.0,
+            albedo=pytest.approx(0.4),
+            shadow_impulse_nms=3e-5,
         )
 
     def test_left_out_are_ordinary_ones_and_none_of_them_zero(self):
@@ -88,15 +110,28 @@ class TestBounds:
             torque_variation_nm=pytest.approx(4e-9),
             along_track_m=pytest.approx(5e3),
             latency_s=0.25,
+            mag_orbit_t=pytest.approx(4e-7),
+            mag_shadow_t=pytest.approx(4e-7),
+            storm_t=pytest.approx(1.5e-7),
+            shadow_dipole_am2=pytest.approx(0.014),
+            remanence_part=pytest.approx(0.003),
+            pulse_am2=6.0,
+            albedo=pytest.approx(0.35),
+            shadow_impulse_nms=5e-5,
         )
         of_cells = ("cell_gain_part", "cell_light", "cell_excess", "earth_light")
         known = [field.name for field in fields(Uncertainty) if field.name not in of_cells]
         assert all(getattr(ordinary, name) > 0.0 for name in known)
         assert not any(getattr(ordinary, name) for name in of_cells)  # there are none
+        without_pulses = bounds(UncertaintyTable(remanence_percent=3.0), ORDINARY._replace(pulse_am2=0.0))
+        assert without_pulses.remanence_part == 0.0
 
     @pytest.mark.parametrize("key", GIVEN)
     def test_each_is_taken_for_itself_and_zero_is_no_ordinary_value(self, key):
-        given = {"torque_variation_nm": 4e-9} if key == "torque_nm" else {}  # else it is a part of that one
+        given = {  # else they are a part of it
+            "torque_nm": {"torque_variation_nm": 4e-9},
+            "residual_dipole_am2": {"shadow_dipole_am2": 0.01},
+        }.get(key, {})
         ordinary, exact = bounds_of(**given), bounds_of(**given, **{key: 0.0})
         changed = [
             field.name
@@ -114,15 +149,16 @@ class TestPriors:
         side, ball = 1.0 / sqrt(3.0), 1.0 / sqrt(5.0)
         gain, axis = 0.06 * side, radians(0.7) * side
         expected = {
-            "mag_bias_t": [9e-7 * side] * 3,
+            "mag_bias_t": [hypot(9e-7, 3e-7, 7e-7) * side] * 3,
             "torque_body_nm": [7e-8 * side] * 3,
-            "dipole_body_am2": [0.04 * side] * 3,
+            "dipole_body_am2": [hypot(0.04, 0.03, 0.002 * 6.0) * side] * 3,
             "coil_error": [gain, axis, axis, axis, gain, axis, axis, axis, gain],
             "inertia_error_kgm2": [0.096 * side, 0.12 * side, 0.168 * side, *[0.048 * side] * 3],
             "mag_turn_rad": [radians(1.5) * ball] * 3,
             "mag_scale": [0.004 * side] * 3,
             "sun_turn_rad": [radians(0.25) * ball] * 3,
             "delay_s": [0.9 * side] * 2,
+            "earth_light": [0.2 * side],
         }
         assert list(found) == [name for name in NAMES if name not in OF_CELLS]
         for name, sigma in expected.items():
@@ -145,19 +181,22 @@ class TestPriors:
     def test_samples_are_between_new_and_as_old_as_the_bound(self):
         late = priors_of(latency_s=1.8)["delay_s"]
         assert late.mean == pytest.approx((0.9, 0.9))
+        assert priors_of(albedo_percent=40.0)["earth_light"].mean == pytest.approx((0.2,))
         rest = set(NAMES) - {"delay_s", *OF_CELLS}
         assert not any(any(priors_of()[name].mean) for name in rest)
 
     @pytest.mark.parametrize(
-        ("name", "bound", "daily"),
-        [
-            ("mag_bias_t", 9e-7, 0.1),
-            ("dipole_body_am2", 0.04, 0.1),
-        ],
+        ("name", "key", "bound"),
+        [("mag_bias_t", "magnetometer_bias_nt", 9e-7), ("dipole_body_am2", "residual_dipole_am2", 0.04)],
     )
-    def test_what_wanders_in_a_day_is_a_part_of_the_bound(self, name, bound, daily):
-        walk = np.array(priors_of(**GIVEN)[name].walk)
-        np.testing.assert_allclose(walk * sqrt(86400.0), daily * bound, rtol=1e-12)
+    def test_what_wanders_in_a_day_is_a_tenth_of_the_bound(self, name, key, bound):
+        walk = np.array(priors_of(**EXACT | {key: GIVEN[key]})[name].walk)
+        np.testing.assert_allclose(walk * sqrt(86400.0), 0.1 * bound, rtol=1e-12)
+
+    def test_a_bias_that_follows_the_orbit_moves_by_its_amplitude_in_a_quarter_of_one(self):
+        """What is uniform within the amplitude has the standard deviation amplitude / sqrt 3."""
+        walk = np.array(priors_of(**EXACT | {"magnetometer_orbit_nt": 300.0})["mag_bias_t"].walk)
+        np.testing.assert_allclose(walk * sqrt(1500.0), 3e-7 / sqrt(3.0), rtol=1e-2)
 
     @pytest.mark.parametrize(("given", "in_a_day"), [({}, 1.4e-8), ({"torque_variation_nm": 3e-9}, 3e-9)])
     def test_the_torque_wanders_as_is_declared_else_by_a_fifth_of_its_bound(self, given, in_a_day):
@@ -202,6 +241,13 @@ class TestWhatIsExactIsNotCarried:
         ("sun_misalignment_deg", 10.0),
         ("along_track_km", 20.0),
         ("latency_s", 3.0),
+        ("magnetometer_orbit_nt", 3000.0),
+        ("magnetometer_shadow_nt", 3000.0),
+        ("storm_nt", 3000.0),
+        ("remanence_percent", 5.0),
+        ("albedo_percent", 60.0),
+        ("shadow_dipole_am2", None),
+        ("shadow_impulse_nms", None),
         ("residual_dipole_am2", None),
         ("torque_nm", None),
     ],
@@ -240,6 +286,8 @@ CONTINUOUS = {"driver": "continuous", "max_dipole_am2": 3.0, "on_fraction": 0.5}
         ("torque_nm", {"coils": CONTINUOUS}, 3.0 * 0.5 * 5e-5, "what a coil of 3 A m^2 gives in the mean"),
         ("torque_variation_nm", {"uncertainty": {"torque_nm": 4e-8}}, 8e-8, "from one bound of the torque"),
         ("coil_gain_percent", {"fdir": {"weak_coil_part": 0.9}}, 10.0, "fdir.weak_coil_part"),
+        ("shadow_dipole_am2", {"coils": COILS}, 6.0, "the largest dipole of a coil"),
+        ("shadow_impulse_nms", {"coils": COILS}, 6.0 * 0.04 * 5e-5 * 1500.0, "in a quarter of an orbit"),
     ],
 )
 class TestCeilings:

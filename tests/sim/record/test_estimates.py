@@ -58,7 +58,7 @@ def test_ticks_beyond_the_histories_are_passed_over(states):
 
 def test_before_the_filter_has_started_nothing_is_known(states):
     state = states[50]
-    waiting = altered(state, estimator=type(state.estimator)(), attitude=state.attitude.replace(valid=False))
+    waiting = altered(state, estimator=type(state.estimator)(), attitude=state.attitude.invalid())
     estimates = recorded([waiting], 300)
     assert np.isnan(estimates.q_body_from_orbit).all()
     assert np.isnan(estimates.omega_body_orbit_radps).all()

@@ -100,22 +100,22 @@ def _take(
 
 
 def fade(estimate: Estimate, config: MekfConfig) -> None:
-    """Let excess and Earth's light decay over a tick.
+    """Let excess and Earth's light decay over a tick, towards their mean.
 
     First-order Markov processes: x <- k x, sigma^2 <- k^2 sigma^2 + (1 - k^2) sigma_0^2, k = 1 / (1 + turn);
     turn is the Earth's motion in view, for the excess of a cell plus the rotation of the satellite. What a
     deviation has left in x decays as x does.
     """
     parts, known = config.layout, estimate.parameters
-    if config.cells is None or parts.cells is None:
-        return
     passed = config.tick_s * ORBIT_RADPS / CORRELATION_RAD
-    turned = passed + config.tick_s * norm(estimate.omega_body_radps) / CORRELATION_RAD
-    of_excess, of_light = 1.0 / (1.0 + turned), 1.0 / (1.0 + passed)
-    known.cell_excess = tuple([of_excess * value for value in known.cell_excess])
-    _fade(estimate, parts.cells, of_excess, config)
+    if parts.cells is not None:
+        turned = passed + config.tick_s * norm(estimate.omega_body_radps) / CORRELATION_RAD
+        of_excess = 1.0 / (1.0 + turned)
+        known.cell_excess = tuple([of_excess * value for value in known.cell_excess])
+        _fade(estimate, parts.cells, of_excess, config)
     if parts.earth_light is not None:
-        known.earth_light = (of_light * known.earth_light[0],)
+        of_light, mean = 1.0 / (1.0 + passed), config.initial_parameters.earth_light[0]
+        known.earth_light = (mean + of_light * (known.earth_light[0] - mean),)
         _fade(estimate, parts.earth_light, of_light, config)
 
 

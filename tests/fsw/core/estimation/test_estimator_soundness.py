@@ -66,7 +66,7 @@ class TestSoundness:
             broken = replace(settled, estimate=replace(settled.estimate, covariance=covariance))
             state, _ = step(broken, seen_from())
             assert state.estimate is None or mekf.healthy(state.estimate)
-            orbital_attitude(state.estimate, REFERENCE, CONFIG.valid_sigma_rad)
+            orbital_attitude(state.estimate, REFERENCE, CONFIG.valid_sigma_rad, CONFIG.usable_sigma_rad)
 
     def test_a_covariance_that_overflows_in_the_prediction_is_caught_before_the_update(self, settled):
         spinning = replace(

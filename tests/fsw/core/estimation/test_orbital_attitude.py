@@ -16,7 +16,7 @@ from fsw.core.estimation.parameters import Parameters
 from fsw.core.orbit.ephemeris import Reference
 from fsw.wire.messages import RefAttitude, RefRate
 
-VALID_SIGMA_RAD = radians(5.0)
+VALID_SIGMA_RAD, USABLE_SIGMA_RAD = radians(2.0), radians(5.0)
 REFERENCE = Reference(
     r_eci_m=(4.0e6, -5.0e6, 3.0e6),
     radius_m=norm((4.0e6, -5.0e6, 3.0e6)),
@@ -34,15 +34,19 @@ ESTIMATE = Estimate(
 )
 
 
+def attitude_of(estimate, was_valid=False):
+    return orbital_attitude(estimate, REFERENCE, VALID_SIGMA_RAD, USABLE_SIGMA_RAD, was_valid)
+
+
 class TestOrbitalAttitude:
     def test_unknown_before_the_start(self):
-        assert orbital_attitude(None, REFERENCE, VALID_SIGMA_RAD) is UNKNOWN
+        assert attitude_of(None) is UNKNOWN
         assert not UNKNOWN.valid
 
     def test_is_seen_from_the_orbital_frame(self):
         """q_body_from_eci = q_orbit_from_eci (x) q_body_from_orbit, and the orbit turns about its normal."""
         moving = replace(ESTIMATE, omega_body_radps=(0.011, -0.007, 0.005))
-        attitude = orbital_attitude(moving, REFERENCE, VALID_SIGMA_RAD)
+        attitude = attitude_of(moving)
         chained = multiply(REFERENCE.q_orbit_from_eci, attitude.q_body_from_orbit)
         assert canonical(chained) == pytest.approx(canonical(moving.q_body_from_eci), abs=1e-14)
         assert attitude.q_body_from_orbit[0] >= 0.0
@@ -58,27 +62,42 @@ class TestOrbitalAttitude:
             q_body_from_eci=REFERENCE.q_orbit_from_eci,
             omega_body_radps=scale(1.04e-3, rotate(REFERENCE.q_orbit_from_eci, normal_eci)),
         )
-        attitude = orbital_attitude(carried, REFERENCE, VALID_SIGMA_RAD)
+        attitude = attitude_of(carried)
         assert attitude.q_body_from_orbit == pytest.approx((1.0, 0.0, 0.0, 0.0), abs=1e-15)
         assert attitude.omega_body_orbit_radps == pytest.approx(ZERO, abs=1e-17)
 
     @pytest.mark.parametrize(
-        ("sigma_deg", "valid"), [(0.1, True), (4.999, True), (5.001, False), (60.0, False)]
+        ("sigma_deg", "begins", "goes_on", "usable"),
+        [
+            (0.1, True, True, True),
+            (1.999, True, True, True),
+            (2.001, False, True, True),
+            (2.999, False, True, True),
+            (3.001, False, False, True),
+            (4.999, False, False, True),
+            (5.001, False, False, False),
+            (60.0, False, False, False),
+        ],
     )
-    def test_it_serves_control_while_its_worst_axis_is_certain_enough(self, sigma_deg, valid):
+    def test_its_worst_axis_says_whether_it_is_valid_and_serves_control(
+        self, sigma_deg, begins, goes_on, usable
+    ):
+        """Once valid it stays so up to one and a half times the limit; control needs no such certainty."""
         for axis in range(3):
             covariance = np.diag([radians(0.05) ** 2] * 3 + [1e-10, 4e-10, 9e-10] + [1e-14] * 6)
             covariance[axis, axis] = radians(sigma_deg) ** 2
             estimated = replace(ESTIMATE, covariance=covariance)
-            attitude = orbital_attitude(estimated, REFERENCE, VALID_SIGMA_RAD)
-            assert attitude.valid is valid
+            attitude = attitude_of(estimated)
+            assert attitude.usable is usable
+            assert attitude.valid is begins
+            assert attitude_of(estimated, was_valid=True).valid is goes_on
             assert degrees(attitude.sigma3_attitude_rad) == pytest.approx(3.0 * sigma_deg)
             assert attitude.sigma3_rate_radps == pytest.approx(9e-5)
 
     def test_the_sigmas_are_those_of_the_worst_axis_of_attitude_and_of_rate(self):
         for first, second in (([3.0, 1.0, 2.0], [40.0, 20.0, 30.0]), ([1.0, 2.0, 3.0], [20.0, 30.0, 40.0])):
             covariance = 1e-6 * np.diag([*first, *second, *[500.0] * 6])
-            attitude = orbital_attitude(replace(ESTIMATE, covariance=covariance), REFERENCE, VALID_SIGMA_RAD)
+            attitude = attitude_of(replace(ESTIMATE, covariance=covariance))
             assert attitude.sigma3_attitude_rad == pytest.approx(3.0 * (3e-6) ** 0.5)
             assert attitude.sigma3_rate_radps == pytest.approx(3.0 * (40e-6) ** 0.5)
 
@@ -108,7 +127,7 @@ class TestPerfectKnowledge:
     )
     def test_without_both_the_one_before_stays_and_is_not_valid(self, changes):
         attitude = perfect_attitude(measured(**changes), self.BEFORE)
-        assert attitude == self.BEFORE.replace(valid=False)
+        assert attitude == self.BEFORE.invalid()
 
     def test_upside_down_the_wire_s_rounding_still_gives_a_unit_quaternion(self):
         for vector in ((0.6, -0.48, 0.64), (0.57735027, 0.57735027, 0.57735027), (0.999985, 0.0, 0.0)):

@@ -143,7 +143,7 @@ class TestJudgement:
     )
     def test_an_attitude_is_not_valid_with(self, judged, health):
         (_, _, attitude), state = judged(health)
-        assert attitude == with_values(state.attitude, valid=False)
+        assert attitude == state.attitude.invalid()
 
     @pytest.mark.parametrize(
         ("inertia_percent", "field", "valid"), [(0.0, False, True), (10.0, False, False), (10.0, True, True)]
@@ -257,7 +257,7 @@ class TestJudgement:
         (health, estimator, attitude), state = in_doubt(before)
         assert (health.sensors.field, health.sensors.sun) == (before.sensors.field, before.sensors.sun)
         assert health.coils == before.coils
-        assert attitude == with_values(state.attitude, valid=valid)
+        assert attitude == with_values(state.attitude, valid=valid, usable=valid)
         assert estimator.estimate.trace is None
 
     @pytest.mark.interpreted

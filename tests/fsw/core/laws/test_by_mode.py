@@ -38,7 +38,7 @@ B_BODY_T = (1.7e-5, -2.3e-5, 3.1e-5)
 BEFORE = FieldSample((1.5e-5, -2.6e-5, 3.3e-5), tick=40)
 SAMPLE = FieldSample((1.6e-5, -2.4e-5, 3.2e-5), tick=44)
 KNOWN = Attitude(normalise((0.9, 0.1, -0.2, 0.3)), (0.001, -0.002, 0.003), 0.01, 1e-4, True)
-NOT_VALID = KNOWN.replace(valid=False)
+NOT_VALID = KNOWN.invalid()
 TOO_FAST = KNOWN.replace(omega_body_orbit_radps=(0.001, -0.5, 0.003))
 REFERENCE = Reference(
     r_eci_m=(4.302e6, -3.4416e6, 4.5888e6),

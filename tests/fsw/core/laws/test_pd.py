@@ -195,7 +195,7 @@ class TestIntegral:
         np.testing.assert_allclose(demand.memory, limit * np.array(memory) / np.linalg.norm(memory))
 
     @pytest.mark.parametrize("law", [pd, pd_far])
-    @pytest.mark.parametrize("attitude", [UNKNOWN, KNOWN.replace(valid=False)])
+    @pytest.mark.parametrize("attitude", [UNKNOWN, KNOWN.invalid()])
     def test_without_an_attitude_it_is_kept_and_nothing_asked_for(self, law, attitude):
         memory = (30.0, -20.0, 10.0)
         assert law(inputs(attitude), memory, SETPOINT, CONFIG) == Demand(memory=memory)

@@ -47,7 +47,7 @@ def test_the_dipole_is_that_of_pd_by_absolute_rate_and_the_turn_from_the_target(
 def test_without_orbit_or_attitude_nothing_is_asked_for(bench, inputs, law, missing):
     blind = inputs.replace(reference=None)
     if missing == "attitude":
-        blind = inputs.replace(attitude=inputs.attitude.replace(valid=False))
+        blind = inputs.replace(attitude=inputs.attitude.invalid())
     point = bench.setpoint(k_w=K_W, k_a=K_A)
     settings = bench.config(bench.Body(INERTIA), 1.0, {"pd_inertial": TARGET})
     assert law(blind, (), point, settings).m_body_am2 == (0.0, 0.0, 0.0)

@@ -77,7 +77,7 @@ def test_two_lags_in_a_row_follow_what_changes(ask, inputs):
 
 
 def test_without_an_attitude_nothing_is_asked_for(inputs, ask):
-    unknown = inputs.replace(attitude=inputs.attitude.replace(valid=False))
+    unknown = inputs.replace(attitude=inputs.attitude.invalid())
     for absent in (unknown, inputs.replace(reference=None)):
         demand = ask(NOTHING, inputs=absent)
         assert (demand.m_body_am2, demand.memory) == ((0.0, 0.0, 0.0), ())
