@@ -1,9 +1,10 @@
-"""What changes in orbit: by how much it widens the estimate, and where.
+"""What changes in orbit: by how much it widens the estimate, where, and what fades.
 
 Bias and residual dipole step at the shadow's edge, where temperatures and currents change, and the body may
 snap; the field model is wrong where the currents of a storm flow, at high geomagnetic latitude; a coil keeps
 another part of each pulse. None has a parameter of its own: the covariance of those that it moves grows by
-what the table's bounds allow.
+what the table's bounds allow. The light of the Earth, and what it adds to a Sun cell, are states, which go
+back to their means as the satellite passes over other clouds.
 """
 
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ import numpy as np
 
 from fsw.core.algebra.vector import Vec3, dot, is_zero, norm
 from fsw.core.estimation.kalman import Matrix
+from fsw.core.estimation.kalman import fade as fade_covariance
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.core.orbit.earth import RADIUS_M
@@ -24,6 +26,10 @@ EDGE_M: Final = 60e3
 flattening, air, an error of the position."""
 EDGE_S: Final = 18.0
 """What the satellite takes at least for twice that way."""
+CORRELATION_RAD: Final = 1.0
+"""After a rotation by this angle the excess of a cell is little correlated with that before."""
+ORBIT_RADPS: Final = 1.1e-3
+"""The Earth moves at this rate in the view of a satellite that does not turn."""
 STORMY_SINE: Final = 0.894
 """Of the field's dip: above it, from 45 deg of geomagnetic latitude on, tan(dip) = 2 tan(latitude), storms
 disturb the field."""
@@ -84,6 +90,35 @@ def widen(
     for place, more in grown:
         covariance[place, place] += more
     estimate.covariance = covariance
+
+
+def fade(estimate: Estimate, config: MekfConfig) -> None:
+    """Let excess and Earth's light decay over a tick, towards their mean.
+
+    First-order Markov processes: x <- k x, sigma^2 <- k^2 sigma^2 + (1 - k^2) sigma_0^2, k = 1 / (1 + turn);
+    turn is the Earth's motion in view, for the excess of a cell plus the rotation of the satellite. What a
+    deviation has left in x decays as x does.
+    """
+    parts, known = config.layout, estimate.parameters
+    passed = config.tick_s * ORBIT_RADPS / CORRELATION_RAD
+    if parts.cells is not None:
+        turned = passed + config.tick_s * norm(estimate.omega_body_radps) / CORRELATION_RAD
+        of_excess = 1.0 / (1.0 + turned)
+        known.cell_excess = tuple([of_excess * value for value in known.cell_excess])
+        _fade(estimate, parts.cells, of_excess, config)
+    if parts.earth_light is not None:
+        of_light, mean = 1.0 / (1.0 + passed), config.initial_parameters.earth_light[0]
+        known.earth_light = (mean + of_light * (known.earth_light[0] - mean),)
+        _fade(estimate, parts.earth_light, of_light, config)
+
+
+def _fade(estimate: Estimate, place: slice, keep: float, config: MekfConfig) -> None:
+    """Scale these states in covariance and trace by ``keep``, their variances nearer to the prior's."""
+    estimate.covariance = fade_covariance(estimate.covariance, config.initial_covariance, place, keep)
+    if estimate.trace is not None:
+        effect = estimate.trace.effect.copy()
+        effect[place] *= keep
+        estimate.trace.effect = effect
 
 
 def _is_at_edge(reference: Reference) -> bool:

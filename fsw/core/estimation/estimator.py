@@ -9,8 +9,8 @@ from fsw.core.algebra.vector import ZERO, Vec3, dot, norm
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.cells.relinearise import Linear, linear_about, relinearise
-from fsw.core.estimation.cells.update import NO_CELLS, CellsUsed, fade, update_cells
-from fsw.core.estimation.changes import NO_CHANGES, Changes, widen
+from fsw.core.estimation.cells.update import NO_CELLS, CellsUsed, update_cells
+from fsw.core.estimation.changes import NO_CHANGES, Changes, fade, widen
 from fsw.core.estimation.dynamics.error_dynamics import (
     FAST_SQUARE,
     KNOWN_VARIANCE,

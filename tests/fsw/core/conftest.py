@@ -161,7 +161,7 @@ def state(config):
     return altered(
         booted,
         tick=TICK,
-        attitude=booted.attitude.replace(valid=True),
+        attitude=booted.attitude.replace(valid=True, usable=True),
         modes=ModeState(Mode.ACQUIRE, 11, trips=1),
         memory=(0.25, -0.5),
         ephemeris=advance(None, TICK, config.ephemeris),

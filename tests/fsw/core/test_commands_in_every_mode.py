@@ -74,7 +74,7 @@ def flown(name, knowledge="filter"):
 def obey(flight, mode, *telecommands):
     """What is said: all are acknowledged, and the flight goes on for some ticks."""
     config, state, inboxes = flight
-    attitude = state.attitude.replace(valid=True)
+    attitude = state.attitude.replace(valid=True, usable=True)
     state = altered(state, attitude=attitude, modes=ModeState(mode, state.tick))
     sent = tuple(message.encode() for message in telecommands)
     said = []

@@ -97,8 +97,15 @@ class TestErrors:
     def test_of_a_satellite_without_cells_are_not_carried(self):
         config = estimator_config(flight_table({}, "a table")).mekf
         places, known = config.layout, config.initial_parameters
-        assert (config.cells, places.cells, places.cell_gain, places.earth_light) == (None,) * 4
-        assert (known.cell_excess, known.cell_gain, known.earth_light) == ((), (), ())
+        assert (config.cells, places.cells, places.cell_gain) == (None,) * 3
+        assert (known.cell_excess, known.cell_gain) == ((), ())
+
+    def test_but_the_earths_light_is_which_deflects_a_sun_sensor(self):
+        config = estimator_config(flight_table({"uncertainty": {"albedo_percent": 40.0}}, "a table")).mekf
+        assert config.initial_parameters.earth_light == pytest.approx((0.2,))
+        without = estimator_config(flight_table({"uncertainty": {"albedo_percent": 0.0}}, "a table")).mekf
+        assert without.layout.earth_light is None
+        assert without.initial_parameters.earth_light == ()
 
 
 def test_the_noise_of_a_sun_sensor_has_no_part_where_there_are_cells():
@@ -117,4 +124,4 @@ def test_it_makes_a_config():
     assert flight_config(table()).estimator.mekf.cells is not None
 
 
-PINNED_CRC = 974539391
+PINNED_CRC = 981568175

@@ -68,20 +68,26 @@ class TestTicks:
             "sun_misalignment_deg": 0.3,
             "along_track_km": 7.0,
             "latency_s": 0.25,
+            "magnetometer_orbit_nt": 210.0,
+            "magnetometer_shadow_nt": 320.0,
+            "storm_nt": 130.0,
+            "albedo_percent": 40.0,
         }
         tuning = {"magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.2}
         config = configured(time={"tick_hz": 10}, estimator=tuning, uncertainty=uncertainty).fdir
         edge = sqrt(16.27)
+        field_t = sqrt(3.0) * (700e-9 + 210e-9 + 320e-9 + 130e-9 + edge * 150e-9)
         assert asdict(config.plausibility) == pytest.approx(
             {
-                "field_t": sqrt(3.0) * (700e-9 + edge * 150e-9),
+                "field_t": field_t,
                 "field_part": 0.004 + 3.0 * 7.0e3 / 7.0e6,
-                "in_range_t": (65000e-9 - sqrt(3.0) * (700e-9 + edge * 150e-9)) / 1.007,
+                "in_range_t": (65000e-9 - field_t) / 1.007,
                 "angle_rad": radians(0.9 + 0.3 + edge * 0.2) + 0.007,
                 "sun_norm": edge * radians(0.2),
                 "late_ticks": 3,
                 "cells": None,
                 "steps": None,
+                "most_albedo": pytest.approx(0.4),
             }
         )
 

@@ -10,7 +10,7 @@ from filter_steps import known_of
 
 from fsw.core.algebra.quaternion import normalise
 from fsw.core.estimation import mekf
-from fsw.core.estimation.parameters import NAMES, OF_CELLS
+from fsw.core.estimation.parameters import NAMES
 from fsw.core.fdir.sensors.standstill import Steps
 from fsw.input.schema import merge
 from fsw.table.estimator import (
@@ -73,7 +73,7 @@ class TestNoise:
 
 class TestStates:
     def test_all_are_carried_unless_the_table_is_exact(self):
-        assert configured().mekf.layout.size == 41
+        assert configured().mekf.layout.size == 42
         assert configured(uncertainty=EXACT).mekf.layout.size == 6
         biased = configured(uncertainty=EXACT | {"magnetometer_bias_nt": 500.0}).mekf.layout
         assert (biased.size, biased.mag_bias) == (9, slice(6, 9))
@@ -81,14 +81,15 @@ class TestStates:
     def test_their_priors_are_those_of_the_bounds(self):
         table = table_with(uncertainty={"inertia_percent": 8.0, "latency_s": 2.5})
         config, expected = estimator_config(table).mekf, priors(table_bounds(table), table.body.inertia)
-        sigma = np.concatenate([expected[name].sigma for name in NAMES if name not in OF_CELLS])
+        sigma = np.concatenate([expected[name].sigma for name in NAMES if name in expected])
         np.testing.assert_allclose(np.sqrt(config.initial_covariance.diagonal()[6:]), sigma, rtol=1e-12)
         assert config.initial_parameters.delay_s == (1.25, 1.25)
 
     @pytest.mark.parametrize("key", UncertaintyTable.model_fields)
     def test_with_any_one_of_them_the_filter_is_sound(self, key):
         """Also where a part of a parameter is exact, as the gains of coils that are turned alone."""
-        bound = {"residual_dipole_am2": 0.05, "torque_nm": 1e-7, "torque_variation_nm": 0.0}.get(key, 1.0)
+        small = {"residual_dipole_am2": 0.05, "torque_nm": 1e-7, "torque_variation_nm": 0.0}
+        bound = {**small, "shadow_impulse_nms": 1e-4}.get(key, 1.0)
         config = configured(uncertainty=EXACT | {key: bound}).mekf
         q, b, s = normalise((0.6, -0.4, 0.5, 0.3)), (1.7e-5, -2.3e-5, 3.1e-5), (0.6, -0.48, 0.64)
         estimate = mekf.start(q, (0.001, -0.002, 0.003), config)
@@ -109,12 +110,15 @@ class TestLimitsOfThePair:
         "magnetometer_misalignment_deg": 1.5,
         "sun_misalignment_deg": 0.25,
         "along_track_km": 7.0,
+        "magnetometer_orbit_nt": 210.0,
+        "magnetometer_shadow_nt": 320.0,
+        "storm_nt": 130.0,
     }
     SENSORS = {"magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.3}  # noqa: RUF012  (never changed)
 
     def test_are_the_bounds_and_the_noise_at_the_edge_of_the_gate(self):
         limits = plausibility_config(table_with(uncertainty=self.KNOWN, estimator=self.SENSORS))
-        offset_t = sqrt(3.0) * (700e-9 + sqrt(16.27) * 150e-9)
+        offset_t = sqrt(3.0) * (700e-9 + 210e-9 + 320e-9 + 130e-9 + sqrt(16.27) * 150e-9)
         position = 3.0 * 7.0 / 7000.0
         assert limits.field_t == pytest.approx(offset_t)
         assert limits.field_part == pytest.approx(0.004 + position)

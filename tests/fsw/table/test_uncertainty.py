@@ -160,7 +160,7 @@ class TestPriors:
             "delay_s": [0.9 * side] * 2,
             "earth_light": [0.2 * side],
         }
-        assert list(found) == [name for name in NAMES if name not in OF_CELLS]
+        assert list(found) == [name for name in NAMES if name in expected]
         for name, sigma in expected.items():
             assert found[name].sigma == pytest.approx(sigma)
             assert len(found[name].sigma) == len(found[name].walk) == SIZES[name]

@@ -5,23 +5,18 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from fsw.core.algebra.vector import ZERO, Vec3, norm
+from fsw.core.algebra.vector import ZERO, Vec3
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import CellSet, Light
 from fsw.core.estimation.cells.prediction import prediction
 from fsw.core.estimation.cells.relinearise import Linear, cell_shown
 from fsw.core.estimation.kalman import Matrix
-from fsw.core.estimation.kalman import fade as fade_covariance
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig
 from fsw.wire.value import Value
 
 GATE_NIS = 10.83
 """Chi-square with 1 degree of freedom: 1 in 1000 sound samples is refused."""
-CORRELATION_RAD = 1.0
-"""After a rotation by this angle the excess of a cell is little correlated with that before."""
-ORBIT_RADPS = 1.1e-3
-"""The Earth moves at this rate in the view of a satellite that does not turn."""
 
 
 @final
@@ -97,32 +92,3 @@ def _take(
 ) -> bool:
     noise = np.array([[cells.sigma**2]])
     return mekf.take(estimate, (innovation,), row, noise, config, GATE_NIS, 0, frozen, wheel_nms)
-
-
-def fade(estimate: Estimate, config: MekfConfig) -> None:
-    """Let excess and Earth's light decay over a tick, towards their mean.
-
-    First-order Markov processes: x <- k x, sigma^2 <- k^2 sigma^2 + (1 - k^2) sigma_0^2, k = 1 / (1 + turn);
-    turn is the Earth's motion in view, for the excess of a cell plus the rotation of the satellite. What a
-    deviation has left in x decays as x does.
-    """
-    parts, known = config.layout, estimate.parameters
-    passed = config.tick_s * ORBIT_RADPS / CORRELATION_RAD
-    if parts.cells is not None:
-        turned = passed + config.tick_s * norm(estimate.omega_body_radps) / CORRELATION_RAD
-        of_excess = 1.0 / (1.0 + turned)
-        known.cell_excess = tuple([of_excess * value for value in known.cell_excess])
-        _fade(estimate, parts.cells, of_excess, config)
-    if parts.earth_light is not None:
-        of_light, mean = 1.0 / (1.0 + passed), config.initial_parameters.earth_light[0]
-        known.earth_light = (mean + of_light * (known.earth_light[0] - mean),)
-        _fade(estimate, parts.earth_light, of_light, config)
-
-
-def _fade(estimate: Estimate, place: slice, keep: float, config: MekfConfig) -> None:
-    """Scale these states in covariance and trace by ``keep``, their variances nearer to the prior's."""
-    estimate.covariance = fade_covariance(estimate.covariance, config.initial_covariance, place, keep)
-    if estimate.trace is not None:
-        effect = estimate.trace.effect.copy()
-        effect[place] *= keep
-        estimate.trace.effect = effect

@@ -211,7 +211,7 @@ class TestLaw:
 
     @pytest.mark.parametrize(
         ("attitude", "reference"),
-        [(UNKNOWN, REFERENCE), (KNOWN.replace(valid=False), REFERENCE), (KNOWN, None)],
+        [(UNKNOWN, REFERENCE), (KNOWN.invalid(), REFERENCE), (KNOWN, None)],
     )
     def test_without_attitude_or_orbit_it_asks_for_nothing(self, attitude, reference):
         assert predictive(inputs(attitude, reference), (), SETPOINT, CONFIG) == Demand()

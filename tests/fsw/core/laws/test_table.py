@@ -24,7 +24,7 @@ CONFIG = flight_config(flight_table({"body": {"wheel_nms": [0.01, -0.02, 0.03]}}
 CONTROL = CONFIG.control
 SETPOINT = replace(CONTROL.setpoint, k_i=0.05, spin_radps=0.01)
 KNOWN = Attitude(normalise((0.9, 0.1, -0.2, 0.3)), (0.001, -0.002, 0.003), 0.01, 1e-4, True)
-NOT_VALID = KNOWN.replace(valid=False)
+NOT_VALID = KNOWN.invalid()
 B_BODY_T = (1.7e-5, -2.3e-5, 3.1e-5)
 SAMPLE = FieldSample((1.6e-5, -2.4e-5, 3.2e-5), tick=44)
 BEFORE = FieldSample((1.5e-5, -2.6e-5, 3.3e-5), tick=43)

@@ -24,16 +24,11 @@ from fsw.core.algebra.vector import norm
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.prediction import prediction, sunlit
 from fsw.core.estimation.cells.relinearise import correction
-from fsw.core.estimation.cells.update import (
-    CORRELATION_RAD,
-    GATE_NIS,
-    NO_CELLS,
-    ORBIT_RADPS,
-    fade,
-    take_cell,
-)
+from fsw.core.estimation.cells.update import GATE_NIS, NO_CELLS, take_cell
+from fsw.core.estimation.changes import CORRELATION_RAD, ORBIT_RADPS, fade
 from fsw.core.estimation.kalman import Cause, Trace
-from fsw.core.estimation.parameters import correct_parameters
+from fsw.core.estimation.mekf import Estimate
+from fsw.core.estimation.parameters import NOTHING, correct_parameters, layout
 from fsw.core.packing import pack
 
 CONFIG = cell_filter()
@@ -154,7 +149,23 @@ class TestExcess:
         assert 0.0 < left[parts.earth_light.start] < 0.04
         assert traced.trace.effect is effect
 
-    def test_without_cells_nothing_is_touched(self):
-        estimate = begun()
-        after = changed(estimate, fade, replace(CONFIG, cells=None))
-        assert pack(after) == pack(estimate)
+    def test_without_cells_the_earths_light_alone_goes_to_its_mean(self):
+        """It deflects a Sun sensor, and is no less one that varies with what the satellite passes over."""
+        parts = layout({"mag_bias_t", "earth_light"})
+        parameters = replace(NOTHING, earth_light=(0.3,))
+        covariance = np.diag([1e-4] * 6 + [1e-14] * 3 + [1e-6])
+        config = replace(
+            CONFIG,
+            cells=None,
+            layout=parts,
+            initial_parameters=replace(NOTHING, earth_light=(0.2,)),
+            initial_covariance=np.diag([1e-2] * 6 + [1e-13] * 3 + [1e-2]),
+        )
+        estimate = Estimate(Q_BODY_FROM_ECI, (0.01, -0.02, 0.03), parameters, covariance)
+        later = changed(estimate, fade, config)
+        kept = 1.0 / (1.0 + config.tick_s * ORBIT_RADPS)
+        assert later.parameters.earth_light == pytest.approx((0.2 + kept * 0.1,), rel=1e-12)
+        expected = covariance.diagonal().copy()
+        expected[9] = kept**2 * 1e-6 + (1.0 - kept**2) * 1e-2
+        np.testing.assert_allclose(later.covariance.diagonal(), expected, rtol=1e-9)
+        assert later.q_body_from_eci == estimate.q_body_from_eci
