@@ -13,7 +13,7 @@ import numpy as np
 
 from fsw.core.algebra.vector import Mat3
 from fsw.input.schema import Nested, merge
-from fsw.table.ordinary import mean_moment
+from fsw.table.ordinary import mean_moment, ordinary_shadow_impulse_nms
 from sim.campaign.consistency import consistency_figures
 from sim.campaign.flight import Order
 from sim.scenario.schema import Scenario, load
@@ -54,7 +54,7 @@ class Tolerances:
         magnetometer_shadow_nt: per axis, by which it changes in the shadow.
         storm_nt: of the field at high latitude.
         albedo_percent: of sunlight, what the Earth reflects onto the Sun sensor; it varies over the clouds.
-        snap_radps: change of the rate per axis at the shadow's edge.
+        snap_radps: change of the rate per axis at the shadow's edge; the table allows for the ordinary one.
     """
 
     residual_dipole_am2: Interval
@@ -86,7 +86,7 @@ class Tolerances:
         values["torque_nm"] = values.pop("declared_torque_nm")
         values["torque_variation_nm"] = 0.2 * values["torque_nm"]
         values["shadow_dipole_am2"] = 0.01 * self.eclipse_dipole_percent * self.residual_dipole_am2[1]
-        values["shadow_impulse_nms"] = self.snap_radps * mean_moment(inertia_kgm2)
+        values["shadow_impulse_nms"] = ordinary_shadow_impulse_nms(inertia_kgm2)
         return values
 
 

@@ -185,7 +185,7 @@ def _sun_sensor(scenario: Scenario) -> SunSensorConfig:
         latency_s=section.latency_s,
         fov_half_rad=radians(section.fov_half_deg or 180.0),
         boresights_body=tuple(_unit(axis) for axis in section.boresights),
-        albedo=section.mean_albedo,
+        albedo=section.albedo,
         albedo_spread=section.albedo_spread,
     )
 

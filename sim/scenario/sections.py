@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, Field, Strict, model_validator
+from pydantic import AfterValidator, Field, Strict, field_validator, model_validator
 
 from fsw.input.schema import (
     Nested,
@@ -155,8 +155,14 @@ class SunSensorSection(Section):
     latency_s: Latency = 0.0
     fov_half_deg: float | None = Field(default=None, gt=0.0, le=180.0)
     boresights: Annotated[tuple[Triple, ...], Strict(False)] = ()
-    albedo: bool | Part = False
+    albedo: Part = 0.0
     albedo_spread: Part = 0.0
+
+    @field_validator("albedo", mode="before")
+    @classmethod
+    def _is_that_of_the_earth(cls, given: object) -> object:
+        """``true`` is the mean of the Earth."""
+        return MEAN_ALBEDO * given if isinstance(given, bool) else given
 
     @model_validator(mode="after")
     def _has_cones(self) -> Self:
@@ -165,11 +171,6 @@ class SunSensorSection(Section):
         if not all(any(axis) for axis in self.boresights):
             raise ValueError("boresights must not be zero")
         return self
-
-    @property
-    def mean_albedo(self) -> float:
-        """The fraction of sunlight that the Earth reflects, 0 for none."""
-        return self.albedo if isinstance(self.albedo, float) else MEAN_ALBEDO * self.albedo
 
 
 class CellsSection(CellShapes):

@@ -18,7 +18,9 @@ drawn by `sim/campaign/population.py` within the tolerances below: the plant get
 table keeps the nominal values. Satellite 7 of a population is the same wherever it flies, and its sensors and
 coils are healthy: none may be isolated. The law is `mpc`; a flight takes eight orbits, fourteen from 5 deg/s,
 and begins up to 60 deg and 0.05 deg/s by axis off, where it does not tumble. The 6U has drag and light
-besides. No Sun sensor sees the light of the Earth (`sensors.sun.albedo` would turn it on).
+besides. In each of them the magnetometer's bias follows orbit and shadow, a storm disturbs the field at high
+latitude, coils keep some of each pulse, the dipole changes and the body snaps at the shadow's edge, and the
+Sun sensor sees an Earth with clouds.
 
 The tolerances are an own estimate, and no more than the onboard table declares, but for the population
 `twice`. The dipole is that of a satellite whose own was measured: one that was not has some mA m^2 per kg
@@ -39,16 +41,21 @@ TOLERANCES = (
     ("moments of inertia, each", "inertia_percent", "%"),
     ("products of inertia, of the mean moment", "products_percent", "%"),
     ("residual dipole, any direction, log-uniform", "residual_dipole_am2", "A m^2"),
-    ("part of the dipole that points elsewhere in shadow", "eclipse_dipole_percent", "%"),
-    ("remanence of pulses at the highest level, of the largest dipole", "remanence_percent", "%"),
+    ("what the shadow adds to the dipole, of the largest one", "eclipse_dipole_percent", "%"),
+    ("remanence, of the dipole of a pulse", "remanence_percent", "%"),
     ("dipole of a coil", "coil_gain_percent", "%"),
     ("axis of a coil, whole turn", "coil_misalignment_deg", "deg"),
     ("magnetometer bias, by axis", "magnetometer_bias_nt", "nT"),
+    ("amplitude of its bias over the orbit, by axis", "magnetometer_orbit_nt", "nT"),
+    ("its bias in shadow, by axis", "magnetometer_shadow_nt", "nT"),
     ("magnetometer scale, by axis", "magnetometer_scale_percent", "%"),
     ("magnetometer, whole turn", "magnetometer_misalignment_deg", "deg"),
     ("magnetometer, angles between its axes, within that turn", "non_orthogonality_deg", "deg"),
     ("Sun sensor, whole turn", "sun_misalignment_deg", "deg"),
+    ("light of the Earth, of sunlight", "albedo_percent", "%"),
+    ("storm at high latitude", "storm_nt", "nT"),
     ("torque by axis, with its daily variation", "torque_nm", "N m"),
+    ("change of the rate at the shadow's edge, by axis", "snap_radps", "rad/s"),
     ("position along the track", "along_track_km", "km"),
     ("age of the samples of both sensors", "latency_s", "s"),
 )

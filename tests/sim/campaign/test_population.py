@@ -47,6 +47,13 @@ def differences(kind, one):
         "along track": abs(one["orbit"]["along_track_km"]) / limits.along_track_km,
         "latency": sensors["magnetometer"]["latency_s"] / limits.latency_s,
         "latency of the Sun sensor": sensors["sun"]["latency_s"] / limits.latency_s,
+        "orbit": np.abs(sensors["magnetometer"]["orbit_bias_nt"]).max() / limits.magnetometer_orbit_nt,
+        "shadow": np.abs(sensors["magnetometer"]["shadow_bias_nt"]).max() / limits.magnetometer_shadow_nt,
+        "storm": one["field"]["storm_nt"] / limits.storm_nt,
+        "dipole in the shadow": np.linalg.norm(disturbance["residual_dipole_eclipse_am2"])
+        / (0.01 * limits.eclipse_dipole_percent * limits.residual_dipole_am2[1]),
+        "remanence": 100.0 * disturbance["remanence_part"] / limits.remanence_percent,
+        "snap": 10.0 * np.abs(disturbance["penumbra_torque_nm"]).max() / moments.mean() / limits.snap_radps,
     }
 
 
@@ -81,37 +88,14 @@ def test_no_axis_of_the_magnetometer_is_turned_and_skewed_by_more_than_its_bound
     assert 0.9 * most_deg < max(angles_deg) <= most_deg * (1.0 + 1e-3)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("kind", POPULATIONS)
-@pytest.mark.parametrize(("twice", "factor"), [(False, 1.0), (True, 2.0)])
-def test_the_dipole_changes_but_stays_within_its_bound(kind, twice, factor):
-    """In light and in shadow, after pulses at the highest level of all three coils, either way."""
-    limits, most, changes, kept = POPULATIONS[kind].tolerances, [], [], []
-    bound = factor * limits.residual_dipole_am2[1]
-    for seed, one in zip(SEEDS, drawn(kind, twice=twice), strict=True):
-        plant = plant_config(load(POPULATIONS[kind].scenario, one), seed)
-        light = np.array(plant.disturbance.residual_dipole_body_am2)
-        shadow = light + plant.disturbance.residual_dipole_eclipse_body_am2
-        size = np.linalg.norm(light)
-        changes.append(np.linalg.norm(shadow - light) / size)
-        pulses = plant.coils.remanence_part * plant.coils.levels_am2[2] * np.array(plant.coils.dipole_scale)
-        kept.append(np.linalg.norm(pulses) / bound)
-        most.append(max(size, np.linalg.norm(shadow)) + np.linalg.norm(pulses))
-    assert 0.9 * bound < max(most) <= bound * (1.0 + 1e-9)
-    assert 0.1 < max(changes) <= 2.0 * 0.1
-    assert 0.015 < max(kept) <= 0.02
-
-
-def test_a_dipole_near_its_bound_leaves_little_to_the_pulses(monkeypatch):
-    """All are above 99 % of it; else pulses may leave 2 %."""
-    nominal = POPULATIONS["50kg"]
-    large = replace(nominal.tolerances, residual_dipole_am2=(0.099, 0.1))
-    monkeypatch.setitem(POPULATIONS, "50kg", replace(nominal, tolerances=large))
-    for one in drawn("50kg"):
-        disturbance, scale = one["disturbance"], max(one["coils"]["dipole_scale"])
-        kept = disturbance["remanence_part"] * 8.0 * scale * np.sqrt(3.0)
-        assert kept > 0.0
-        assert np.linalg.norm(disturbance["residual_dipole_am2"]) + kept <= 0.1 * (1.0 + 1e-9)
+@pytest.mark.parametrize("twice", [False, True])
+def test_the_earth_reflects_what_an_earth_can(twice):
+    """Beyond its bound there is next to no such Earth: it is never exceeded. It varies over clouds."""
+    suns = [one["sensors"]["sun"] for one in drawn("50kg", twice=twice)]
+    albedos, spreads = ([sun[key] for sun in suns] for key in ("albedo", "albedo_spread"))
+    assert 0.3 < max(albedos) <= 0.35
+    assert min(albedos) < 0.05
+    assert 0.25 < max(spreads) <= 0.3
 
 
 def test_the_dipole_is_spread_over_all_its_decades_and_directions():
@@ -186,6 +170,13 @@ def test_what_is_declared_is_the_bounds_and_not_the_truth():
         "torque_variation_nm": pytest.approx(3e-8),
         "along_track_km": 5.0,
         "latency_s": 1.0,
+        "magnetometer_orbit_nt": 400.0,
+        "magnetometer_shadow_nt": 400.0,
+        "storm_nt": 150.0,
+        "shadow_dipole_am2": pytest.approx(0.004),
+        "remanence_percent": 0.3,
+        "albedo_percent": 35.0,
+        "shadow_impulse_nms": pytest.approx(3e-4 * np.mean(load("cubesat6u").body.inertia_kgm2)),
     }
     flown = load("cubesat6u", satellite("6u", 4))
     assert flight_table(flown).uncertainty.model_dump(exclude_none=True) == one["uncertainty"]

@@ -137,7 +137,7 @@ def test_sun_sensor(plant):
     assert sensor.noise_rad == pytest.approx(radians(0.4))
     assert sensor.misalignment_rad == pytest.approx(tuple(map(radians, (0.3, -0.1, 0.2))))
     assert sensor.quantum == 0.001
-    assert sensor.albedo is True
+    assert sensor.albedo == 0.3
     assert (sensor.latency_s, sensor.fov_half_rad) == (0.7, pytest.approx(radians(60.0)))
     assert sensor.boresights_body == (pytest.approx((0.6, 0.0, -0.8)), (0.0, 1.0, 0.0))
 
@@ -160,7 +160,7 @@ def test_what_a_scenario_does_not_speak_of_is_not_there():
     assert plain.coils.misalignment_rad == ((0.0, 0.0, 0.0),) * 3
     assert plain.magnetometer.non_orthogonality_rad == (0.0, 0.0, 0.0)
     assert (plain.magnetometer.latency_s, plain.sun_sensor.latency_s) == (0.0, 0.0)
-    assert plain.sun_sensor.albedo is False
+    assert plain.sun_sensor.albedo == 0.0
     assert (plain.sun_sensor.fov_half_rad, plain.sun_sensor.boresights_body) == (pi, ())
     assert plain.coils.continuous is None
 

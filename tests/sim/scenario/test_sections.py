@@ -31,7 +31,7 @@ CONTINUOUS = ("coils.driver=continuous", "coils.max_dipole_am2=12")
         ),
         (["disturbance.remanence_part=1.5"], ["disturbance.remanence_part", "at most 1"]),
         (["disturbance.residual_dipole_eclipse_am2=[0, 1]"], ["residual_dipole_eclipse_am2.2 is missing"]),
-        (["sensors.sun.albedo=0.3"], ["sensors.sun.albedo = 0.3 is not allowed"]),
+        (["sensors.sun.albedo=1.3"], ["sensors.sun.albedo = 1.3 is not allowed"]),
         (["disturbance.torque_daily_part=1.1"], ["disturbance.torque_daily_part", "at most 1"]),
         (["disturbance.torque_daily_part=-0.1"], ["disturbance.torque_daily_part", "at least 0"]),
         (["body.plates=[{area_m2=0, normal=[0, 0, 1]}]"], ["body.plates.0.area_m2"]),

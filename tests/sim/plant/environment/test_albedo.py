@@ -45,23 +45,25 @@ def turn_deg(sun, light):
 @pytest.mark.parametrize("zenith_deg", [0.0, 15.0, 40.0, 60.0, 80.0, 90.0, 110.0, 180.0])
 def test_it_is_the_light_of_a_diffuse_earth(altitude_km, zenith_deg):
     r_m, sun = (EARTH_RADIUS_M + 1e3 * altitude_km) * E, sun_at(zenith_deg)
-    found, expected = np.array(earthlight(tuple(r_m), tuple(sun))), integral(r_m, sun)
+    found, expected = np.array(earthlight(tuple(r_m), tuple(sun), 0.3)), integral(r_m, sun)
     assert found == pytest.approx(expected, abs=0.02)
     assert turn_deg(sun, found) == pytest.approx(turn_deg(sun, expected), abs=0.6)
 
 
 def test_by_hand_below_the_noon_sun():
     """At 800 km: 0.3 (6378 / 7178)^2 = 0.237, from below."""
-    light = np.array(earthlight(tuple((EARTH_RADIUS_M + 800e3) * E), tuple(E)))
+    light = np.array(earthlight(tuple((EARTH_RADIUS_M + 800e3) * E), tuple(E), 0.3))
     assert light == pytest.approx(-0.23685 * E, rel=1e-3)
 
 
 def test_it_turns_a_sun_high_in_the_sky_by_degrees():
     r_m = tuple((EARTH_RADIUS_M + 800e3) * E)
-    turns = [turn_deg(sun_at(deg), np.array(earthlight(r_m, tuple(sun_at(deg))))) for deg in range(0, 91, 5)]
+    turns = [
+        turn_deg(sun_at(deg), np.array(earthlight(r_m, tuple(sun_at(deg)), 0.3))) for deg in range(0, 91, 5)
+    ]
     assert max(turns) == pytest.approx(7.8, abs=0.1)
 
 
 @pytest.mark.parametrize("zenith_deg", [91.0, 118.0, 180.0])
 def test_no_light_where_the_sun_has_set(zenith_deg):
-    assert not any(earthlight(tuple((EARTH_RADIUS_M + 800e3) * E), tuple(sun_at(zenith_deg))))
+    assert not any(earthlight(tuple((EARTH_RADIUS_M + 800e3) * E), tuple(sun_at(zenith_deg)), 0.3))
