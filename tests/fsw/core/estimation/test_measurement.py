@@ -4,13 +4,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from estimator_samples import Q_BODY_FROM_ECI, REFERENCE, tuned
 from filter_steps import known_of
 from scipy.spatial.transform import Rotation
 
 from fsw.core.algebra.quaternion import rotate
-from fsw.core.algebra.vector import ZERO
-from fsw.core.estimation.measurement import field_prediction, field_sampled, sun_prediction
-from fsw.core.estimation.parameters import NAMES, NOTHING, Parameters
+from fsw.core.algebra.vector import ZERO, unit
+from fsw.core.estimation.measurement import (
+    both_prediction,
+    deflected_sun,
+    field_prediction,
+    field_sampled,
+    sun_prediction,
+)
+from fsw.core.estimation.parameters import NAMES, NOTHING, Parameters, Prior
 
 SEEN = {
     "field": {"mag_bias_t", "mag_turn_rad", "mag_scale", "delay_s"},
@@ -161,3 +168,39 @@ def test_the_field_of_an_old_sample_is_that_of_where_the_satellite_was(full):
     found = field_sampled(Parameters(delay_s=(0.5, 3.0)), full.b_eci_t, rate)
     np.testing.assert_allclose(found, np.subtract(full.b_eci_t, np.multiply(0.5, rate)), rtol=1e-15)
     assert field_sampled(NOTHING, full.b_eci_t, rate) == full.b_eci_t
+
+
+class TestEarthlight:
+    """It turns what a Sun sensor takes for the Sun; the filter may carry the albedo."""
+
+    CONFIG = tuned(
+        sun_turn_rad=Prior((0.01,) * 3, (0.0,) * 3), earth_light=Prior((0.1,), (0.0,), mean=(0.2,))
+    )
+    SUNLIT = REFERENCE.replace(sun_eci=unit((0.5, -0.6, 0.7)))
+
+    def turned(self, albedo, config=CONFIG):
+        parameters = replace(NOTHING, sun_turn_rad=(0.01, -0.02, 0.015), earth_light=(albedo,))
+        s_eci, slope_eci = deflected_sun(parameters, self.SUNLIT, config)
+        omega = (0.001, -0.002, 0.003)
+        return sun_prediction(Q_BODY_FROM_ECI, omega, parameters, s_eci, config, slope_eci)
+
+    def test_the_sensitivity_is_the_derivative(self):
+        _, found = self.turned(0.25)
+        (ahead, _), (behind, _) = self.turned(0.25 + 1e-6), self.turned(0.25 - 1e-6)
+        column = found[:, self.CONFIG.layout.earth_light.start]
+        np.testing.assert_allclose(column, (np.array(ahead) - behind) / 2e-6, atol=0.03 * abs(column).max())
+        assert abs(column).max() > 0.1
+
+    def test_of_both_sensors_it_stands_in_the_rows_of_the_sun(self):
+        parameters = replace(NOTHING, earth_light=(0.25,))
+        sun = deflected_sun(parameters, self.SUNLIT, self.CONFIG)
+        known = (Q_BODY_FROM_ECI, ZERO, parameters)
+        _, alone = sun_prediction(*known, sun[0], self.CONFIG, sun[1])
+        _, _, both = both_prediction(*known, (1e-5, 2e-5, 3e-5), sun[0], self.CONFIG, sun[1])
+        place = self.CONFIG.layout.earth_light.start
+        np.testing.assert_array_equal(both[3:6, place], alone[:, place])
+        assert not both[0:3, place].any()
+
+    def test_without_it_the_sun_is_where_it_is(self):
+        config = tuned(sun_turn_rad=Prior((0.01,) * 3, (0.0,) * 3))
+        assert deflected_sun(NOTHING, self.SUNLIT, config) == (self.SUNLIT.sun_eci, ZERO)

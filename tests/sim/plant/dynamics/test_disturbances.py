@@ -200,6 +200,12 @@ class TestDaily:
         constant = DisturbanceConfig((3e-8, -2e-8, 1e-8))
         assert bias_torque(constant, 7777.0) == constant.torque_body_nm
 
+    @pytest.mark.parametrize(("lit", "acts"), [(1.0, False), (0.999, True), (0.001, True), (0.0, False)])
+    def test_that_of_the_penumbra_acts_there_alone(self, lit, acts):
+        snapping = DisturbanceConfig((3e-8, -2e-8, 1e-8), penumbra_torque_body_nm=(1e-5, -2e-5, 4e-6))
+        expected = np.array(snapping.torque_body_nm) + acts * np.array(snapping.penumbra_torque_body_nm)
+        assert bias_torque(snapping, 7777.0, lit) == pytest.approx(expected, rel=1e-12)
+
     @pytest.mark.parametrize("part", [-0.1, 1.1, float("nan")])
     def test_a_part_that_is_none_is_refused(self, part):
         with pytest.raises(ValueError, match="torque_daily_part must lie between 0 and 1"):

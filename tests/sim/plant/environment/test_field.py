@@ -68,3 +68,19 @@ def test_degree_matters_to_igrf_alone():
     assert 0.0 < np.abs(b("igrf14", 13) - b("igrf14", 10)).max() < 5e-8
     assert (b("igrf14", 1) == b("tilted_dipole", 13)).all()
     assert (b("direct_dipole", 1) == b("direct_dipole", 13)).all()
+
+
+class TestStorm:
+    QUIET = make_field(FieldConfig(), EPOCH)
+    STORM = make_field(FieldConfig(storm_t=3e-7), EPOCH)
+
+    def test_it_pulsates_at_high_latitude_and_elsewhere_it_is_the_ring_currents(self):
+        added = self.STORM.at(TIMES, R) - self.QUIET.at(TIMES, R)
+        size, north = np.linalg.norm(added, axis=1), np.abs(R[:, 2]) / np.linalg.norm(R, axis=1)
+        near_equator, near_pole = north < np.sin(radians(30.0)), north > np.sin(radians(75.0))
+        assert added[near_equator] == pytest.approx(np.tile([0.0, 0.0, -6e-8], (near_equator.sum(), 1)))
+        assert 4e-7 < size[near_pole].max() < 6e-7
+        assert size[near_pole].mean() > 3e-7
+
+    def test_without_one_the_field_is_the_quiet_one(self):
+        assert (make_field(FieldConfig(storm_t=0.0), EPOCH).at(TIMES, R) == self.QUIET.at(TIMES, R)).all()

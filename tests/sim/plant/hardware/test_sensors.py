@@ -332,3 +332,29 @@ def test_a_saturated_sample_is_wired_too():
     reading, valid = read_field(MagnetometerConfig(saturation_t=2e-5, wiring=(3, -1, 2)))
     assert reading == (2e-5, -1.1e-5, -2e-5)
     assert not valid
+
+
+class TestBiasThatChanges:
+    CONFIG = MagnetometerConfig(
+        bias_t=(3e-7, -2e-7, 1e-7),
+        orbit_bias_t=(1e-7, 2e-7, -3e-7),
+        orbit_bias_phase_rad=(0.0, 0.5, 2.0),
+        orbit_s=6000.0,
+        shadow_bias_t=(9e-7, -2e-7, 5e-7),
+    )
+
+    def bias(self, t_s, lit):
+        shown, _ = MagnetometerPhysics(self.CONFIG, 1).measure(B, OFF, t_s, lit)
+        return np.array(shown) - B
+
+    @pytest.mark.parametrize("t_s", [0.0, 700.0, 1500.0, 6700.0])
+    def test_follows_the_orbit_each_axis_with_its_phase(self, t_s):
+        angle = 2.0 * np.pi * t_s / 6000.0
+        wave = np.array((1e-7, 2e-7, -3e-7)) * np.sin(angle + np.array((0.0, 0.5, 2.0)))
+        assert self.bias(t_s, 1.0) == pytest.approx(np.array((3e-7, -2e-7, 1e-7)) + wave, rel=1e-9)
+        assert self.bias(t_s + 6000.0, 1.0) == pytest.approx(self.bias(t_s, 1.0), rel=1e-6)
+
+    def test_steps_with_the_shadow(self):
+        dark, half, light = (self.bias(700.0, lit) for lit in (0.0, 0.5, 1.0))
+        assert dark - light == pytest.approx((9e-7, -2e-7, 5e-7), rel=1e-6)
+        assert half - light == pytest.approx(0.5 * (dark - light), rel=1e-6)

@@ -1,5 +1,6 @@
 """What speaks against a sample by itself: each check at its limit, in its order, by its memory."""
 
+from dataclasses import replace
 from math import cos, nan, radians, sin
 
 import pytest
@@ -7,12 +8,14 @@ from cell_samples import CELLS
 from gate_samples import measured
 from with_values import with_values
 
-from fsw.core.algebra.vector import add, norm, scale
+from fsw.core.algebra.vector import add, norm, scale, unit
 from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.memory import Memory
 from fsw.core.fdir.sensors.plausibility import SHADOW_M, PlausibilityConfig, examine
 from fsw.core.fdir.sensors.standstill import Displacement, Steps
+from fsw.core.orbit.earth import RADIUS_M
 from fsw.core.orbit.ephemeris import reference_at
+from fsw.core.orbit.sun import apparent_sun
 from fsw.wire.messages import CoilStatus, MagField, SunCells, SunVector
 
 LIMITS = PlausibilityConfig(
@@ -259,3 +262,18 @@ def test_a_sample_with_something_against_it_is_not_compared(reference, readings)
     findings = examine(Memory(), weak, reference, LIMITS)
     assert findings.field_cause == SensorFault.STRENGTH
     assert (findings.pair, findings.apart) == (False, False)
+
+
+def test_the_earths_light_may_turn_the_sun_as_far_as_the_table_allows(reference, readings):
+    """The angle to the field is then wrong by the deflection, without a fault of either."""
+    limits = replace(LIMITS, most_albedo=0.4)
+    below_noon = reference.replace(
+        r_eci_m=(RADIUS_M + 800e3, 0.0, 0.0), sun_eci=unit((1.0, 1.0, 0.0)), b_eci_t=(3e-5, 0.0, 0.0)
+    )
+
+    def apart(albedo, limits=limits):
+        seen, _ = apparent_sun(below_noon.r_eci_m, below_noon.sun_eci, albedo)
+        return examine(Memory(), readings(below_noon.b_eci_t, seen), below_noon, limits).apart
+
+    assert [apart(albedo) for albedo in (0.0, 0.2, 0.4, 1.0)] == [False, False, False, True]
+    assert [apart(albedo, LIMITS) for albedo in (0.0, 0.4)] == [False, True]
