@@ -178,6 +178,8 @@ def _database(path: Path) -> Iterator[Results]:
         raise ResultsLostError(f"{path}: {error}") from None
     except sqlite3.DatabaseError as error:
         raise HarnessError(f"{path}: {error}") from None
+    except UnicodeDecodeError:  # SQLite says what is malformed in its own bytes
+        raise HarnessError(f"{path}: malformed database, with text that is not UTF-8") from None
 
 
 @contextmanager

@@ -121,6 +121,16 @@ def test_no_results_or_others_are_one_sentence(small, tmp_path):
         pass
 
 
+@pytest.mark.parametrize("damaged", [b"CREATE TABL\xa4", b"\xa4REATE TABLE"])
+def test_a_malformed_table_is_one_sentence_whatever_its_bytes(small, tmp_path, damaged):
+    with open_results(tmp_path, small):
+        pass
+    whole = (tmp_path / RESULTS).read_bytes()
+    (tmp_path / RESULTS).write_bytes(whole.replace(b"CREATE TABLE", damaged))
+    with pytest.raises(HarnessError, match=f"{RESULTS}: malformed database, "), read_results(tmp_path):
+        pass
+
+
 def test_results_without_their_version_are_refused(small, tmp_path):
     with open_results(tmp_path, small):
         pass
