@@ -127,7 +127,7 @@ def test_a_malformed_table_is_one_sentence_whatever_its_bytes(small, tmp_path, d
         pass
     whole = (tmp_path / RESULTS).read_bytes()
     (tmp_path / RESULTS).write_bytes(whole.replace(b"CREATE TABLE", damaged))
-    with pytest.raises(HarnessError, match=f"{RESULTS}: malformed database, "), read_results(tmp_path):
+    with pytest.raises(HarnessError, match=f"{RESULTS}: malformed database"), read_results(tmp_path):
         pass
 
 
