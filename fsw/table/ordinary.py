@@ -5,7 +5,7 @@ from fsw.core.algebra.vector import Mat3
 REFERENCE_KGM2 = 1.6
 """Mean moment of inertia of the 50 kg satellite for which the next two hold."""
 DIPOLE_AM2, TORQUE_NM = 0.1, 3e-8
-SNAP_RADPS = 3e-4
+SNAP_RADPS = 1e-4
 """Change of the rate at the shadow's edge, of a body with panels that bend; wide, as one beyond it looks
 like an attitude."""
 DRAG_KM, DENSITY_POWER = 780.0, 8.8

@@ -11,9 +11,8 @@ from math import sqrt
 
 import numpy as np
 
-from fsw.core.algebra.vector import Mat3
 from fsw.input.schema import Nested, merge
-from fsw.table.ordinary import mean_moment, ordinary_shadow_impulse_nms
+from fsw.table.ordinary import mean_moment
 from sim.campaign.consistency import consistency_figures
 from sim.campaign.flight import Order
 from sim.scenario.schema import Scenario, load
@@ -71,23 +70,21 @@ class Tolerances:
     along_track_km: float = 5.0
     latency_s: float = 1.0
     non_orthogonality_deg: float = 0.1
-    eclipse_dipole_percent: float = 20.0
-    remanence_percent: float = 0.3
-    magnetometer_orbit_nt: float = 400.0
+    eclipse_dipole_percent: float = 5.0
+    remanence_percent: float = 0.2
+    magnetometer_orbit_nt: float = 250.0
     magnetometer_shadow_nt: float = 400.0
-    storm_nt: float = 150.0
+    storm_nt: float = 100.0
     albedo_percent: float = 35.0
-    snap_radps: float = 6e-5
+    snap_radps: float = 1.5e-5
 
-    def declared(self, inertia_kgm2: Mat3) -> Nested:
-        """The bounds as ``[uncertainty]`` of an onboard table."""
+    def declared(self) -> Nested:
+        """The bounds, of the shadow's edge the ordinary ones, as ``[uncertainty]`` of an onboard table."""
         values = {key: value for key, value in asdict(self).items() if key not in NOT_DECLARED}
         values["residual_dipole_am2"] = self.residual_dipole_am2[1]
         values["torque_nm"] = values.pop("declared_torque_nm")
         values["torque_variation_nm"] = 0.2 * values["torque_nm"]
-        values["shadow_dipole_am2"] = 0.01 * self.eclipse_dipole_percent * self.residual_dipole_am2[1]
-        values["shadow_impulse_nms"] = ordinary_shadow_impulse_nms(inertia_kgm2)
-        return values
+        return {**values, "shadow_dipole_am2": None, "shadow_impulse_nms": None}
 
 
 NOT_DECLARED = ("non_orthogonality_deg", "eclipse_dipole_percent", "snap_radps")
@@ -136,7 +133,7 @@ def satellite(
         "inertia_kgm2": _inertia(random, np.array(body.inertia), chosen.tolerances, factor).tolist()
     }
     overrides["flight"] = {"body": {"inertia_kgm2": list(body.inertia_kgm2)}}
-    limits = chosen.tolerances.declared(body.inertia)
+    limits = chosen.tolerances.declared()
     overrides["flight"]["uncertainty"] = limits if declared else dict.fromkeys(limits)
     return overrides
 
