@@ -7,7 +7,7 @@ from types import ModuleType
 from fsw.input.near import did_you_mean
 from sim.campaign.claim import Study
 from sim.errors import HarnessError
-from sim.validate import cells, computed, microsat, optimal_pulses, shipped
+from sim.validate import cells, computed, microsat, optimal_pulses, shipped, worlds
 from sim.validate.commissioning import calibrated, wirings
 from sim.validate.consat import minimisers, posat1, prediction
 from sim.validate.population import claims
@@ -33,10 +33,10 @@ MODULES: tuple[ModuleType, ...] = (
     *(computed, prediction, minimisers, posat1, microsat, shipped, optimal_pulses, cells),
     *(damping, spin, wheel, one_axis, feedback_laws, feedback_gains, feedback_linear, feedback_neural),
     *(sliding, optimal, predictive, fixed_wheel, pointing),
-    *(driven_wheel, claims, wirings, calibrated),
+    *(driven_wheel, claims, worlds, wirings, calibrated),
 )
 """Those that make studies, beside those of the reference files."""
-OF_SATELLITES = (optimal_pulses, cells, claims, calibrated)
+OF_SATELLITES = (optimal_pulses, cells, claims, worlds, calibrated)
 """Those whose studies fly populations."""
 
 

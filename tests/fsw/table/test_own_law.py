@@ -107,7 +107,7 @@ class TestInATable:
         assert moved == {"law": "other.py:mine", "gains": {"mine": {"x": 1.0}, "mpc": {}}}
 
 
-DEFAULT_CRC = "3a818aaf"
+DEFAULT_CRC = "dff0f9e7"
 
 
 def test_why_it_is_withheld_ends_with_an_option_to_paste(tmp_path):
