@@ -112,7 +112,7 @@ class Uncertainty:
     earth_light: float = 0.0
 
 
-SHADOW_PART = 0.05
+SHADOW_PART = 0.07
 """Of the residual dipole, what changes at the shadow's edge with the currents of the solar cells."""
 UNEVEN = 0.5
 """Fraction of the error of the Earth's light that differs from cell to cell: clouds are uneven."""
@@ -157,7 +157,7 @@ def bounds(table: UncertaintyTable, ordinary: Ordinary, albedo: float | None = N
         latency_s=_or(table.latency_s, ordinary.latency_s),
         mag_orbit_t=1e-9 * _or(table.magnetometer_orbit_nt, 250.0),
         mag_shadow_t=1e-9 * _or(table.magnetometer_shadow_nt, 400.0),
-        storm_t=1e-9 * _or(table.storm_nt, 100.0),
+        storm_t=1e-9 * _or(table.storm_nt, 150.0),
         shadow_dipole_am2=_or(table.shadow_dipole_am2, SHADOW_PART * dipole_am2),
         remanence_part=0.01 * _or(table.remanence_percent, 0.2) if ordinary.pulse_am2 else 0.0,
         pulse_am2=ordinary.pulse_am2,

@@ -70,11 +70,11 @@ class Tolerances:
     along_track_km: float = 5.0
     latency_s: float = 1.0
     non_orthogonality_deg: float = 0.1
-    eclipse_dipole_percent: float = 5.0
+    eclipse_dipole_percent: float = 7.0
     remanence_percent: float = 0.2
     magnetometer_orbit_nt: float = 250.0
     magnetometer_shadow_nt: float = 400.0
-    storm_nt: float = 100.0
+    storm_nt: float = 150.0
     albedo_percent: float = 35.0
     snap_radps: float = 1.5e-5
 
