@@ -224,7 +224,7 @@ def priors(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, Prior]:
     if "mag_bias_t" in found:
         walk = (hypot(found["mag_bias_t"].walk[0], SIDE * known.mag_orbit_t / sqrt(QUARTER_ORBIT_S)),) * 3
         found["mag_bias_t"] = replace(found["mag_bias_t"], walk=walk)
-    if known.albedo:  # with a Sun sensor
+    if known.albedo:  # of a Sun sensor, from none to the bound
         half = 0.5 * known.albedo
         found["earth_light"] = Prior((SIDE * half,), (0.0,), (half,))
     if "torque_body_nm" in found:
@@ -251,5 +251,5 @@ def limits(known: Uncertainty, inertia_kgm2: Mat3) -> dict[str, tuple[float, ...
         "delay_s": (known.latency_s,) * 2,
         "cell_excess": (known.cell_excess,) * MOST_CELLS,
         "cell_gain": (known.cell_gain_part,) * MOST_CELLS,
-        "earth_light": (known.earth_light,),
+        "earth_light": (known.earth_light or known.albedo,),
     }

@@ -61,6 +61,7 @@ def true_parameters(scenario: Scenario, table: FlightTable, truth: Histories) ->
     }
     if isinstance(plant.sun_sensor, SunSensorConfig):  # cells are misaligned each by itself
         true["sun_turn_rad"] = sun_turn_rad(plant.sun_sensor, calibration)
+        true["earth_light"] = (plant.sun_sensor.albedo,)
     elif table.cells is not None:
         true |= _of_cells(plant.sun_sensor, table.cells)
     if not effects(plant):  # torques that depend on the motion have no single value

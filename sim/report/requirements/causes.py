@@ -40,7 +40,7 @@ WORDS = {
     "sun_turn_rad": ("Sun sensor turned by", "deg", degrees(1.0)),
     "delay_s": ("age of the samples", "s", 1.0),
     "cell_gain": ("gain of a Sun cell off by", "%", 100.0),
-    "earth_light": ("Earth's light on the cells off by", "% of the Sun's", 100.0),
+    "earth_light": ("Earth's light off by", "% of the Sun's", 100.0),
 }
 """A parameter in words, the unit in which it is stated, and how many of these are one of SI."""
 

@@ -210,3 +210,9 @@ class TestRun:
     @pytest.mark.long
     def test_a_page_without_a_filter_has_no_such_section(self, made_run, tmp_path):
         assert 'id="parameters"' not in made_run().write(tmp_path).source
+
+
+def test_of_a_sun_sensor_the_light_of_the_earth_is_a_parameter_too():
+    scenario = load("realsat", {"sensors": {"sun": {"albedo": 0.25}}})
+    true = true_parameters(scenario, flight_table(scenario), {"lit": np.ones(1), "t_s": np.zeros(1)})
+    assert true["earth_light"] == (0.25,)

@@ -30,7 +30,7 @@ def test_of_sun_cells_gain_and_the_light_of_the_earth():
     bright = load(
         "cubesat-cells", {"sensors": {"cells": {"albedo": 0.9}}, "flight": {"cells": {"albedo": 0.3}}}
     )
-    assert beyond_bounds(bright) == ["Earth's light on the cells off by 60 % of the Sun's, its bound is 15"]
+    assert beyond_bounds(bright) == ["Earth's light off by 60 % of the Sun's, its bound is 15"]
 
 
 def test_a_gain_that_the_table_calls_exact_and_is():
