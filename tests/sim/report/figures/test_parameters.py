@@ -8,9 +8,9 @@ from scipy.spatial.transform import Rotation
 
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.parameters import NAMES, NOTHING, OF_CELLS, SIZES
-from sim.report.figures.parameters import parameter_figures
+from sim.report.figures.parameters import parameter_figures, true_parameters
 from sim.report.page import UNITS, parameter_table
-from sim.scenario.schema import load
+from sim.scenario.schema import flight_table, load
 
 UNLIKE = {
     "body": {"inertia_kgm2": [[1.1, 0.03, -0.02], [0.03, 1.75, 0.05], [-0.02, 0.05, 1.95]]},
