@@ -6,7 +6,7 @@ import numpy as np
 
 from fsw.core.algebra.vector import inverse
 from fsw.core.estimation.cells.cell_set import CellSet
-from fsw.core.estimation.changes import EDGE_S, Changes
+from fsw.core.estimation.changes import EDGE_S, NO_CHANGES, Changes
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.kalman import Algebra
 from fsw.core.estimation.mekf_config import mekf_config
@@ -92,6 +92,9 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
 
 def _changes(table: FlightTable, known: Uncertainty) -> Changes:
     """What changes in orbit, from its bounds."""
+    steps = (known.mag_shadow_t, known.shadow_dipole_am2, known.shadow_impulse_nms)
+    if not any((*steps, known.storm_t, known.remanence_part)):
+        return NO_CHANGES
     kick = SIDE * known.shadow_impulse_nms * np.array(inverse(table.body.inertia))
     return Changes(
         edge_bias_t2ps=(SIDE * known.mag_shadow_t) ** 2 / EDGE_S,

@@ -66,24 +66,22 @@ def widen(
         config: the filter.
         changes: the variances.
     """
+    if changes is NO_CHANGES:
+        return
     parts, h, grown = config.layout, config.tick_s, []
-    bias_t2 = 0.0
-    at_edge = _is_at_edge(reference)
-    if parts.mag_bias is not None:
-        if at_edge:
-            bias_t2 += changes.edge_bias_t2ps * h
-        if changes.storm_t2ps and _is_stormy(reference):
-            bias_t2 += changes.storm_t2ps * h
-        if bias_t2:
-            grown.append((parts.mag_bias, np.eye(3) * bias_t2))
-    if at_edge and parts.dipole is not None and changes.edge_dipole_a2m4ps:
-        grown.append((parts.dipole, np.eye(3) * (changes.edge_dipole_a2m4ps * h)))
-    if parts.dipole is not None and changes.remanent_ps and not is_zero(m_body_am2):
+    if _is_at_edge(reference):
+        if parts.mag_bias is not None:
+            grown.append((parts.mag_bias, np.eye(3) * (changes.edge_bias_t2ps * h)))
+        if parts.dipole is not None:
+            grown.append((parts.dipole, np.eye(3) * (changes.edge_dipole_a2m4ps * h)))
+        if changes.edge_rate is not None:
+            grown.append((slice(3, 6), changes.edge_rate * h))
+    if parts.mag_bias is not None and _is_stormy(reference):
+        grown.append((parts.mag_bias, np.eye(3) * (changes.storm_t2ps * h)))
+    if parts.dipole is not None and not is_zero(m_body_am2):
         x, y, z = m_body_am2
         part = changes.remanent_ps * h
         grown.append((parts.dipole, np.diag([part * x * x, part * y * y, part * z * z])))
-    if at_edge and changes.edge_rate is not None:
-        grown.append((slice(3, 6), changes.edge_rate * h))
     if not grown:
         return
     covariance = estimate.covariance.copy()

@@ -10,6 +10,7 @@ from filter_steps import known_of
 
 from fsw.core.algebra.quaternion import normalise
 from fsw.core.estimation import mekf
+from fsw.core.estimation.changes import EDGE_S, NO_CHANGES
 from fsw.core.estimation.parameters import NAMES
 from fsw.core.fdir.sensors.standstill import Steps
 from fsw.input.schema import merge
@@ -240,3 +241,26 @@ def direction(random):
 
 def angle(a, b):
     return np.arccos(np.clip(a @ b / np.linalg.norm(a) / np.linalg.norm(b), -1.0, 1.0))
+
+
+def test_what_changes_in_orbit_follows_from_its_bounds():
+    known = {
+        "magnetometer_shadow_nt": 700.0,
+        "shadow_dipole_am2": 0.03,
+        "storm_nt": 220.0,
+        "remanence_percent": 0.2,
+        "shadow_impulse_nms": 3e-5,
+    }
+    assert configured(uncertainty=EXACT).changes is NO_CHANGES
+    changes = configured(uncertainty=EXACT | known, coils={"pulse_s": 2.0}).changes
+    assert changes.edge_bias_t2ps * EDGE_S == pytest.approx(7e-7**2 / 3.0)
+    assert changes.edge_dipole_a2m4ps * EDGE_S == pytest.approx(0.03**2 / 3.0)
+    assert changes.storm_t2ps * 75.0 == pytest.approx(2.2e-7**2 / 3.0)
+    assert changes.remanent_ps * 2.0 == pytest.approx(2.0 * 0.002**2 / 3.0)
+    inverse_j = np.linalg.inv(configured().mekf.rotor.inertia_kgm2)
+    np.testing.assert_allclose(changes.edge_rate * EDGE_S, 3e-5**2 / 3.0 * inverse_j @ inverse_j.T, rtol=1e-9)
+
+
+@pytest.mark.parametrize("key", ["magnetometer_shadow_nt", "storm_nt", "remanence_percent"])
+def test_each_of_them_alone_is_a_change(key):
+    assert configured(uncertainty=EXACT | {key: 1.0}).changes is not NO_CHANGES
