@@ -81,7 +81,7 @@ def world_figures(scenario: Scenario, truth: Histories, estimates: Estimates) ->
     return {
         **consistency_figures(scenario, truth, estimates),
         "valid_part": 0.0 if converged is None else float(valid[converged:].mean()),
-        "first_valid_s": max(0, first - lit) / tick_hz,
+        "first_valid_s": (first - lit) / tick_hz,
         "last_orbit_deg": float(np.sqrt(np.mean(pointing_deg**2))),
     }
 
@@ -101,20 +101,20 @@ def _judge(name: str, flights: Flights) -> list[ClaimOutcome]:
             claim("inside", "Time inside 3 sigma, all axes, pooled", "1", low=0.95), inside, fmean(inside)
         ),
         _outcome(
-            claim("inside_worst", "Time inside 3 sigma, each satellite", "1", low=0.9), inside, min(inside)
+            claim("inside_worst", "Time inside 3 sigma, each satellite", "1", low=0.9), inside, np.min(inside)
         ),
-        _outcome(claim("isolated", "Healthy units isolated, all", "1", high=0.0), isolated, max(isolated)),
+        _outcome(claim("isolated", "Healthy units isolated, all", "1", high=0.0), isolated, np.max(isolated)),
         _outcome(
             claim("wrong", "Longest time valid with an error above 5 deg, all", "s", high=120.0),
             wrong_s,
-            max(wrong_s),
+            np.max(wrong_s),
         ),
-        _outcome(claim("first", "First valid attitude, all", "s", high=900.0), first_s, max(first_s)),
+        _outcome(claim("first", "First valid attitude, all", "s", high=900.0), first_s, np.max(first_s)),
     ]
     if name in HARD:
         last_deg = [one.figures["last_orbit_deg"] for one in mine]
         pointing = claim("pointing", "RMS pointing error, last orbit, each", "deg", high=HARD_DEG)
-        return [*found, _outcome(pointing, last_deg, max(last_deg))]
+        return [*found, _outcome(pointing, last_deg, np.max(last_deg))]
     valid = [one.figures["valid_part"] for one in mine]
     found.append(
         _outcome(
@@ -137,5 +137,5 @@ WIDE = "set before the flights: what a user may rely on beyond the table"
 
 def _outcome(claim: Claim, values: Sequence[float], ours: float) -> ClaimOutcome:
     meet = sum(claim.meets(value) for value in values)
-    spread = Spread(len(values), meet, min(values), float(np.median(values)), max(values))
-    return claim.judge(ours, spread=spread)
+    spread = Spread(len(values), meet, *map(float, (np.min(values), np.median(values), np.max(values))))
+    return claim.judge(float(ours), spread=spread)

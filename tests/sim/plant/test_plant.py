@@ -95,7 +95,7 @@ def test_perfect_sensors_show_the_truth_on_the_bus(make_plant):
 @pytest.mark.long
 def test_the_light_of_the_earth_turns_the_sun_on_the_bus_and_not_in_the_truth(make_plant):
     """Towards nadir, most where the Sun is high; none at the poles' twilight, and no Sun in eclipse."""
-    plain, lit_up = SunSensorConfig(), SunSensorConfig(albedo=True)
+    plain, lit_up = SunSensorConfig(), SunSensorConfig(albedo=0.3)
     turns, valid = {}, {}
     plants = [make_plant(sun_sensor=sensor) for sensor in (plain, lit_up)]
     for tick, ((_, truth), (said, other)) in enumerate(

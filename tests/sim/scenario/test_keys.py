@@ -71,7 +71,7 @@ def test_every_key_is_on_the_page(table):
 @pytest.mark.long
 def test_the_page_gives_unit_bounds_and_default():
     assert "| `backoff_s` | s | number at least 0 and at most 160 | `100.0` |" in page()
-    assert "| `valid_sigma_deg` | deg | number above 0 | `5.0` |" in page()  # of fsw/flight.toml
+    assert "| `valid_sigma_deg` | deg | number above 0 | `1.67` |" in page()  # of fsw/flight.toml
     assert "| `tick_hz` | Hz | whole number at least 1 and at most 100 | must be given |" in page()
 
 
