@@ -5,12 +5,12 @@ from typing import Final
 from fsw.core.algebra.quaternion import canonical, conjugate, multiply, normalise, rotate
 from fsw.core.algebra.vector import scale, sub
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.estimation.kalman import largest_variance
+from fsw.core.estimation.kalman import Matrix, largest_variance
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.ephemeris import Reference
 
-KEPT: Final = 1.5
+KEPT: Final = 2.0
 """Times the sigma at which an attitude becomes valid: up to that it stays so."""
 
 
@@ -23,8 +23,8 @@ def orbital_attitude(
 ) -> Attitude:
     """The estimate relative to the orbital frame.
 
-    Usable up to ``usable_sigma_rad`` about its worst axis. It becomes valid at ``valid_sigma_rad``, and stays
-    so up to ``KEPT`` times that: in a shadow it is less certain for a while, not wrong.
+    Usable up to ``usable_sigma_rad`` about its worst axis. It becomes valid at ``valid_sigma_rad`` in any
+    direction, and stays so up to ``KEPT`` times that: in a shadow it is less certain for a while, not wrong.
     """
     if estimate is None:
         return UNKNOWN
@@ -34,8 +34,20 @@ def orbital_attitude(
     sigma_attitude = largest_variance(estimate.covariance, 0, 3) ** 0.5
     sigma_rate = largest_variance(estimate.covariance, 3, 6) ** 0.5
     usable = sigma_attitude <= usable_sigma_rad
-    valid = usable and sigma_attitude <= (KEPT if was_valid else 1.0) * valid_sigma_rad
+    most_rad = (KEPT if was_valid else 1.0) * valid_sigma_rad
+    valid = usable and _most_variance(estimate.covariance) <= most_rad * most_rad
     return Attitude(q, omega, 3.0 * sigma_attitude, 3.0 * sigma_rate, valid, usable)
+
+
+def _most_variance(covariance: Matrix) -> float:
+    """At least the variance of the attitude in the direction in which it is largest (Gershgorin 1931)."""
+    most = 0.0
+    for row in range(3):
+        spread = 0.0
+        for column in range(3):
+            spread += abs(float(covariance[row, column]))
+        most = max(most, spread)
+    return most
 
 
 def perfect_attitude(measurements: Measurements, before: Attitude) -> Attitude:

@@ -72,8 +72,8 @@ class TestOrbitalAttitude:
             (0.1, True, True, True),
             (1.999, True, True, True),
             (2.001, False, True, True),
-            (2.999, False, True, True),
-            (3.001, False, False, True),
+            (3.999, False, True, True),
+            (4.001, False, False, True),
             (6.999, False, False, True),
             (7.001, False, False, False),
             (60.0, False, False, False),
@@ -82,7 +82,7 @@ class TestOrbitalAttitude:
     def test_its_worst_axis_says_whether_it_is_valid_and_serves_control(
         self, sigma_deg, begins, goes_on, usable
     ):
-        """Once valid it stays so up to one and a half times the limit; control needs no such certainty."""
+        """Once valid it stays so up to twice the limit; control needs no such certainty."""
         for axis in range(3):
             covariance = np.diag([radians(0.05) ** 2] * 3 + [1e-10, 4e-10, 9e-10] + [1e-14] * 6)
             covariance[axis, axis] = radians(sigma_deg) ** 2
@@ -93,6 +93,15 @@ class TestOrbitalAttitude:
             assert attitude_of(estimated, was_valid=True).valid is goes_on
             assert degrees(attitude.sigma3_attitude_rad) == pytest.approx(3.0 * sigma_deg)
             assert attitude.sigma3_rate_radps == pytest.approx(9e-5)
+
+    def test_no_direction_between_the_axes_is_less_certain_than_the_limit(self):
+        """Errors about two axes that are correlated are larger about a third one."""
+        variance, correlation = radians(1.5) ** 2, 0.9
+        covariance = np.diag([variance] * 3 + [1e-10] * 3 + [1e-14] * 6)
+        assert attitude_of(replace(ESTIMATE, covariance=covariance)).valid  # 1.5 deg, of 2
+        covariance[0, 1] = covariance[1, 0] = -correlation * variance
+        assert np.linalg.eigvalsh(covariance[0:3, 0:3])[-1] > radians(2.0) ** 2
+        assert not attitude_of(replace(ESTIMATE, covariance=covariance)).valid
 
     def test_the_sigmas_are_those_of_the_worst_axis_of_attitude_and_of_rate(self):
         for first, second in (([3.0, 1.0, 2.0], [40.0, 20.0, 30.0]), ([1.0, 2.0, 3.0], [20.0, 30.0, 40.0])):
