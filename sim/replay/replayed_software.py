@@ -2,7 +2,8 @@
 
 from collections import deque
 from collections.abc import Callable, Iterator
-from itertools import combinations_with_replacement, islice
+from itertools import islice
+from typing import NamedTuple
 
 from fsw.core.config import FlightConfig
 from fsw.core.state import FlightState
@@ -12,7 +13,7 @@ from fsw.wire.messages import Sync
 
 OnTick = Callable[[FlightState], None]
 
-MAX_ORDERS = 1000
+MAX_ORDERS = 10_000
 """Orders of frames that are tried for one answer."""
 
 MAX_REORDERED = 1024
@@ -121,25 +122,60 @@ class ReplayedSoftware:
 def orders(inputs: list[Frame]) -> Iterator[list[Frame]]:
     """Orders in which frames may have arrived: the plant sent those up to a SYNC, and received the others.
 
-    First those in which the others, or the first of them, arrived together, just before that SYNC or earlier;
-    then all in which both parts keep their own order. Which SYNC is the plant's is not known.
+    Both parts keep their own order. A frame of the plant that is no SYNC meets the others only in those of
+    its own identifier and in their SYNCs: its place among the rest alters nothing on board. First come the
+    orders in which the others, or the first of them, arrived together, then all. Which SYNC is the plant's is
+    not known.
     """
     ends = [index + 1 for index, frame in enumerate(inputs) if frame.can_id == Sync.ID]
-    parts = [(inputs[:end], inputs[end:]) for end in ends if end < len(inputs)]
-    for sent, others in parts:
-        for place in range(len(sent) - 1, -1, -1):
+    parts = [(_runs(inputs[:end], inputs[end:]), inputs[end:]) for end in ends if end < len(inputs)]
+    for runs, others in parts:
+        for place in reversed(range(len(runs))):
             for count in range(1, len(others) + 1):
-                yield [*sent[:place], *others[:count], *sent[place:], *others[count:]]
-    for sent, others in parts:
-        for places in combinations_with_replacement(range(len(sent), -1, -1), len(others)):
-            yield _merged(sent, others, places[::-1])
+                yield _merged(runs, others, (0,) * place + (count,) * (len(runs) - place))
+    for runs, others in parts:
+        for counts in _rising([run.counts for run in runs], len(others)):
+            yield _merged(runs, others, counts)
 
 
-def _merged(sent: list[Frame], others: list[Frame], places: tuple[int, ...]) -> list[Frame]:
-    """The sent frames with each of the others inserted at its place."""
+class _Run(NamedTuple):
+    """Sent frames, of which the last alone meets others; of how many these it may have been preceded."""
+
+    frames: list[Frame]
+    counts: list[int]
+
+
+def _runs(sent: list[Frame], others: list[Frame]) -> list[_Run]:
+    """The sent frames, up to their SYNC, in runs."""
+    runs = []
+    begin = 0
+    for end, frame in enumerate(sent, 1):
+        met = {frame.can_id, Sync.ID}
+        counts = [
+            count for count, other in enumerate(others, 1) if frame.can_id == Sync.ID or other.can_id in met
+        ]
+        if counts:
+            runs.append(_Run(sent[begin:end], [0, *counts]))
+            begin = end
+    return runs
+
+
+def _rising(choices: list[list[int]], most: int) -> Iterator[tuple[int, ...]]:
+    """All picks of one number from each list that never fall, and end at ``most`` or below it."""
+    if not choices:
+        yield ()
+        return
+    for last in choices[-1]:
+        if last <= most:
+            for before in _rising(choices[:-1], last):
+                yield (*before, last)
+
+
+def _merged(runs: list[_Run], others: list[Frame], counts: tuple[int, ...]) -> list[Frame]:
+    """The frames in one order: each run after so many of the others."""
     order: list[Frame] = []
     begun = 0
-    for other, place in zip(others, places, strict=True):
-        order += [*sent[begun:place], other]
-        begun = place
-    return order + sent[begun:]
+    for run, count in zip(runs, counts, strict=True):
+        order += [*others[begun:count], *run.frames]
+        begun = count
+    return order + others[begun:]

@@ -1,6 +1,7 @@
 """Runs with frames of strangers replay bit-exact, wherever these crossed those of the plant."""
 
 from dataclasses import dataclass
+from itertools import islice
 from random import Random
 
 import pytest
@@ -10,7 +11,7 @@ from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.wire.candump_line import format_line, format_time
 from fsw.wire.frame import Frame
-from fsw.wire.messages import FswEvent, PlantEnd, Sync, TickDone
+from fsw.wire.messages import CoilStatus, FswEvent, MagField, PlantEnd, SunVector, Sync, TickDone
 from sim.flight import fsw_answers
 from sim.flight.record_flight import record_flight
 from sim.flight.virtual_bus import VirtualBus
@@ -19,6 +20,7 @@ from sim.record.candump import read_log
 from sim.record.pace import Pace
 from sim.record.run_dir import BUS_LOG
 from sim.replay.log_replay import replay
+from sim.replay.replayed_software import MAX_ORDERS, orders
 from sim.report.conclude import conclude
 from sim.scenario.schema import flight_table, load
 
@@ -76,6 +78,9 @@ STRANGERS = {
     "pairs": seldom(lambda random: [sync(x := random.getrandbits(32)), sync(x + 1)]),
     "equal pairs": seldom(lambda random: [sync(random.getrandbits(32))] * 2),
     "ends": seldom(lambda random: [PlantEnd(random.getrandbits(24), counter=random.getrandbits(4)).encode()]),
+    "frames as the plant sends them, broken": lambda random: (
+        [Frame(can_id, b"\0") for can_id in (MagField.ID, SunVector.ID, CoilStatus.ID)] * random.randrange(9)
+    ),
     "noise": lambda random: (
         [Frame(random.getrandbits(11) | 0x700, random.randbytes(8))] * random.randrange(3)
     ),
@@ -133,6 +138,34 @@ def test_the_order_that_is_found_explains_an_altered_frame_no_more_than_the_logg
         result = replay(log, config)
         assert not result.bit_exact
         assert result.first_bit_difference.signal == "FSW_EVENT.argument"
+
+
+class TestOrders:
+    FIELD, BROKEN = MagField(1, 20e3, 0.0, -30e3).encode(), Frame(MagField.ID, b"\0")
+    SENT = (FIELD, SunVector(1, 0.6, 0.0, 0.8).encode(), *[Frame(0x108, bytes(5))] * 12, sync(1))
+    FLOOD = (BROKEN, Frame(0x7FF, b"\xde\xad"), Frame(0x080, bytes(8))) * 60
+
+    @pytest.mark.parametrize(("before_field", "before_sync"), [(3, 3), (1, 2), (0, 90), (90, 90), (30, 60)])
+    def test_a_flood_that_met_the_first_of_many_frames_is_found(self, before_field, before_sync):
+        """The part of the flood before the field, and the part before the SYNC."""
+        found = [
+            order
+            for order in islice(orders([*self.SENT, *self.FLOOD]), MAX_ORDERS)
+            if order.index(self.SENT[-1]) == len(self.SENT) - 1 + before_sync
+            and order[: order.index(self.FIELD)].count(self.BROKEN) == -(-before_field // 3)
+        ]
+        assert found
+
+    def test_each_part_keeps_its_order_and_all_frames(self):
+        own = [Frame(0x700, bytes([index])) for index in range(4)]
+        for order in orders([*self.SENT, *own, self.BROKEN]):
+            assert [frame for frame in order if frame not in (*own, self.BROKEN)] == list(self.SENT)
+            assert [frame for frame in order if frame in own] == own
+            assert len(order) == len(self.SENT) + 5
+
+    def test_no_order_is_between_frames_that_do_not_meet(self):
+        own = [Frame(0x700, bytes([index])) for index in range(4)]
+        assert len({tuple(order) for order in orders([*self.SENT, *own])}) == 5
 
 
 class TestEnd:
