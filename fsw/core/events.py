@@ -31,6 +31,7 @@ class Event(IntEnum):
     PLANT_RESTARTED = 13  # the last tick of the old count
     FALSE_END = 14  # the ticks in PLANT_END
     COIL_READMITTED = 15  # as in its isolation
+    FILTER_EASED = 16  # how often so far
 
 
 SEVERITY: Final[dict[Event, Severity]] = {
@@ -49,6 +50,7 @@ SEVERITY: Final[dict[Event, Severity]] = {
     Event.PLANT_RESTARTED: Severity.WARNING,
     Event.FALSE_END: Severity.WARNING,
     Event.COIL_READMITTED: Severity.INFO,
+    Event.FILTER_EASED: Severity.WARNING,
 }
 
 
@@ -69,6 +71,7 @@ QUANTITIES: Final = frozenset(
         Event.TIME_MISMATCH,
         Event.FILTER_STARTED,
         Event.FILTER_RESTARTED,
+        Event.FILTER_EASED,
         Event.STRANGE_SYNC,
         Event.PLANT_RESTARTED,
         Event.FALSE_END,

@@ -234,6 +234,7 @@ def _write_estimator_state(out: BytesWriter, value: EstimatorState) -> None:
     write_i64_le(out, value.frozen)
     _write_sample_batch(out, value.batch)
     _write_ints(out, value.loaded)
+    write_i64_le(out, value.easings)
 
 
 def _write_estimate(out: BytesWriter, value: Estimate) -> None:
@@ -421,6 +422,8 @@ def _write_pair(out: BytesWriter, value: Pair) -> None:
     write_i64_le(out, value.blind_ticks)
     write_f64_le(out, value.proof_required)
     write_f64_le(out, value.false_convergence)
+    write_i64_le(out, value.easing)
+    write_i64_le(out, value.eased)
 
 
 def _write_memory(out: BytesWriter, value: Memory) -> None:

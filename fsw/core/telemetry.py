@@ -139,6 +139,7 @@ class Before:
     """What the events of a tick are found by: how these were before it."""
 
     __slots__ = (
+        "easings",
         "faults",
         "mode",
         "restarts",
@@ -160,6 +161,7 @@ class Before:
         self.violated = state.violated
         self.started = state.estimator.estimate is not None
         self.restarts = state.estimator.restarts
+        self.easings = state.estimator.easings
         self.faults = find_faults(state.health)
         self.second_sender = state.second_sender.detected
 
@@ -291,6 +293,8 @@ def happenings(
     restarts = state.estimator.restarts
     if restarts != before.restarts:
         found.append(Happening(Event.FILTER_RESTARTED, restarts))
+    if state.estimator.easings != before.easings:
+        found.append(Happening(Event.FILTER_EASED, state.estimator.easings))
     if not before.started and state.estimator.estimate is not None:
         found.append(Happening(Event.FILTER_STARTED, restarts))
     found += fault_happenings(before.faults, find_faults(state.health))

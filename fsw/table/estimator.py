@@ -21,6 +21,7 @@ from fsw.table.table import FlightTable
 from fsw.table.uncertainty import (
     LARGEST_FIELD_T,
     LEAST_FIELD_T,
+    QUARTER_ORBIT_S,
     SIDE,
     Uncertainty,
     bounds,
@@ -97,6 +98,7 @@ def _changes(table: FlightTable, known: Uncertainty) -> Changes:
         return NO_CHANGES
     kick = SIDE * known.shadow_impulse_nms * np.array(inverse(table.body.inertia))
     return Changes(
+        walk_t2ps=(SIDE * known.mag_orbit_t) ** 2 / QUARTER_ORBIT_S,
         edge_bias_t2ps=(SIDE * known.mag_shadow_t) ** 2 / EDGE_S,
         edge_dipole_a2m4ps=(SIDE * known.shadow_dipole_am2) ** 2 / EDGE_S,
         storm_t2ps=(SIDE * known.storm_t) ** 2 / QUARTER_PULSATION_S,

@@ -71,11 +71,11 @@ class Tolerances:
     latency_s: float = 1.0
     non_orthogonality_deg: float = 0.1
     eclipse_dipole_percent: float = 7.0
-    remanence_percent: float = 0.2
+    remanence_percent: float = 0.3
     magnetometer_orbit_nt: float = 250.0
     magnetometer_shadow_nt: float = 400.0
     storm_nt: float = 150.0
-    albedo_percent: float = 35.0
+    albedo_percent: float = 60.0
     snap_radps: float = 1.5e-5
 
     def declared(self) -> Nested:

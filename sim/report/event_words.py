@@ -69,6 +69,11 @@ _FSW: dict[int, Words] = {
         lambda count: f"filter restarted, restart {count}",
         "The estimate contradicted the sensors and was given up; it converges anew.",
     ),
+    Event.FILTER_EASED: (
+        lambda count: f"filter eased, number {count}",
+        "The satellite changes by more than its table says: the estimate goes on, less certain, "
+        "and is not valid until both sensors have proved it again.",
+    ),
     Event.MONITOR_TRIPPED: (
         lambda number: f"monitor tripped: {_named(_MONITORS, number)}",
         "A check failed: the flight software goes to SAFE, coils off; too fast a turn is left to DETUMBLE.",

@@ -47,6 +47,17 @@ class Attitude(Value):
             False,
         )
 
+    def doubted(self) -> "Attitude":
+        """The same attitude, as usable as it is, but not valid."""
+        return Attitude(
+            self.q_body_from_orbit,
+            self.omega_body_orbit_radps,
+            self.sigma3_attitude_rad,
+            self.sigma3_rate_radps,
+            False,
+            self.usable,
+        )
+
 
 UNKNOWN = Attitude((1.0, 0.0, 0.0, 0.0), ZERO, 4.0, 1.0, False)
 

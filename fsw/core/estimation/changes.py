@@ -40,10 +40,13 @@ disturb the field."""
 class Changes:
     """How variances grow: of bias, dipole and rate at the shadow's edge, of the bias where it is stormy.
 
+    ``walk_t2ps``: of the bias at all times, by which the filter's own walk grows where it is eased.
+
     ``remanent_ps``: of the dipole that a coil keeps, as a part of the square of the dipole driven, 1/s;
     ``edge_rate``: of the rate, rad^2/s^3, (3, 3).
     """
 
+    walk_t2ps: float
     edge_bias_t2ps: float
     edge_dipole_a2m4ps: float
     storm_t2ps: float
@@ -51,11 +54,16 @@ class Changes:
     edge_rate: Matrix | None
 
 
-NO_CHANGES: Final = Changes(0.0, 0.0, 0.0, 0.0, None)
+NO_CHANGES: Final = Changes(0.0, 0.0, 0.0, 0.0, 0.0, None)
 
 
 def widen(
-    estimate: Estimate, reference: Reference, m_body_am2: Vec3, config: MekfConfig, changes: Changes
+    estimate: Estimate,
+    reference: Reference,
+    m_body_am2: Vec3,
+    config: MekfConfig,
+    changes: Changes,
+    eased: float = 1.0,
 ) -> None:
     """Add to the covariance what a tick may have changed.
 
@@ -65,10 +73,13 @@ def widen(
         m_body_am2: dipole driven in it, body axes.
         config: the filter.
         changes: the variances.
+        eased: factor on them.
     """
     if changes is NO_CHANGES:
         return
-    parts, h, grown = config.layout, config.tick_s, []
+    parts, h, grown = config.layout, config.tick_s * eased, []
+    if parts.mag_bias is not None and eased > 1.0:
+        grown.append((parts.mag_bias, np.eye(3) * (changes.walk_t2ps * (h - config.tick_s))))
     if _is_at_edge(reference):
         if parts.mag_bias is not None:
             grown.append((parts.mag_bias, np.eye(3) * (changes.edge_bias_t2ps * h)))

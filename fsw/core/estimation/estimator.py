@@ -22,7 +22,7 @@ from fsw.core.estimation.kalman import largest_variance
 from fsw.core.estimation.measurement import deflected_sun, field_sampled
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig, WheelMotion
-from fsw.core.estimation.parameters import Parameters
+from fsw.core.estimation.parameters import ATTITUDE_AND_RATE, Parameters
 from fsw.core.estimation.samples import saturated_field, sensed_sun, usable_cells, usable_field, usable_sun
 from fsw.core.estimation.start.batch import SampleBatch, discard_samples, pass_tick
 from fsw.core.estimation.start.first import (
@@ -38,6 +38,10 @@ from fsw.wire.value import Value
 
 MAX_ELAPSED_S = 60.0
 """After a longer silence the filter restarts instead of predicting."""
+EASED = 2.0
+"""Factor on the standard deviations of attitude, rate and bias when the estimate is eased."""
+MOST_EASINGS = 2
+"""Beyond four times its bounds, nothing is a change of this satellite."""
 CELLS_RESTART = 2.0
 """Factor on the standard deviations of attitude and rate when the parameters start anew, with cells."""
 
@@ -79,8 +83,8 @@ class EstimatorState:
     """The estimate, or None before start-up, and the measurements the gate refused in a row.
 
     ``first``: what the parameters start from, None: the prior's mean; of it, those components that were
-    ``loaded``, by number. ``frozen``: they are not estimated. ``batch``: samples for a start from fewer than
-    three lit cells.
+    ``loaded``, by number. ``easings``: how often an estimate was eased. ``frozen``: the parameters are not
+    estimated. ``batch``: samples for a start from fewer than three lit cells.
     """
 
     estimate: Estimate | None = None
@@ -92,6 +96,7 @@ class EstimatorState:
     frozen: bool = False
     batch: SampleBatch = field(default_factory=SampleBatch)
     loaded: tuple[int, ...] = ()
+    easings: int = 0
 
     def copy(self) -> "EstimatorState":
         """A state that goes on by itself from here."""
@@ -105,6 +110,7 @@ class EstimatorState:
             self.frozen,
             self.batch.copy(),
             self.loaded,
+            self.easings,
         )
 
 
@@ -148,7 +154,7 @@ def predict(
     if len(driven) * config.mekf.tick_s > MAX_ELAPSED_S + 1e-6:
         restart(state)
         return
-    _predict(state.estimate, reference, driven, config, wheel)
+    _predict(state.estimate, reference, driven, config, wheel, 4.0 ** min(state.easings, MOST_EASINGS))
     if not mekf.healthy(state.estimate):
         restart(state)
 
@@ -159,13 +165,14 @@ def _predict(
     driven: Sequence[Driven],
     config: EstimatorConfig,
     wheel: WheelMotion | None,
+    eased: float,
 ) -> None:
     tuning = config.mekf
     gravity = 3.0 * MU_M3PS2 / reference.radius_m**3
     for left, one in enumerate(driven, 1 - len(driven)):
         e1_eci, b_eci_t = earlier(reference, -left * tuning.tick_s)
         mekf.predict(estimate, e1_eci, b_eci_t, gravity, one.m_body_am2, tuning, one.doubted_am2, wheel)
-        widen(estimate, reference, one.m_body_am2, tuning, config.changes)
+        widen(estimate, reference, one.m_body_am2, tuning, config.changes, eased)
         fade(estimate, tuning)
 
 
@@ -279,6 +286,27 @@ def _settle(state: EstimatorState, estimate: Estimate, seen: bool, config: MekfC
         again.covariance = covariance
     give_parameters(again, state.first, state.loaded, config)
     state.estimate, state.turning = again, after
+
+
+def ease_estimate(state: EstimatorState, config: MekfConfig) -> None:
+    """Go on with attitude, rate and bias, less certain; put the other parameters back to their priors.
+
+    What changes beyond its bounds has misled them. From here on it may change by twice as much.
+    """
+    estimate = state.estimate
+    if estimate is None:
+        return
+    again = mekf.start(estimate.q_body_from_eci, estimate.omega_body_radps, config)
+    bias, kept = config.layout.mag_bias, ATTITUDE_AND_RATE
+    if bias is not None:
+        kept = bias.stop
+    covariance = again.covariance.copy()
+    covariance[:kept, :kept] = EASED**2 * estimate.covariance[:kept, :kept]
+    again.covariance = covariance
+    give_parameters(again, state.first, state.loaded, config)
+    again.parameters.mag_bias_t = estimate.parameters.mag_bias_t
+    state.estimate = again
+    state.easings += 1
 
 
 def discard_trace(state: EstimatorState) -> None:

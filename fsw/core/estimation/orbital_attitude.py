@@ -10,7 +10,7 @@ from fsw.core.estimation.mekf import Estimate
 from fsw.core.gate.measurements import Measurements
 from fsw.core.orbit.ephemeris import Reference
 
-KEPT: Final = 2.0
+KEPT: Final = 1.5
 """Times the sigma at which an attitude becomes valid: up to that it stays so."""
 
 

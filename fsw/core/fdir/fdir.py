@@ -7,7 +7,7 @@ from typing import Final, final
 from fsw.core.actuation.actuator import CoilView, unexpected
 from fsw.core.algebra.vector import ZERO, Vec3
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
-from fsw.core.estimation.estimator import EstimatorState, Used, discard_estimate, discard_trace
+from fsw.core.estimation.estimator import EstimatorState, Used, discard_estimate, discard_trace, ease_estimate
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.fdir.coils import currents, retest, torques
 from fsw.core.fdir.coils import health as coil_health
@@ -130,15 +130,14 @@ def judge(
         config: limits.
 
     Returns:
-        The attitude, which is not usable while a fault may have falsified it. The estimator is corrected or
-        restarted where a fault was found.
+        The attitude, which is not usable while a fault may have falsified it, and not valid before it is
+        proven. The estimator is corrected, eased or restarted where a fault was found.
     """
     sensors, coils, used, weights = health.sensors, health.coils, evidence.used, config.sensors.weights
     if not evidence.settled:
         pair.skip_judgement(sensors.pair, used, estimator.estimate, weights)
-        usable = attitude.usable and not _is_inconclusive(health, used, config)
         discard_trace(estimator)
-        return attitude if usable else attitude.invalid()
+        return _judged(attitude, health, used, config)
     field_before, sun_before = sensors.field.fault, sensors.sun.fault
     cells_before = cell_faults(sensors.cells)
     reference = evidence.reference
@@ -160,14 +159,22 @@ def judge(
         torques.judge_effect(
             coils, view, reference, estimator, tick, believed, doubt, config.coils, evidence.wheel_nms
         )
-    if changed or both.ended:
+    if changed or both.ended or both.easing:
         coils.older = coil_health.NONE_OLDER  # a faulty sensor may have shown it
     if both.ended:
         discard_estimate(estimator)
         attitude = UNKNOWN
+    elif both.easing:
+        ease_estimate(estimator, config.sensors.mekf)
+        return attitude.doubted()
+    return _judged(attitude, health, used, config)
+
+
+def _judged(attitude: Attitude, health: Health, used: Used, config: FdirConfig) -> Attitude:
+    """The attitude as far as it can be relied on: not to be used where a fault may have falsified it."""
     if _is_inconclusive(health, used, config):
-        attitude = attitude.invalid()
-    return attitude
+        return attitude.invalid()
+    return attitude if pair.is_valid(health.sensors.pair) else attitude.doubted()
 
 
 def _is_inconclusive(health: Health, used: Used, config: FdirConfig) -> bool:
@@ -178,7 +185,7 @@ def _is_inconclusive(health: Health, used: Used, config: FdirConfig) -> bool:
         or _has_unobservable_torque(coils, used, config)
         or _has_suspected_coil(coils, sensors.pair, config)
         or is_doubtful(sensors.cells, config.sensors.weights)
-        or not pair.is_valid(sensors.pair)
+        or not pair.is_usable(sensors.pair, config.sensors.weights)
     )
 
 

@@ -282,6 +282,7 @@ class TestEvents:
             "PLANT_RESTARTED": 13,
             "FALSE_END": 14,
             "COIL_READMITTED": 15,
+            "FILTER_EASED": 16,
         }
 
     def test_every_event_has_a_severity_and_fits_its_signal(self):

@@ -114,9 +114,9 @@ class TestBounds:
             mag_shadow_t=pytest.approx(4e-7),
             storm_t=pytest.approx(1.5e-7),
             shadow_dipole_am2=pytest.approx(0.0049),
-            remanence_part=pytest.approx(0.002),
+            remanence_part=pytest.approx(0.003),
             pulse_am2=6.0,
-            albedo=pytest.approx(0.35),
+            albedo=pytest.approx(0.6),
             shadow_impulse_nms=5e-5,
         )
         of_cells = ("cell_gain_part", "cell_light", "cell_excess", "earth_light")

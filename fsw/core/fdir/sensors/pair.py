@@ -58,7 +58,8 @@ class Pair:
     right, while they are disputed, or one is isolated and no estimate can tell; ``false_convergence``: that
     the estimate has settled on a satellite that the table does not allow and that is not this one either.
     ``ended``: the filter is to end in this tick; ``blind_ticks``: ticks since it took a sample;
-    ``proof_required``: what an estimate that lagged, or was blind, still has to prove.
+    ``proof_required``: what an estimate that lagged, or was blind, still has to prove; ``easing``: the filter
+    is to be eased in this tick; ``eased``: it was, and has not been proven since.
     """
 
     standing: Standing = Standing.NEW
@@ -69,6 +70,8 @@ class Pair:
     blind_ticks: int = 0
     proof_required: float = 0.0
     false_convergence: float = 0.0
+    easing: bool = False
+    eased: bool = False
 
 
 def is_proven(pair: Pair, weights: EvidenceWeights) -> bool:
@@ -85,6 +88,11 @@ def is_valid(pair: Pair) -> bool:
     return pair.standing is Standing.TRUSTED and not pair.proof_required
 
 
+def is_usable(pair: Pair, weights: EvidenceWeights) -> bool:
+    """Whether such an attitude may be controlled by: while it lags, or was eased, too, but not blindly."""
+    return pair.standing is Standing.TRUSTED and pair.blind_ticks <= weights.blind_ticks
+
+
 def judge_pair(
     pair: Pair, observed: Observed, weights: EvidenceWeights, credibility: CredibilityConfig
 ) -> None:
@@ -97,6 +105,9 @@ def judge_pair(
     if not disputed:
         by = weights.against * _misfit(pair, observed, weights, credibility)
         doubt = weigh(pair.doubt, by, threshold)
+    if doubt >= threshold and _may_ease(pair, observed):
+        ease_estimate(pair, weights)
+        return
     if doubt >= threshold:
         end_estimate(pair, Standing.DISPUTED)
         return
@@ -112,10 +123,14 @@ def judge_pair(
     pair.proof, pair.doubt, pair.accord, pair.ended = proof, doubt, accord, False
     pair.blind_ticks = 0 if used.field or used.sun else pair.blind_ticks + 1
     pair.proof_required = _proof_required(pair, estimate, used, weights)
+    pair.easing = False
+    pair.eased = pair.eased and (proof < threshold or pair.proof_required > 0.0)
     lost = pair.proof_required > 0.0 and used.field and used.sun and not observed.credible
     slow = weights.agrees / PAIR_NUMBERS  # a faulty coil, which looks the same at first, is found sooner
     pair.false_convergence = weigh(pair.false_convergence, slow if lost else -slow, threshold)
-    if pair.false_convergence >= threshold:
+    if pair.false_convergence >= threshold and _may_ease(pair, observed):
+        ease_estimate(pair, weights)
+    elif pair.false_convergence >= threshold:
         end_estimate(pair)
 
 
@@ -126,7 +141,7 @@ def skip_judgement(pair: Pair, used: Used, estimate: Estimate | None, weights: E
     But an estimate that has begun anew is not the one that was proven, and one that lags has to be.
     """
     pair.blind_ticks += 1
-    pair.ended = False
+    pair.ended = pair.easing = False
     if estimate is None or is_new(estimate, used):
         pair.standing = _without_proof(pair)
         pair.proof, pair.proof_required = 0.0, 0.0
@@ -134,11 +149,29 @@ def skip_judgement(pair: Pair, used: Used, estimate: Estimate | None, weights: E
         pair.proof_required = max(pair.proof_required, _proof_required(pair, estimate, used, weights))
 
 
+def _may_ease(pair: Pair, observed: Observed) -> bool:
+    """Whether the satellite may have changed by more than its table says: the sensors still agree.
+
+    Once, until the estimate is proven anew: what an eased one cannot follow is a fault.
+    """
+    agree = not (observed.isolated or observed.refused or observed.findings.apart)
+    return pair.standing is Standing.TRUSTED and agree and not pair.eased
+
+
+def ease_estimate(pair: Pair, weights: EvidenceWeights) -> None:
+    """Ease the estimate in this tick: it goes on, wider, and has to be proven anew."""
+    pair.easing = pair.eased = True
+    pair.ended = False
+    pair.proof, pair.doubt, pair.accord, pair.false_convergence = 0.0, 0.0, 0.0, 0.0
+    pair.proof_required = weights.threshold
+
+
 def end_estimate(pair: Pair, standing: Standing = Standing.NEW) -> None:
     """End the filter in this tick: nothing counts of what has been shown so far."""
     pair.standing, pair.ended, pair.blind_ticks = standing, True, 0
     pair.proof, pair.doubt, pair.accord = 0.0, 0.0, 0.0
     pair.proof_required, pair.false_convergence = 0.0, 0.0
+    pair.easing = pair.eased = False
 
 
 def discard_proof(pair: Pair) -> None:

@@ -13,7 +13,7 @@ from fsw.core.estimation.changes import EDGE_M, EDGE_S, NO_CHANGES, Changes, wid
 from fsw.core.orbit.earth import RADIUS_M
 
 EDGE_RATE = np.array([[4.0, 1.0, 0.0], [1.0, 3.0, 0.5], [0.0, 0.5, 2.0]]) * 1e-12
-CHANGES = Changes(4e-16, 9e-6, 1e-14, 3e-6, EDGE_RATE)
+CHANGES = Changes(7e-19, 4e-16, 9e-6, 1e-14, 3e-6, EDGE_RATE)
 SUN = unit((0.3, -0.8, -0.5))
 ACROSS = unit((0.8, 0.3, 0.0))
 """Normal to the Sun."""
@@ -85,6 +85,18 @@ def test_a_coil_that_is_driven_keeps_a_part_along_its_own_axis():
     found = grown(at(-2e6), (2.0, -8.0, 0.5))
     matrix = expected(dipole=3e-6 * np.diag([4.0, 64.0, 0.25]))
     np.testing.assert_allclose(found, matrix, rtol=1e-6, atol=1e-25)
+
+
+def test_once_eased_all_of_it_is_twice_as_large_and_the_bias_walks_by_twice_its_bound():
+    """A variance of four times: the filter's own walk is one of them."""
+    eased = 4.0
+    estimate = mekf.start(Q_BODY_FROM_ECI, (0.01, -0.02, 0.03), MEKF)
+    for place, bias in ((at(0.0), 4.0 * 4e-16 + 3.0 * 7e-19), (at(-2e6), 3.0 * 7e-19)):
+        after = changed(estimate, widen, place, ZERO, MEKF, CHANGES, eased)
+        added = after.covariance - estimate.covariance
+        edge = 4.0 if bias > 1e-17 else 0.0
+        matrix = expected(mag_bias=bias * np.eye(3), dipole=edge * 9e-6 * np.eye(3), rate=edge * EDGE_RATE)
+        np.testing.assert_allclose(added, matrix, rtol=1e-3, atol=1e-25)
 
 
 def test_of_a_table_that_is_exact_nothing_is_widened():

@@ -31,6 +31,7 @@ from fsw.core.estimation.estimator import (
     NONE_USED,
     EstimatorState,
     Used,
+    ease_estimate,
     update,
 )
 from fsw.core.estimation.measurement import field_prediction
@@ -336,6 +337,39 @@ class TestRejections:
             state, _ = step(state, seen_from(turned))
         assert state.restarts == 1
         assert angle_rad(state.estimate.q_body_from_eci, turned) < radians(0.1)
+
+
+class TestEasing:
+    def test_attitude_rate_and_bias_go_on_less_certain_and_the_rest_starts_from_its_prior(self, settled):
+        state = settled.copy()
+        before = state.estimate
+        before.parameters.dipole_body_am2 = (0.01, -0.02, 0.03)
+        before.parameters.mag_bias_t = (1e-7, -2e-7, 3e-7)
+        known = before.copy()
+        ease_estimate(state, MEKF)
+        eased, kept = state.estimate, MEKF.layout.mag_bias.stop
+        assert eased.q_body_from_eci == known.q_body_from_eci
+        assert eased.omega_body_radps == known.omega_body_radps
+        assert eased.parameters.mag_bias_t == known.parameters.mag_bias_t
+        assert eased.parameters.dipole_body_am2 == MEKF.initial_parameters.dipole_body_am2
+        np.testing.assert_array_equal(eased.covariance[:kept, :kept], 4.0 * known.covariance[:kept, :kept])
+        np.testing.assert_array_equal(eased.covariance[kept:, kept:], MEKF.initial_covariance[kept:, kept:])
+        assert not eased.covariance[:kept, kept:].any()
+        assert (state.easings, state.restarts) == (1, settled.restarts)
+
+    def test_without_an_estimate_nothing_is_eased(self):
+        state = EstimatorState()
+        ease_estimate(state, MEKF)
+        assert state == EstimatorState()
+
+    def test_what_was_loaded_from_the_ground_stays(self, settled):
+        state = settled.copy()
+        place = len(NO_DIFFERENCE.mag_bias_t + NO_DIFFERENCE.torque_body_nm)
+        loaded = replace(NO_DIFFERENCE, dipole_body_am2=(0.02, 0.0, 0.0))
+        state.first, state.loaded = loaded, (place,)
+        ease_estimate(state, MEKF)
+        _, y, z = MEKF.initial_parameters.dipole_body_am2
+        assert state.estimate.parameters.dipole_body_am2 == (0.02, y, z)
 
 
 def test_an_old_field_sample_is_of_where_the_satellite_was():

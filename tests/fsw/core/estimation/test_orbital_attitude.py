@@ -72,8 +72,8 @@ class TestOrbitalAttitude:
             (0.1, True, True, True),
             (1.999, True, True, True),
             (2.001, False, True, True),
-            (3.999, False, True, True),
-            (4.001, False, False, True),
+            (2.999, False, True, True),
+            (3.001, False, False, True),
             (6.999, False, False, True),
             (7.001, False, False, False),
             (60.0, False, False, False),
@@ -82,7 +82,7 @@ class TestOrbitalAttitude:
     def test_its_worst_axis_says_whether_it_is_valid_and_serves_control(
         self, sigma_deg, begins, goes_on, usable
     ):
-        """Once valid it stays so up to twice the limit; control needs no such certainty."""
+        """Once valid it stays so up to one and a half times the limit; control needs no such certainty."""
         for axis in range(3):
             covariance = np.diag([radians(0.05) ** 2] * 3 + [1e-10, 4e-10, 9e-10] + [1e-14] * 6)
             covariance[axis, axis] = radians(sigma_deg) ** 2

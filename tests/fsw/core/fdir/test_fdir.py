@@ -130,7 +130,6 @@ class TestJudgement:
             sensors(pair=Pair(Standing.DISPUTED)),
             sensors(pair=Pair(Standing.ON_TRIAL)),
             sensors(pair=with_values(PROVEN, blind_ticks=120)),
-            sensors(pair=with_values(PROVEN, proof_required=0.1)),
         ],
         ids=[
             "a current in an unknown coil",
@@ -138,12 +137,32 @@ class TestJudgement:
             "a disputed pair",
             "a pair on trial",
             "nothing taken for too long",
-            "an estimate that lagged and has not borne it out yet",
         ],
     )
     def test_an_attitude_is_not_valid_with(self, judged, health):
         (_, _, attitude), state = judged(health)
         assert attitude == state.attitude.invalid()
+
+    def test_by_an_estimate_that_lagged_and_has_not_borne_it_out_yet_one_may_control(self, judged):
+        (_, _, attitude), state = judged(sensors(pair=with_values(PROVEN, proof_required=0.1)))
+        assert attitude == state.attitude.doubted()
+        assert attitude.usable
+        assert not attitude.valid
+
+    @pytest.mark.interpreted
+    def test_an_estimate_that_the_pair_eases_goes_on_not_valid_and_what_pulses_showed_is_forgotten(
+        self, judged, monkeypatch
+    ):
+        eased = SensorHealth(pair=with_values(PROVEN, proof_required=5.0, easing=True, eased=True))
+        monkeypatch.setattr(fdir.sensor_health, "judge_sensors", judgement_of(eased))
+        older = Older(PartSum(2, 30.0, 9.0, 2.7), kept=1.0)
+        (health, estimator, attitude), state = judged(
+            Health(SensorHealth(pair=PROVEN), CoilHealth(older=(older, older, older)))
+        )
+        assert attitude == state.attitude.doubted()
+        assert estimator.easings == state.estimator.easings + 1
+        assert estimator.restarts == state.estimator.restarts
+        assert health.coils.older == NONE_OLDER
 
     @pytest.mark.parametrize(
         ("inertia_percent", "field", "valid"), [(0.0, False, True), (10.0, False, False), (10.0, True, True)]

@@ -16,6 +16,7 @@ from fsw.core.fdir.sensors.pair import (
     Pair,
     Standing,
     is_proven,
+    is_usable,
     is_valid,
     judge_pair,
     skip_judgement,
@@ -57,6 +58,11 @@ def after(pair, observed, ticks=1):
     for _ in range(ticks):
         judge_pair(pair, observed, WEIGHTS, LIMITS)
     return pair
+
+
+def eased_before(pair):
+    """The pair if its estimate was eased a while ago, and is nearly proven anew."""
+    return with_values(pair, eased=True, proof=min(pair.proof, 0.9 * WEIGHTS.threshold))
 
 
 def ticks_until(pair, observed, standing, most=3000):
@@ -215,7 +221,7 @@ class TestDoubt:
     @pytest.mark.parametrize("name", DOUBTS)
     def test_speaks_against_the_pair_and_ends_the_filter(self, name):
         pair, observed = DOUBTS[name]
-        ticks, pair = ticks_until(pair, observed, Standing.DISPUTED)
+        ticks, pair = ticks_until(eased_before(pair), observed, Standing.DISPUTED)
         assert 25 < ticks < 35
         assert pair == Pair(Standing.DISPUTED, ended=True)
         assert not is_valid(pair)
@@ -245,6 +251,50 @@ class TestDoubt:
         assert after(TRUSTED, with_values(alone, estimate=TURNED), 100).standing is Standing.TRUSTED
         large = with_values(ESTIMATE, nis=15.0, numbers=3)
         assert after(TRUSTED, with_values(alone, estimate=large), 35).standing is Standing.DISPUTED
+
+
+class TestEasing:
+    """A proven estimate is eased before it ends: the satellite may change by more than its table says."""
+
+    DOUBTED = with_values(TRUSTED, doubt=WEIGHTS.threshold - 0.01)
+    BEYOND = with_values(TAKEN, estimate=TURNED, credible=False)
+
+    @pytest.mark.parametrize("observed", [LARGE, BEYOND], ids=["large innovations", "parameters"])
+    def test_it_goes_on_and_has_to_be_proven_anew(self, observed):
+        pair = after(self.DOUBTED, observed)
+        assert (pair.standing, pair.easing, pair.eased, pair.ended) == (Standing.TRUSTED, True, True, False)
+        assert (pair.proof, pair.doubt, pair.accord, pair.false_convergence) == (0.0, 0.0, 0.0, 0.0)
+        assert pair.proof_required == WEIGHTS.threshold
+        assert not is_valid(pair)
+        assert is_usable(pair, WEIGHTS)
+
+    def test_it_is_eased_in_one_tick_alone(self):
+        assert not after(after(self.DOUBTED, LARGE), TAKEN).easing
+
+    def test_if_the_doubt_comes_back_before_it_is_proven_it_ends(self):
+        pair = after(self.DOUBTED, LARGE)
+        _, pair = ticks_until(pair, LARGE, Standing.DISPUTED, 40)
+        assert (pair.ended, pair.easing, pair.eased) == (True, False, False)
+
+    def test_once_proven_it_may_be_eased_again(self):
+        pair = after(after(self.DOUBTED, LARGE), TAKEN, 200)
+        assert is_valid(pair)
+        assert not pair.eased
+        assert after(with_values(pair, doubt=WEIGHTS.threshold - 0.01), LARGE).easing
+
+    @pytest.mark.parametrize(
+        ("pair", "observed"),
+        [
+            (with_values(DOUBTED, standing=Standing.NEW), LARGE),
+            (with_values(DOUBTED, standing=Standing.ON_TRIAL), LARGE),
+            (DOUBTED, with_values(LARGE, isolated=True)),
+            (with_values(DOUBTED, proof=0.0), with_values(LARGE, findings=APART)),
+            (DOUBTED, with_values(LARGE, refused_sun=True)),
+        ],
+        ids=["never proven", "on trial", "one is isolated", "they are apart", "one is refused"],
+    )
+    def test_where_a_sensor_may_be_wrong_it_ends(self, pair, observed):
+        assert after(pair, observed).standing is Standing.DISPUTED
 
 
 class TestSkippedJudgement:
@@ -287,11 +337,16 @@ class TestFalseConvergence:
     )
 
     def test_it_ends_after_long_and_nobody_is_blamed(self):
-        pair = after(TRUSTED, self.LOST, 2000)
+        pair = after(eased_before(TRUSTED), self.LOST, 2000)
         assert pair.standing is Standing.TRUSTED
         pair = after(pair, self.LOST, 100)
         assert pair.standing is Standing.NEW
         assert pair.false_convergence < 0.1 * WEIGHTS.threshold
+
+    def test_one_that_was_not_eased_before_is_eased_first(self):
+        pair = after(TRUSTED, self.LOST, 2100)
+        assert pair.standing is Standing.TRUSTED
+        assert pair.eased
 
     @pytest.mark.parametrize(
         "observed",
