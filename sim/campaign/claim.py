@@ -19,8 +19,10 @@ class Threshold(StrEnum):
     """As the header of the reference file says."""
     PROTOTYPE = "own prototype"
     """What an earlier computation of this project's own has found."""
-    OWN = "own choice"
-    """Chosen here, close to the measured figure, so that a change shows."""
+    REQUIRED = "own requirement"
+    """Asked here of the project before the figure was computed."""
+    OWN = "own, set afterwards"
+    """Set here once the figure was known, close to it, so that a change shows."""
     FITTED = "fitted"
     """The paper's figure, to which a number of the scenario was fitted: that it is met shows nothing."""
 

@@ -29,7 +29,7 @@ def consistency_figures(scenario: Scenario, truth: Histories, estimates: Estimat
     ticks after convergence. The same with ``point_`` before the name: from the first tick in POINT on,
     whatever modes follow. ``wrong_5deg_s`` and ``wrong_10deg_s``: longest time of the whole flight valid with
     a larger error. ``pointing_deg``: RMS over the last orbits; ``pointed_orbits``: when it has settled
-    under 10 deg, infinite if never; ``in_point``: 1 if the flight ends in POINT.
+    under 10 deg, for the last orbit at least, infinite if never; ``in_point``: 1 if the flight ends in POINT.
     """
     tick_hz, ticks = scenario.time.tick_hz, len(truth["t_s"])
     orbit_ticks = orbit_period_s(scenario) * tick_hz
@@ -39,7 +39,7 @@ def consistency_figures(scenario: Scenario, truth: Histories, estimates: Estimat
     in_point = estimates.mode[:ticks] == Mode.POINT
     starts = {"": converged_tick(error_deg, tick_hz), "point_": _first(in_point)}
     inside, consistency = within_3sigma(truth, estimates), nees(truth, estimates)
-    pointed = settled_tick(pointing_deg < POINTED_DEG, tick_hz)
+    pointed = settled_tick(pointing_deg < POINTED_DEG, tick_hz, orbit_period_s(scenario))
     return {
         **_differences(scenario),
         **{

@@ -30,7 +30,6 @@ from sim.record.whole_file import replace_text
 from sim.report.figures.controlled import SETTLED_DEG, Controlled, controlled
 from sim.report.summary_text import last_orbit
 from sim.scenario.schema import Scenario, flight_table, load, orbit_period_s, parse_settings, shipped_names
-from sim.statistics.settling import HELD_S
 from sim.tuning.applicable import aims_of
 from sim.tuning.cost import BY_RATE
 from sim.tuning.kept import KeptGains, body_checksum, gains_text, read_gains, shipped_gains
@@ -39,9 +38,9 @@ from sim.tuning.kept import KeptGains, body_checksum, gains_text, read_gains, sh
 
 PANEL_IN = 2.8
 _MEANING = (
-    "Judged by the {what}. Settled: under {threshold} from then on to the end, for {held:g} s at least. RMS, "
-    "max and rate over {window}; ∫ m² is the energy lost in the coils but for a factor. Best first, each aim "
-    "of laws for itself."
+    "Judged by the {what}. Settled: under {threshold} from then on to the end, for its last orbit at least. "
+    "RMS, max and rate over {window}; ∫ m² is the energy lost in the coils but for a factor. Best first, "
+    "each aim of laws for itself."
 )
 
 
@@ -67,9 +66,7 @@ def compare_page(
     With gains ``kept`` for the body it tells those of each law, and what they cost on the rigid body.
     """
     flights = [result for result in results if result.history is not None]
-    meaning = _MEANING.format(
-        what=by.words, threshold=with_unit(by.threshold, by), held=HELD_S, window=window
-    )
+    meaning = _MEANING.format(what=by.words, threshold=with_unit(by.threshold, by), window=window)
     sections = [PageSection("scores", "The laws", meaning, (as_table(scores, by),), text=_failures(scores))]
     time = None
     if flights and flights[0].history is not None:
@@ -291,7 +288,7 @@ def _heading(scenario: Scenario, seed: int, ticks: int, by: Controlled) -> str:
     flown_s = ticks / scenario.time.tick_hz
     return (
         f"{scenario.name}, seed {seed}, {flown_s:.0f} s: {by.words}; settled: under "
-        f"{by.threshold:g} {by.unit} from then on, for {HELD_S:g} s at least; "
+        f"{by.threshold:g} {by.unit} from then on, for the last orbit at least; "
         f"RMS, max and rate over {_window(scenario, ticks)}"
     )
 

@@ -95,7 +95,7 @@ def judge(case: ComparisonCase, record: RecordedFlight, by: Controlled) -> Score
     tick_hz, orbit_s = scenario.time.tick_hz, orbit_period_s(scenario)
     error = error_of(record, by)
     last_orbit = slice(-round(orbit_s * tick_hz), None)
-    settled = settled_tick(error < by.threshold, tick_hz)
+    settled = settled_tick(error < by.threshold, tick_hz, orbit_s)
     continuous = case.driver is Driver.CONTINUOUS
     return Score(
         law=case.law,

@@ -1,7 +1,8 @@
 """When something has settled: what a flight shows of it, over all its ticks or block by block.
 
 It has settled at the tick from which it holds without a gap to the end of the flight, if that is for
-``HELD_S`` at least. What began to hold later has not been seen to stay.
+``HELD_S`` at least. What began to hold later has not been seen to stay. An error that comes back with the
+orbit has to be seen for one: populations and comparisons ask for that.
 """
 
 from dataclasses import dataclass
@@ -15,9 +16,9 @@ HELD_S = 600.0
 """Time for which it must have held, to the end of the flight."""
 
 
-def held_ticks(tick_hz: float) -> int:
-    """``HELD_S`` in ticks, at least so long."""
-    return ceil(HELD_S * tick_hz)
+def held_ticks(tick_hz: float, held_s: float = HELD_S) -> int:
+    """This time in ticks, at least so long."""
+    return ceil(held_s * tick_hz)
 
 
 @dataclass(slots=True)
@@ -48,8 +49,8 @@ class Settling:
         return self.since if self.taken - self.since >= self.held_ticks else None
 
 
-def settled_tick(holds: Flags, tick_hz: float) -> int | None:
+def settled_tick(holds: Flags, tick_hz: float, held_s: float = HELD_S) -> int | None:
     """The tick at which it has settled, of a whole flight; None: it has not."""
-    settling = Settling(held_ticks(tick_hz))
+    settling = Settling(held_ticks(tick_hz, held_s))
     settling.take(holds)
     return settling.tick

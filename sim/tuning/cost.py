@@ -30,7 +30,9 @@ LOST = 10.0
 
 
 class Cost(NamedTuple):
-    """Of a flight: the cost, the orbits until it settled (None: never), and the RMS of its last orbit.
+    """Of a flight: the cost, the orbits until it settled, and the RMS of its last orbit.
+
+    It has settled if it stays so for the last orbit at least; None: it has not.
 
     The RMS is in deg, or in deg/s for a law that does not point.
     """
@@ -50,7 +52,7 @@ def cost_of(flight: FlownMotion, scenario: Scenario, aim: Aim) -> Cost:
         error, settled = _rate_error_degps(flight, scenario)
     rms = float(np.sqrt(np.mean(error[flight.orbit(-1)] ** 2)))
     step_s = float(flight.t_s[1])
-    settling = Settling(held_ticks(1.0 / step_s))
+    settling = Settling(held_ticks(1.0 / step_s, flight.orbit_s))
     settling.take(error < settled)
     settle_orbits = None if settling.tick is None else settling.tick * step_s / flight.orbit_s
     if not np.isfinite(rms):

@@ -65,7 +65,7 @@ def beside_mpc(seeds: Sequence[int]) -> Study:
     """The same random satellites by either law; honest and quiet by the one that plans pulses."""
     groups = [Group("", _orders(LAW, seeds)), Group("mpc", _orders("mpc", seeds))]
     name = f"{LAW}-population"
-    study = campaign(name, SOURCE, groups, quiet_and_honest(), "flights")
+    study = campaign(name, SOURCE, groups, quiet_and_honest(len(seeds)), "flights")
 
     def conclude(flights: Any) -> list[ClaimOutcome]:  # noqa: ANN401  (as in Study)
         ours, theirs = flights[: len(seeds)], flights[len(seeds) :]

@@ -8,7 +8,7 @@ from math import inf
 import numpy as np
 import scipy
 
-from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Spread
+from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Spread, Threshold
 from sim.campaign.runner import StudyResult
 from sim.console import counted
 from sim.junit import JunitCase
@@ -22,13 +22,15 @@ Written by `torquer validate`; do not edit. The command computes every row: a cl
 source, the figure of this code, and the tolerance. Of a reference file, the row nearest to its tolerance is
 shown.
 
-The column *whose* tells where a tolerance comes from. *paper*: as the source prints it. *reference file*: as
-its header states it. *own prototype*: the result of an earlier computation of this project. *own choice*: set
-here, close to the figure; where it is more than ten times off, the reason is given. (Of a fraction near one,
-the part that is missing counts.) *fitted*: the paper's figure, to which a number of the scenario was fitted;
-meeting it proves nothing, so it does not count as met. A paper reports one flight; the column *all starts*
-gives the least, the median and the greatest over all starts, and how many meet the tolerance. Settled means
-within the threshold from then on to the end, for at least 600 s.
+The column *whose* tells where a tolerance comes from. *paper*: as the source prints it, or as its
+statistics give it. *reference file*: as its header states it. *own prototype*: the result of an earlier
+computation of this project. *own requirement*: asked of the project before the figure was computed. *own,
+set afterwards*: set when the figure was known, close to it, so that a change shows; where it is more than
+ten times off, the reason is given. (Of a fraction near one, the part that is missing counts.) *fitted*: the
+paper's figure, to which a number of the scenario was fitted; meeting it proves nothing, so it does not
+count as met. A paper reports one flight; the column *all starts* gives the least, the median and the
+greatest over all starts, and how many meet the tolerance. Settled means within the threshold from then on
+to the end, for at least 600 s.
 """
 
 
@@ -135,10 +137,20 @@ def _test(outcome: ClaimOutcome) -> JunitCase:
 
 
 def tally(outcomes: Sequence[ClaimOutcome]) -> str:
-    """How many claims hold, fail, are fitted, and could not be judged."""
-    count = {verdict: sum(outcome.verdict is verdict for outcome in outcomes) for verdict in ClaimVerdict}
-    text = f"{counted(count[ClaimVerdict.PASS], 'claim')} met, {count[ClaimVerdict.FAIL]} failed"
+    """How many claims hold and fail, by where their limits come from; how many could not be judged."""
+    judged = (ClaimVerdict.PASS, ClaimVerdict.FAIL)
+    parts = []
+    for threshold in Threshold:
+        mine = [one for one in outcomes if one.claim.threshold is threshold and one.verdict in judged]
+        if mine:
+            met = sum(one.verdict is ClaimVerdict.PASS for one in mine)
+            parts.append(f"{threshold.value} {met} of {len(mine)}")
+    met = sum(one.verdict is ClaimVerdict.PASS for one in outcomes)
+    failed = sum(one.verdict is ClaimVerdict.FAIL for one in outcomes)
+    text = f"{counted(met, 'claim')} met, {failed} failed"
+    text += f" ({', '.join(parts)})" if parts else ""
     others = (ClaimVerdict.FITTED, ClaimVerdict.ABSENT, ClaimVerdict.TOO_FEW)
+    count = {verdict: sum(one.verdict is verdict for one in outcomes) for verdict in others}
     return text + "".join(f", {count[verdict]} {verdict.value}" for verdict in others if count[verdict])
 
 

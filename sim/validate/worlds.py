@@ -9,7 +9,7 @@ from statistics import fmean
 import numpy as np
 
 from fsw.input.schema import Nested, merge
-from sim.campaign.claim import Claim, ClaimOutcome, Spread, Study
+from sim.campaign.claim import Claim, ClaimOutcome, Spread, Study, Threshold
 from sim.campaign.consistency import consistency_figures
 from sim.campaign.flight import Figures, FlightResult, Order, fly_order
 from sim.campaign.population import POPULATIONS, satellite
@@ -23,9 +23,7 @@ TABLE = Path(__file__).with_suffix(".toml")
 KIND, ORBITS = "50kg", 4.0
 SATELLITES, FIRST_SEED = 20, 501
 """None of these satellites was flown while the filter was tuned."""
-SOURCE = (
-    "Worlds beyond the table (sim/validate/worlds.toml): own choice; {} satellites of the 50 kg population"
-)
+SOURCE = "Worlds beyond the table (sim/validate/worlds.toml); {} satellites of the 50 kg population"
 BASE = "declared"
 WORSE, OF_SATELLITES = 2.5, 0.9
 """By what factor a satellite may point worse than in its declared world, and what part of them has to."""
@@ -90,7 +88,8 @@ def _judge(name: str, flights: Flights) -> list[ClaimOutcome]:
     mine, source = flights[name], SOURCE.format(len(flights[name]))
 
     def claim(key: str, statement: str, unit: str, low: float = -np.inf, high: float = np.inf) -> Claim:
-        return Claim(f"worlds.{name}.{key}", f"{statement}, world {name}", source, unit, low, high, wide=WIDE)
+        words = f"{statement}, world {name}"
+        return Claim(f"worlds.{name}.{key}", words, source, unit, low, high, Threshold.REQUIRED)
 
     inside = [fmean(one.figures[f"inside_{axis}"] for axis in (1, 2, 3)) for one in mine]
     wrong_s = [one.figures["wrong_5deg_s"] for one in mine]
@@ -130,9 +129,6 @@ def _judge(name: str, flights: Flights) -> list[ClaimOutcome]:
     limit = float(np.quantile(worse, OF_SATELLITES, method="lower"))
     statement = "Pointing error of the last orbit over that in the declared world, 9 satellites of 10"
     return [*found, _outcome(claim("pointing", statement, "1", high=WORSE), worse, limit)]
-
-
-WIDE = "set before the flights: what a user may rely on beyond the table"
 
 
 def _outcome(claim: Claim, values: Sequence[float], ours: float) -> ClaimOutcome:

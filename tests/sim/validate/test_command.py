@@ -28,7 +28,7 @@ class TestCommand:
         page = folder.path / "deep" / "page.md"
         result = self.call("--reference", folder.path, "--out", page)
         assert result.exit_code == 0
-        assert "17 claims met, 0 failed, 5 absent" in result.stdout
+        assert "17 claims met, 0 failed (reference file 17 of 17), 5 absent" in result.stdout
         assert "| eclipse.csv | 4 | kind, " in page.read_text()
         assert page.read_text().count("| PASS |") == 17
 
@@ -137,7 +137,8 @@ class TestCommand:
             assert result.exit_code == code
             assert "too few to judge population.x.median: Pointing: 9 deg" in result.stdout
             assert "[1 of the 30 satellites that it is claimed for]" in result.stdout
-            assert f"{1 - code} claim{'s' * code} met, {code} failed, 1 too few to judge" in result.stdout
+            assert f"{1 - code} claim{'s' * code} met, {code} failed (" in result.stdout
+            assert ", 1 too few to judge" in result.stdout
             assert "1 claim on a median or mean not judged: made for more satellites" in result.stderr
 
     def test_what_is_recorded_in_parts_is_one_page(self, tmp_path, monkeypatch, study):
@@ -147,13 +148,13 @@ class TestCommand:
         page = tmp_path / "docs" / "validation.md"
         assert self.call("--only", "b", "--record").exit_code == 1
         assert self.call("--only", "a", "--record").exit_code == 0
-        assert "1 claim met, 1 failed." in page.read_text()
+        assert "1 claim met, 1 failed (own, set afterwards 1 of 2)." in page.read_text()
         parts[0] = study("a", [7.0])
         assert self.call("--only", "a", "--record").exit_code == 0
         rows = [row for row in page.read_text().splitlines() if row.startswith("| sum of ")]
         assert [row.split(" | ")[2:] for row in rows] == [
-            ["7", "", "<= 10", "own choice", "PASS |"],
-            ["20 at of (20.0,)", "", "<= 10", "own choice", "FAIL |"],
+            ["7", "", "<= 10", "own, set afterwards", "PASS |"],
+            ["20 at of (20.0,)", "", "<= 10", "own, set afterwards", "FAIL |"],
         ]
 
     def test_claims_without_an_outcome_are_named_on_the_page_of_what_is_recorded(

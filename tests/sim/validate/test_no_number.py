@@ -140,7 +140,7 @@ def test_a_dissipation_that_is_none():
 
 def test_the_worst_axis_is_the_one_without_a_number():
     figures = {"inside_1": 0.99, "inside_2": nan, "inside_3": 0.98}
-    picked = {figure.id: figure.pick for figure in quiet_and_honest()}
+    picked = {figure.id: figure.pick for figure in quiet_and_honest(1)}
     flight = FlightResult(Order("microsat"), {}, figures)
     assert np.isnan([picked["inside"](flight), picked["inside_worst"](flight)]).all()
 
