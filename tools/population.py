@@ -54,6 +54,7 @@ def write(satellites: int | None, sizes: int, seeds: Sequence[int], workers: int
     outcomes = [outcome for study in finished for outcome in study.outcomes]
     flights = {study.study.id.removeprefix("population."): study.results for study in finished}
     of_population = {name: flights[name] for name in POPULATIONS}
+    lifted = {name: flights[name] for name in flights if name.endswith("_continuous")}
     swept = dict(zip(sweeps, finished[len(populations) :], strict=True))
     sweep = {
         quantity: [spread_of(size, swept[quantity, size].results) for size in quantity.sizes(sizes)]
@@ -64,7 +65,7 @@ def write(satellites: int | None, sizes: int, seeds: Sequence[int], workers: int
     draw_sweep(sweep, pictures[1])
     flown = sum(len(study.results) for study in finished)
     names = [picture.name for picture in pictures]
-    replace_text(out, page(outcomes, of_population, sweep, names, f"{flown} flights."))
+    replace_text(out, page(outcomes, of_population, lifted, sweep, names, f"{flown} flights."))
     return not any(outcome.verdict is ClaimVerdict.FAIL for outcome in outcomes)
 
 

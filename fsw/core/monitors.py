@@ -28,6 +28,7 @@ class Monitor(IntEnum):
     COIL_AS_COMMANDED = 7
     ORBIT_KNOWN = 8
     NO_SECOND_SENDER = 9
+    TIME_AGREES = 10
 
 
 @final
@@ -39,6 +40,7 @@ class MonitorInput(Value):
         "pending_impulse_body_nms",
         "field_age_ticks",
         "status_age_ticks",
+        "time_age_ticks",
         "unexpected_drive",
         "orbit_available",
         "second_sender",
@@ -52,6 +54,7 @@ class MonitorInput(Value):
         pending_impulse_body_nms: Vec3,
         field_age_ticks: int,
         status_age_ticks: int,
+        time_age_ticks: int,
         unexpected_drive: bool,
         orbit_available: bool,
         second_sender: bool,
@@ -61,6 +64,7 @@ class MonitorInput(Value):
         self.pending_impulse_body_nms = pending_impulse_body_nms
         self.field_age_ticks = field_age_ticks
         self.status_age_ticks = status_age_ticks
+        self.time_age_ticks = time_age_ticks
         self.unexpected_drive = unexpected_drive
         self.orbit_available = orbit_available
         self.second_sender = second_sender
@@ -69,6 +73,12 @@ class MonitorInput(Value):
 
 UNIT_TOLERANCE: Final = 1e-6
 """How far the square of the quaternion's norm may be off."""
+
+
+MOST_TIME_ERROR_S: Final = 60
+"""By which the time of a SYNC may differ from the table's: in it the satellite flies 4 deg of its orbit."""
+TIME_STALE: Final = 2
+"""Times as long as a sample may be old, no SYNC may have told the right time: one jump is no other clock."""
 
 
 def trips(violated: Monitor | None, mode: Mode) -> bool:
@@ -101,6 +111,8 @@ def first_violation(watched: MonitorInput) -> Monitor | None:
         violated = Monitor.ORBIT_KNOWN
     elif watched.second_sender:
         violated = Monitor.NO_SECOND_SENDER
+    elif watched.time_age_ticks >= TIME_STALE * watched.stale_after_ticks:
+        violated = Monitor.TIME_AGREES
     elif not rate_bounded(attitude):
         violated = Monitor.RATE_BOUNDED
     return violated

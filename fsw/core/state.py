@@ -41,7 +41,8 @@ class FlightState:
 
     ``tick`` is -1 before the first SYNC; ``ignored_syncs`` counts the SYNCs that began no tick, and
     ``syncs`` holds those in doubt; ``field_tick`` and ``status_tick`` are the last ticks with an intact
-    MAG_FIELD and COIL_STATUS, ``time_error_s`` the last SYNC's time less the expected; ``setpoint`` and
+    MAG_FIELD and COIL_STATUS, ``time_tick`` that whose SYNC last told the time of the table, ``time_error_s``
+    the last SYNC's time less the expected; ``setpoint`` and
     ``memory`` are the control law's; ``orbit`` and ``upload`` are elements from the ground, those in use
     (None: the table's orbit) and those not loaded yet; ``sent`` are the counters of fsw's own messages;
     ``wheel`` is None without a wheel that can be driven; ``violated`` is the monitor that is, 0: none.
@@ -54,6 +55,7 @@ class FlightState:
     tick: int = -1
     field_tick: int = -1
     status_tick: int = -1
+    time_tick: int = -1
     ignored_syncs: int = 0
     syncs: SyncWatch = field(default_factory=SyncWatch)
     time_error_s: int = 0

@@ -84,6 +84,7 @@ def _write_flight_state(out: BytesWriter, value: FlightState) -> None:
     write_i64_le(out, value.tick)
     write_i64_le(out, value.field_tick)
     write_i64_le(out, value.status_tick)
+    write_i64_le(out, value.time_tick)
     write_i64_le(out, value.ignored_syncs)
     _write_sync_watch(out, value.syncs)
     write_i64_le(out, value.time_error_s)

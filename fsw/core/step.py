@@ -26,6 +26,7 @@ from fsw.core.gate.sync_watch import Belief, judge_sync, near
 from fsw.core.laws import by_mode
 from fsw.core.laws.interface import Demand, FieldSample, LawInput
 from fsw.core.laws.plan.constant_torque import constant_torque
+from fsw.core.monitors import MOST_TIME_ERROR_S
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, plausible, reference_at, with_orbit
 from fsw.core.restart import begin_count
 from fsw.core.state import FlightState, Inbox
@@ -66,7 +67,7 @@ def step(state: FlightState, inbox: Inbox, config: FlightConfig) -> Outbox:
     _skip_ticks(state, tick, config)
     model = with_orbit(config.ephemeris, state.orbit)
     measurements = _gate(state, tick, frames, config)
-    state.time_error_s = inbox.unix_time_s - (config.epoch_unix_s + tick // config.tick_hz)
+    _compare_time(state, inbox.unix_time_s, config)
     ticks = tick - before.tick if before.tick >= 0 else 1
     motion = wheel.wheel_motion(state.wheel, tick, ticks, config.wheel)
     reference = _predict(state, model, before.tick, motion, config)
@@ -99,10 +100,17 @@ def _skip_ticks(state: FlightState, tick: int, config: FlightConfig) -> None:
     timing = config.coils.pulses
     if state.tick < 0:
         state.pulses = pulses.boot(tick, timing)
-        state.field_tick = state.status_tick = tick
+        state.field_tick = state.status_tick = state.time_tick = tick
     elif state.tick < tick - 1:
         pulses.delay(state.pulses, tick, tick - state.tick - 1)
         state.coil.past_am2, state.coil.idle_ticks = (), 0
+
+
+def _compare_time(state: FlightState, unix_time_s: int, config: FlightConfig) -> None:
+    """Compare the time of the SYNC with that of the table, by which field, Sun and orbit are computed."""
+    state.time_error_s = unix_time_s - (config.epoch_unix_s + state.tick // config.tick_hz)
+    if abs(state.time_error_s) <= MOST_TIME_ERROR_S:
+        state.time_tick = state.tick
 
 
 def _gate(state: FlightState, tick: int, frames: tuple[Frame, ...], config: FlightConfig) -> Measurements:

@@ -22,6 +22,7 @@ def supervise(state: FlightState, config: FlightConfig) -> Monitor | None:
         pending_impulse_body_nms=state.pulses.pending_impulse_body_nms,
         field_age_ticks=state.tick - state.field_tick,
         status_age_ticks=state.tick - state.status_tick,
+        time_age_ticks=state.tick - state.time_tick,
         unexpected_drive=state.health.coils.stuck,
         orbit_available=state.ephemeris is not None,
         second_sender=state.second_sender.detected,

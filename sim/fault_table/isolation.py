@@ -52,13 +52,14 @@ PULSE_S = 3
 LEAST_PULSES = 5
 """Pulses of a coil that suffice to isolate it if it is faulty."""
 UnitOf = Callable[[ReportedEvent], str]
-SECOND_SENDER = "second sender"
+SECOND_SENDER, CLOCK = "second sender", "clock"
 
 _UNIT_OF_MONITOR = {
     Monitor.FIELD_FRESH: "magnetometer",
     Monitor.COIL_STATUS_FRESH: "coil board",
     Monitor.COIL_AS_COMMANDED: "coil board",
     Monitor.NO_SECOND_SENDER: SECOND_SENDER,
+    Monitor.TIME_AGREES: CLOCK,
 }
 
 
@@ -73,7 +74,7 @@ MONITORS: dict[int, UnitOf] = {Number.MONITOR_TRIPPED: _unit_of_trip}
 
 def can_isolate(unit: str) -> bool:
     """Whether the flight software has an event that isolates this unit."""
-    return unit == SECOND_SENDER or any(unit in units.values() for units in UNITS.values())
+    return unit in (SECOND_SENDER, CLOCK) or any(unit in units.values() for units in UNITS.values())
 
 
 def isolations(record: FaultFlightRecord) -> list[tuple[int, str]]:
@@ -85,6 +86,8 @@ def isolations(record: FaultFlightRecord) -> list[tuple[int, str]]:
 def _isolated_by(event: ReportedEvent) -> str | None:
     if event.number == Number.SECOND_SENDER:
         return SECOND_SENDER
+    if (event.number, event.argument) == (Number.MONITOR_TRIPPED, Monitor.TIME_AGREES):
+        return CLOCK
     return isolated_unit(event.number, event.argument)
 
 

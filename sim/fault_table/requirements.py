@@ -14,7 +14,7 @@ from fsw.core.fdir.faults import CoilFault, SensorFault
 from fsw.core.fdir.sensors.plausibility import SHADOW_M
 from fsw.core.gate.second_sender import SIGNS
 from fsw.core.gate.sync_watch import LEAP_S
-from fsw.core.monitors import UNIT_TOLERANCE, Monitor
+from fsw.core.monitors import MOST_TIME_ERROR_S, TIME_STALE, UNIT_TOLERANCE, Monitor
 from fsw.core.orbit.earth import RADIUS_M
 from sim.fault_table.wrong_estimates import ALONE_DEG, WRONG_DEG, WRONG_S
 
@@ -96,6 +96,12 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         Monitor.NO_SECOND_SENDER,
         "No other node sends in the place of the flight software; while one does, no pulse is requested.",
         "until `fdir.second_sender_s` after the last sign",
+    ),
+    _trip(
+        10,
+        Monitor.TIME_AGREES,
+        "The time on the bus is that of the onboard table, by which field, Sun and orbit are computed.",
+        f"a SYNC within {MOST_TIME_ERROR_S} s of it in {TIME_STALE} times `modes.stale_after_s`",
     ),
     _sensor(
         1,

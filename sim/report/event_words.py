@@ -45,6 +45,7 @@ _MONITORS: dict[int, str] = {
     Monitor.COIL_AS_COMMANDED: "a coil is driven that was not requested",
     Monitor.ORBIT_KNOWN: "the orbit has no position",
     Monitor.NO_SECOND_SENDER: "another node sends as the flight software",
+    Monitor.TIME_AGREES: "the time on the bus is not that of the onboard table",
 }
 _SENSOR_FAULTS: dict[int, str] = {
     SensorFault.SATURATED: "saturated",

@@ -14,6 +14,7 @@ WELL = MonitorInput(
     pending_impulse_body_nms=(1e-4, -2e-4, 3e-4),
     field_age_ticks=59,
     status_age_ticks=59,
+    time_age_ticks=119,
     unexpected_drive=False,
     orbit_available=True,
     second_sender=False,
@@ -42,7 +43,7 @@ def owing(*impulse):
         with_q(1.0, 0.0, 0.0, 0.0),
         with_q(*(c * (1.0 + 4e-7) for c in Q)),
         with_rate(0.499, -0.499, 0.499),
-        WELL.replace(field_age_ticks=0, status_age_ticks=0),
+        WELL.replace(field_age_ticks=0, status_age_ticks=0, time_age_ticks=0),
     ],
 )
 def test_all_is_well(watched):
@@ -68,6 +69,7 @@ TRIPS = [
     (Monitor.COIL_AS_COMMANDED, WELL.replace(unexpected_drive=True)),
     (Monitor.ORBIT_KNOWN, WELL.replace(orbit_available=False)),
     (Monitor.NO_SECOND_SENDER, WELL.replace(second_sender=True)),
+    (Monitor.TIME_AGREES, WELL.replace(time_age_ticks=120)),
 ]
 
 
@@ -101,6 +103,7 @@ def test_of_several_violations_the_first_of_the_list_is_named():
         (nan, 0.0, 0.0),
         99,
         99,
+        120,
         True,
         False,
         True,

@@ -286,7 +286,8 @@ def test_skips_do_not_shorten_a_back_off(make_world, ahead):
     """Whether ticks were lost or never were nothing tells: those that are answered count."""
     world, fires = make_world(knowledge="perfect"), []
     for count in range(330):
-        inbox = world.inbox().replace(tick=count * ahead)
+        tick = count * ahead
+        inbox = world.inbox().replace(tick=tick, unix_time_s=world.config.epoch_unix_s + tick)
         world.state, outbox = stepped(world.state, inbox, world.config)
         world.plant.end_tick()
         fires += [count for _ in of(CoilFire, decoded(outbox))]

@@ -8,6 +8,7 @@ from flight_states import stepped
 from replies import events_of, of
 
 from fsw.core.algebra.vector import dot, norm
+from fsw.core.monitors import Monitor
 from fsw.core.state_bytes import checksum
 from fsw.core.step import boot
 from fsw.core.telemetry import Event
@@ -236,6 +237,17 @@ class TestTicks:
         """unix_time_s = epoch + tick // tick_hz: at 4 Hz it stands for four ticks, and that is right."""
         world = make_world(time={"tick_hz": 4})
         assert [e for e in events_of(world.fly(41)) if e[1] == Event.TIME_MISMATCH] == []
+
+    @pytest.mark.parametrize(("off_s", "refused"), [(60, False), (-60, False), (61, True), (-600, True)])
+    def test_another_time_than_the_table_s_is_refused_after_two_minutes(self, make_world, off_s, refused):
+        """By the time of the table field, Sun and orbit are computed: at another they are not these."""
+        world = make_world()
+        tripped = []
+        for tick in range(122):
+            replies = world.step(lambda inbox: inbox.replace(unix_time_s=inbox.unix_time_s + off_s))
+            tripped += [(tick, *e[1:]) for e in events_of([replies]) if e[1] == Event.MONITOR_TRIPPED]
+        assert tripped == ([(120, Event.MONITOR_TRIPPED, Monitor.TIME_AGREES)] if refused else [])
+        assert (world.state.modes.mode is Mode.SAFE) is refused
 
 
 class TestEvents:

@@ -69,6 +69,12 @@ def test_freshness_is_counted_from_the_last_message(world, supervised, name, mon
     assert supervised(**{name: TICK - stale}).violated is monitor
 
 
+def test_another_time_than_the_table_s_is_borne_twice_as_long(world, supervised):
+    stale = 2 * world.config.stale_after_ticks
+    assert supervised(time_tick=TICK - stale + 1).violated is None
+    assert supervised(time_tick=TICK - stale).violated is Monitor.TIME_AGREES
+
+
 def test_an_impulse_that_is_no_number_trips(world, supervised):
     pulses = replace(world.state.pulses, pending_impulse_body_nms=(0.0, float("nan"), 0.0))
     assert supervised(pulses=pulses).violated is Monitor.OWED_FINITE
