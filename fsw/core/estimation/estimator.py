@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import ClassVar, final
+from typing import ClassVar, Final, final
 
 from fsw.core.algebra.vector import ZERO, Vec3, dot, norm
 from fsw.core.estimation import mekf
@@ -38,9 +38,10 @@ from fsw.wire.value import Value
 
 MAX_ELAPSED_S = 60.0
 """After a longer silence the filter restarts instead of predicting."""
-EASED = 2.0
-"""Factor on the standard deviations of attitude, rate and bias when the estimate is eased."""
-MOST_EASINGS = 2
+EASED: Final = 2.0
+"""Factor on the standard deviations of attitude, rate and bias when the estimate is eased, and from then on
+on the bounds of what changes."""
+MOST_EASINGS: Final = 2
 """Beyond four times its bounds, nothing is a change of this satellite."""
 CELLS_RESTART = 2.0
 """Factor on the standard deviations of attitude and rate when the parameters start anew, with cells."""
@@ -154,9 +155,14 @@ def predict(
     if len(driven) * config.mekf.tick_s > MAX_ELAPSED_S + 1e-6:
         restart(state)
         return
-    _predict(state.estimate, reference, driven, config, wheel, 4.0 ** min(state.easings, MOST_EASINGS))
+    _predict(state.estimate, reference, driven, config, wheel, _eased_variance(state))
     if not mekf.healthy(state.estimate):
         restart(state)
+
+
+def _eased_variance(state: EstimatorState) -> float:
+    """By what factor the variance of what changes grows, for it exceeded its bounds so often."""
+    return EASED ** (2 * min(state.easings, MOST_EASINGS))
 
 
 def _predict(
