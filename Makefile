@@ -11,6 +11,7 @@
 # make same-flights SINCE=COMMIT   are all flights byte for byte those of the commit? a quarter of an hour
 # make replay-elsewhere   does a log of 20 orbits replay with other processor features, into docs/replay.md
 # make bench      how fast flights are beside Basilisk in the same minutes, into docs/performance.md: ten minutes
+# make basilisk   fly the flight software over Basilisk's spacecraft beside our own plant, into docs/basilisk.md: two minutes
 # make scaling    what a campaign costs beside its flights, and what 10^6 runs take, into docs/scaling.md: ten minutes
 # make soak       72 simulated hours, and an hour on the bench in real time, into docs/soak.md
 # make golden     record the golden logs again: after a change that means to alter the answers of fsw
@@ -41,7 +42,7 @@ compiled := .venv/.compiled
 pip := TORQUER_INTERPRETED=1 $(bin)/pip install --quiet --disable-pip-version-check --no-compile
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv environment compiled sil test test-interpreted test-long test-unpaced test-paced lint docs docs-gallery notebooks test-vcan test-chromium evidence gains population validate comparison faults pulse-limits sizing golden same-flights fuzz scenarios attack differential replay-elsewhere bench scaling soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv environment compiled sil test test-interpreted test-long test-unpaced test-paced lint docs docs-gallery notebooks test-vcan test-chromium evidence gains population validate comparison faults pulse-limits sizing golden same-flights fuzz scenarios attack differential replay-elsewhere bench basilisk scaling soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -156,6 +157,21 @@ replay-elsewhere: venv
 
 bench: venv
 	$(bin)/python tools/bench.py
+
+# the environment that make bench makes too: Basilisk is no part of ours
+peer := build/basilisk
+peer_installed := $(peer)/.example-installed
+
+$(peer_installed):
+	@echo 'Making the environment $(peer), with Basilisk'
+	@test -x $(peer)/bin/python || $(PYTHON) -m venv $(peer)
+	@$(peer)/bin/pip install --quiet --disable-pip-version-check 'bsk>=2.12' 'h5py>=3.11'
+	@touch $@
+
+basilisk: export OPENBLAS_NUM_THREADS = 1
+
+basilisk: venv $(peer_installed)
+	$(peer)/bin/python examples/basilisk_plant/compare.py --page docs/basilisk.md
 
 scaling: venv
 	$(bin)/python tools/scaling.py
