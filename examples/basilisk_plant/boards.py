@@ -171,8 +171,10 @@ class SensorBoard:
     tick_hz: int
 
     def begin_tick(self, tick: int, vector: Vec3, valid: bool) -> list[Frame]:
-        """The frames of this tick."""
-        axes = [min(max(round(axis / self.scale), -(2**15)), 2**15 - 1) if valid else 0 for axis in vector]
+        """The frames of this tick; a sample that is not valid is sent as zeros."""
+        axes = [round(axis / self.scale) for axis in vector]
+        if not valid or not all(-(2**15) <= axis < 2**15 for axis in axes):  # out of range: not valid either
+            valid, axes = False, [0, 0, 0]
         signals = [(8 + 16 * place, 16, raw) for place, raw in enumerate(axes)]
         sample = encode(self.sample_id, 8, tick, (4, 1, int(valid)), *signals)
         boots = [boot(self.boot_id)] if tick == 0 else []

@@ -92,3 +92,14 @@ def test_a_second_request_is_refused_while_a_coil_is_on_and_a_repeated_one_befor
     found = flown(1, {100: [request(100)], 101: [request(101, seq=8), request(101)]}, 103)[102]
     assert [frame.data[2] for frame in found if frame.can_id == boards.COIL_REFUSED] == [7, 3]
     assert status(found) == (-2, 1, 1000, 101000, 7)
+
+
+@pytest.mark.parametrize(("vector", "valid"), [((2e-5, -4e-5, 0.0), 1), ((7e-5, 0.0, 0.0), 0)])
+def test_a_sample_beyond_its_range_is_not_valid(vector, valid):
+    board = boards.SensorBoard(boards.MAG_FIELD, boards.MAG_BOOT, boards.MAG_HEARTBEAT, 2e-9, 1)
+    booted, sample = board.begin_tick(0, vector, True)
+    assert booted == boards.boot(boards.MAG_BOOT)
+    assert boards.unsigned(sample.data, 4, 1) == valid
+    assert [boards.signed(sample.data, first, 16) for first in (8, 24, 40)] == (
+        [10_000, -20_000, 0] if valid else [0, 0, 0]
+    )
