@@ -44,6 +44,22 @@ from satellite import Array, Satellite, Scenario, State, epoch_unix_s, orbit_s, 
 LEAST_LIT = 0.5
 """Part of the Sun's disc below which the Sun sensor has no reading, as in the own plant."""
 
+MODELLED = {
+    *(
+        "inertia_kgm2",
+        "torque_nm",
+        "residual_dipole_am2",
+        "driver",
+        "backoff",
+        "backoff_s",
+        "pulse_s",
+        "levels_am2",
+    ),
+    *("dipole_per_ampere_am2", "coil_field_nt_per_am2", "noise_nt", "noise_deg"),
+    *("on_fraction", "time_constant_s", "quantum_nt", "quantum", "saturation_nt"),  # too small to matter here
+}
+"""Keys of body, coils, disturbance and sensors; any other must be as if it were not there."""
+
 
 class Plant:
     """The satellite and its boards.
@@ -171,31 +187,43 @@ def fly(scenario_path: Path, orbits: float, seed: int, out: Path) -> float:
 
 def refuse_what_is_not_modelled(scenario: Scenario) -> None:
     """Say so rather than fly another satellite than that of the scenario."""
-    body, coils = scenario["body"], scenario["coils"]
-    unmodelled = {
-        "orbit.tle is missing": "tle" not in scenario["orbit"],
+    sensors, coils = scenario["sensors"], scenario["coils"]
+    found = {
+        "orbit without a TLE": "tle" not in scenario["orbit"],
+        "orbit.along_track_km": scenario["orbit"]["along_track_km"] != 0.0,
+        "knowledge": scenario["knowledge"] != "filter",
+        "field": scenario["field"]["model"] != "igrf14" or scenario["field"]["storm_nt"] != 0.0,
         "coils.driver": coils["driver"] != "pulsed",
         "coils.backoff": coils["backoff"] != "shared",
-        "knowledge": scenario["knowledge"] != "filter",
-        "field.model": scenario["field"]["model"] != "igrf14",
-        "body.wheel_nms": any(body["wheel_nms"]),
-        "wheel": "wheel" in scenario,
-        "sensors.cells": "cells" in scenario["sensors"],
-        "fault": bool(scenario["fault"]),
-        "telecommand": bool(scenario["telecommand"]),
+        **{key: bool(scenario.get(key)) for key in ("wheel", "fault", "telecommand")},
+        "sensors.cells": "cells" in sensors,
     }
-    if named := [key for key, is_there in unmodelled.items() if is_there]:
+    sections = {
+        "body": scenario["body"],
+        "coils": coils,
+        "disturbance": scenario["disturbance"],
+        "sensors.magnetometer": sensors["magnetometer"],
+        "sensors.sun": sensors.get("sun", {}),
+    }
+    for name, section in sections.items():
+        for key, value in section.items():
+            nothing = 1.0 if key in ("scale", "dipole_scale") else 0.0
+            found[f"{name}.{key}"] = key not in MODELLED and not np.all(np.array(value) == nothing)
+    if named := [key for key, is_there in found.items() if is_there]:
         raise SystemExit(f"basilisk_plant: not modelled here: {', '.join(named)}")
+
+
+def relative_motion(state: State) -> tuple[Array, Array]:
+    """q_body_from_orbit, scalar first, and omega_body_orbit_radps."""
+    orbit_from_eci, rate_radps = orbital_frame(state.r_eci_m, state.v_eci_mps)
+    body_from_orbit = state.body_from_eci @ orbit_from_eci.T
+    omega_body_orbit_radps = state.omega_body_radps - rate_radps * body_from_orbit[:, 2]
+    return RigidBodyKinematics.C2EP(body_from_orbit), omega_body_orbit_radps
 
 
 def write_truth(path: Path, states: list[State], m_body_am2: Array, epoch: int, tick_hz: int) -> None:
     """The truth by tick, a dataset each."""
-    q, omega_body_orbit_radps = [], []
-    for state in states:
-        orbit_from_eci, rate_radps = orbital_frame(state.r_eci_m, state.v_eci_mps)
-        body_from_orbit = state.body_from_eci @ orbit_from_eci.T
-        q.append(RigidBodyKinematics.C2EP(body_from_orbit))
-        omega_body_orbit_radps.append(state.omega_body_radps - rate_radps * body_from_orbit[:, 2])
+    q, omega_body_orbit_radps = zip(*map(relative_motion, states), strict=True)
     histories = {
         "t_s": np.arange(len(states)) / tick_hz,
         "q_body_from_orbit": np.array(q),
