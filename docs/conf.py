@@ -55,6 +55,7 @@ EVIDENCE = (
     "comparison",
     "pulse-limits",
     "performance",
+    "basilisk",
     "scaling",
 )
 EVIDENCE += ("soak", "mutation", "replay")

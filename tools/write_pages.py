@@ -115,6 +115,13 @@ EVIDENCE = (
         "{0} times real time, {1} of Basilisk in C",
     ),
     Evidence(
+        "basilisk",
+        "the flight software over another simulator's plant",
+        "make basilisk",
+        r"^\| \d+ \| own \| ([\d.]+) \|.*\n\| \d+ \| Basilisk \| ([\d.]+) \|",
+        "{1} deg over Basilisk, {0} deg over the own plant",
+    ),
+    Evidence(
         "scaling",
         "campaigns of many runs",
         "make scaling",
