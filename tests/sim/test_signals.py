@@ -12,6 +12,14 @@ import pytest
 from sim.signals import EndedBySignal, raise_on_signals
 
 
+@pytest.fixture(autouse=True)
+def not_under_nohup():
+    """A hangup that is ignored from the start stays so: as under nohup, where these tests may run."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
+
+
 @pytest.mark.parametrize(("signum", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)])
 def test_the_first_is_raised_and_more_do_not_disturb_the_cleaning_up(signum, code):
     before = signal.getsignal(signum)
