@@ -29,7 +29,7 @@ FIGURES = {
     "inertia_percent": 7.3,
     "misalignment_deg": 1.15,
 }
-FLIGHTS = 7 * 2 - 2 + 3 * 2
+FLIGHTS = 9 * 2 - 2 + 3 * 2
 """Two satellites of each study, of which none of those with a large dipole, and one of two sizes of each."""
 
 

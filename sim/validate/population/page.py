@@ -126,6 +126,8 @@ def reached_table(populations: Mapping[str, Flights]) -> list[str]:
     head = [f"within {most:g} deg [%]" for most in REACHED_DEG]
     lines = [_row("satellites", "median [deg]", *head), "|---" * (2 + len(head)) + "|"]
     for name, flights in populations.items():
+        if not flights:
+            continue
         errors = sorted(flight.figures["pointing_deg"] for flight in flights)
         shares = [100.0 * sum(error <= most for error in errors) / len(errors) for most in REACHED_DEG]
         lines.append(_row(name, f"{median(errors):.2f}", *(f"{share:.0f}" for share in shares)))

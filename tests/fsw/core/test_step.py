@@ -238,6 +238,7 @@ class TestTicks:
         world = make_world(time={"tick_hz": 4})
         assert [e for e in events_of(world.fly(41)) if e[1] == Event.TIME_MISMATCH] == []
 
+    @pytest.mark.requirement("REQ-TRIP-10")
     @pytest.mark.parametrize(("off_s", "refused"), [(60, False), (-60, False), (61, True), (-600, True)])
     def test_another_time_than_the_table_s_is_refused_after_two_minutes(self, make_world, off_s, refused):
         """By the time of the table field, Sun and orbit are computed: at another they are not these."""

@@ -150,4 +150,4 @@ def test_nothing_flown_is_drawn_empty(tmp_path):
     nothing = {quantity: [] for quantity in QUANTITIES}
     draw_satellites({"50kg": [], "3u": [], "6u": []}, tmp_path / "one.svg")
     draw_sweep(nothing, tmp_path / "two.svg")
-    assert "0 of 9 flights" in page([], {"50kg": []}, nothing, ["a", "b"], "0 of 9 flights.")
+    assert "0 of 9 flights" in page([], {"50kg": []}, {}, nothing, ["a", "b"], "0 of 9 flights.")
