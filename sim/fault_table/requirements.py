@@ -148,7 +148,8 @@ REQUIREMENTS: tuple[Requirement, ...] = (
         "REQ-SENSOR-07",
         "A contradiction between the sensors that does not show which is wrong isolates nothing: it is "
         "reported, the filter ends, and does not begin before they have agreed for longer; until it is "
-        "proven no attitude is valid. Likewise innovations that are too large, and impossible parameters.",
+        "proven no attitude is valid. Likewise innovations that are too large, and impossible parameters; a "
+        "proven filter is eased before, once.",
         f"{ISOLATES}; parameters: {SIGMAS:g} standard deviations of their priors",
         None,
         Event.SENSORS_DISAGREE,
