@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from sim.campaign.flight import Order, record_order
 from sim.campaign.population import satellite
 from sim.scenario.schema import flight_table, load
 
@@ -37,3 +38,10 @@ def test_the_onboard_table_is_that_of_microsat():
     assert (real.control.law, nominal.control.law) == ("pulse_mpc", "mpc")
     same = {"leak_s": nominal.control.leak_s, "law": nominal.control.law}
     assert real.control.model_copy(update=same) == nominal.control
+
+
+@pytest.mark.long
+def test_the_flight_that_the_readme_begins_with_meets_what_it_requires():
+    summary = record_order(Order("realsat")).summary()
+    assert [requirement["verdict"] for requirement in summary["requirements"]] == ["met"] * 3
+    assert summary["isolated"] == []
