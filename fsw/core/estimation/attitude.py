@@ -39,23 +39,20 @@ class Attitude(Value):
 
     def invalid(self) -> "Attitude":
         """The same attitude, neither valid nor usable."""
-        return Attitude(
-            self.q_body_from_orbit,
-            self.omega_body_orbit_radps,
-            self.sigma3_attitude_rad,
-            self.sigma3_rate_radps,
-            False,
-        )
+        return self._not_valid(usable=False)
 
     def doubted(self) -> "Attitude":
         """The same attitude, as usable as it is, but not valid."""
+        return self._not_valid(usable=self.usable)
+
+    def _not_valid(self, usable: bool) -> "Attitude":
         return Attitude(
             self.q_body_from_orbit,
             self.omega_body_orbit_radps,
             self.sigma3_attitude_rad,
             self.sigma3_rate_radps,
             False,
-            self.usable,
+            usable,
         )
 
 
