@@ -43,4 +43,7 @@ def fly(port: int, ticks: int, epoch_unix_s: int) -> None:
 
 
 if __name__ == "__main__":
-    fly(*map(int, sys.argv[1:]))
+    try:
+        fly(*map(int, sys.argv[1:]))
+    except ConnectionRefusedError:
+        sys.exit(f"nothing listens on port {sys.argv[1]}: start torquer fsw --bus loop:{sys.argv[1]} first")

@@ -187,7 +187,7 @@ def _judge(state: FlightState, observation: Observation, wheel_nms: Vec3, config
     state.attitude = observation.attitude
     reference, findings, tick = observation.reference, observation.findings, state.tick
     if reference is not None and findings is not None:
-        settled = state.syncs.settled(tick)
+        settled = state.syncs.settled(tick) and state.time_tick == tick
         evidence = Evidence(tick, findings, state.coil, reference, observation.used, settled, wheel_nms)
         state.attitude = fdir.judge(state.health, state.estimator, state.attitude, evidence, config.fdir)
 

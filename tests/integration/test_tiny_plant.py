@@ -31,6 +31,13 @@ def test_it_needs_nothing_but_the_standard_library():
     assert not [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
 
 
+def test_without_a_hub_it_says_what_is_missing(port):
+    words = [sys.executable, str(EXAMPLE), str(port), "20", str(EPOCH)]
+    ended = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
+    assert ended.returncode == 1
+    assert ended.stderr == f"nothing listens on port {port}: start torquer fsw --bus loop:{port} first\n"
+
+
 @pytest.mark.long
 def test_each_tick_is_answered_and_closed(start, wait_for, port):
     answers = flown(start, wait_for, port, 20, EPOCH)

@@ -54,8 +54,9 @@ class Evidence:
     """What health is judged by in one tick.
 
     ``findings`` are of all that the sensors sent; ``view`` is that of the coil driver; ``used`` is what the
-    filter took. ``settled``: the time is not in doubt; otherwise field and Sun may be those of another,
-    and no sensor is judged by them. ``wheel_nms`` is the momentum of a driven wheel, body axes.
+    filter took. ``settled``: the time is not in doubt, and the bus tells that of the table; otherwise field
+    and Sun may be those of another, and no sensor is judged by them. ``wheel_nms`` is the momentum of a
+    driven wheel, body axes.
     """
 
     __slots__ = ("findings", "reference", "settled", "tick", "used", "view", "wheel_nms")

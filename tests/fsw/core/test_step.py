@@ -250,6 +250,16 @@ class TestTicks:
         assert tripped == ([(120, Event.MONITOR_TRIPPED, Monitor.TIME_AGREES)] if refused else [])
         assert (world.state.modes.mode is Mode.SAFE) is refused
 
+    @pytest.mark.requirement("REQ-TRIP-10")
+    @pytest.mark.parametrize("hidden", [False, True], ids=["the bus tells it", "the bus hides it"])
+    def test_by_another_time_than_the_table_s_no_sensor_is_judged(self, make_world, hidden):
+        """Field and Sun contradict each other then: that isolates a sensor only if the time agrees."""
+        world = make_world(flight={"time": {"epoch_utc": "2015-03-27T02:56:57Z"}})
+        off_s = 600 if hidden else 0
+        replies = world.fly(900, lambda inbox: inbox.replace(unix_time_s=inbox.unix_time_s + off_s))
+        isolated = [event for event in events_of(replies) if event[1] == Event.SENSOR_ISOLATED]
+        assert (isolated != []) is hidden
+
 
 class TestEvents:
     def test_of_an_undisturbed_flight(self, flight):

@@ -28,6 +28,8 @@ PULSES: Final = 3
 NONE: Final = -1
 ALL: Final = -2
 """In place of a coil: no coil is faulty, or all are equally weak."""
+LEAST_MEASURED: Final = 1e-3
+"""Part of a pulse's variance that measurements have taken away; with less they say nothing of it."""
 STRAY: Final = 3
 """STRAY + j is the number, as a cause, of a stray current in coil j; j itself that of a pulse."""
 
@@ -153,10 +155,22 @@ class _Among:
 
 
 def sum_pulses(solution: Solution, indices: list[int], test: WeakTest) -> PartSum:
-    """Sum up what some pulses of a coil show of it, each by itself."""
-    variances = solution.covariance.diagonal()[indices] + solution.uncertain[indices] ** 2
+    """Sum up what some pulses of a coil show of it, each by itself.
+
+    By its measurements alone: the deviation d and variance c that were solved for hold the prior of each
+    pulse, 0 with variance 1, which says nothing of the coil and would count as often as there are pulses.
+    Without it, 1/v = 1/c - 1 and d v / c, so that d / (1 - c) has the variance c / (1 - c).
+    """
     found = NO_PULSES
-    for part, variance in zip(solution.part[indices].tolist(), variances.tolist(), strict=True):
+    variances = solution.covariance.diagonal()
+    for index in indices:
+        variance = float(variances[index])
+        measured = 1.0 - variance
+        if measured < LEAST_MEASURED:
+            continue
+        deviation = float(solution.deviation[index])
+        part = float(solution.part[index]) - deviation + deviation / measured
+        variance = variance / measured + float(solution.uncertain[index]) ** 2
         found = found.add(weigh_pulse(part, variance, test))
     return found
 

@@ -1,6 +1,7 @@
 """Which coil a solution isolates: by how much, how surely, and never one of two that look alike."""
 
 from dataclasses import astuple, replace
+from math import sqrt
 
 import numpy as np
 import pytest
@@ -96,26 +97,46 @@ class TestPulsesTracedNoLonger:
     """Pulses that show little by themselves add up, beyond those that are traced."""
 
     UNSURE = ((1, 2, 1, 1), (-0.8, 0.02, -0.75, -0.7), (0.2, 0.05, 0.2, 0.2))
-    WEIGHT = 1.0 / (0.2**2 + 0.05**2)
+    WEIGHT = 1.0 / (0.2**2 / (1.0 - 0.2**2) + MODEL_ERROR**2)
 
     def sums(self, part):
         return self.WEIGHT, self.WEIGHT * part, self.WEIGHT * part**2
+
+    @staticmethod
+    def solved(coil, errors, variances):
+        """The solution of pulses that lack ``errors``, each measured by itself with its own variance."""
+        solved = [variance / (1.0 + variance) for variance in variances]
+        deviation = [error / (1.0 + variance) for error, variance in zip(errors, variances, strict=True)]
+        return solution((coil,) * len(errors), deviation, np.sqrt(solved))
 
     def older(self, coil, part, pulses=2):
         parts = PartSum(*(pulses * each for each in (1, *self.sums(part))))
         return tuple(Older(parts) if coil == other else NOTHING_OLDER for other in range(3))
 
     def test_what_pulses_show_is_their_part_by_its_variance_and_what_is_uncertain(self):
-        found = sum_pulses(
-            solution((2, 0, 1, 2), (-0.6, 0.1, -1.0, -0.5), (0.12, 0.2, 0.01, 0.12)), [0, 3], WEAK
-        )
-        first = second = 1.0 / (0.12**2 + 0.05**2)
+        found = sum_pulses(self.solved(2, (-0.6, -0.5), (0.12**2, 0.9)), [0, 1], WEAK)
+        first, second = 1.0 / (0.12**2 + MODEL_ERROR**2), 1.0 / (0.9 + MODEL_ERROR**2)
         squares = 0.4**2 * first + 0.5**2 * second
         assert astuple(found) == pytest.approx((2, first + second, 0.4 * first + 0.5 * second, squares))
 
+    def test_many_that_show_little_agree_with_the_coil_and_not_with_what_was_assumed(self):
+        rng = np.random.default_rng(11)
+        variance, weak = 9.0, 0.3
+        errors = weak - 1.0 + sqrt(variance) * rng.standard_normal(4000)
+        summed = NO_PULSES
+        for error in errors:
+            summed = summed.add(sum_pulses(self.solved(1, (error,), (variance,)), [0], WEAK))
+        mean, sigma = summed.weighted / summed.weight, 1.0 / sqrt(summed.weight)
+        assert sigma == pytest.approx(sqrt(variance / 4000), rel=0.01)
+        assert abs(mean - weak) < 4.0 * sigma
+
+    def test_one_that_was_not_measured_shows_nothing(self):
+        assert sum_pulses(solution((0, 0), (-0.9, -0.01), (1.0, 0.9999)), [0, 1], WEAK) == NO_PULSES
+
     def test_the_oldest_gives_its_place_once_so_many_are_traced(self):
         traced = solution(*self.UNSURE)
-        assert astuple(oldest_pulse(traced, 1, WEAK)) == pytest.approx((1, *self.sums(0.3)))
+        part = 1.0 - 0.7 / (1.0 - 0.2**2)
+        assert astuple(oldest_pulse(traced, 1, WEAK)) == pytest.approx((1, *self.sums(part)))
         assert oldest_pulse(traced, 2, WEAK) == oldest_pulse(traced, 0, WEAK) == NO_PULSES
 
     def test_they_count_with_those_that_are(self):
