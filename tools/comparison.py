@@ -28,7 +28,7 @@ from sim.drawing.page_parts import Table
 from sim.errors import HarnessError
 from sim.record.destination import check_file
 from sim.record.whole_file import replace_text
-from sim.report.figures.controlled import Controlled
+from sim.scenario.controlled import Controlled
 from sim.tuning.cost import BY_RATE
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -10,7 +10,7 @@ from sim.compare.case import Driver
 from sim.compare.score import Score
 from sim.drawing.canvas import AXES_COLOURS, MUTED, style
 from sim.record.whole_file import replacing
-from sim.report.figures.controlled import Controlled
+from sim.scenario.controlled import Controlled
 
 MARKS = {Driver.PULSED: ("o", AXES_COLOURS[0], 0.16), Driver.CONTINUOUS: ("D", AXES_COLOURS[1], -0.16)}
 """Of a driver: shape, colour, and place above the middle of the line."""

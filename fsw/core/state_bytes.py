@@ -236,6 +236,7 @@ def _write_estimator_state(out: BytesWriter, value: EstimatorState) -> None:
     _write_sample_batch(out, value.batch)
     _write_ints(out, value.loaded)
     write_i64_le(out, value.easings)
+    write_i64_le(out, value.wait_ticks)
 
 
 def _write_estimate(out: BytesWriter, value: Estimate) -> None:

@@ -1,12 +1,14 @@
 """The flight loop as one function, from what the boards sent to what is sent and reported."""
 
+from math import atan2
+
 from fsw.core import telemetry
 from fsw.core.actuation import own_field, pulses, read_back, wheel
 from fsw.core.actuation.actuator import actuate, update_view, wait_ticks
 from fsw.core.actuation.drives import find_drives
 from fsw.core.actuation.wheel import WheelView
 from fsw.core.algebra.quaternion import rotate
-from fsw.core.algebra.vector import ZERO, Vec3
+from fsw.core.algebra.vector import ZERO, Vec3, cross, dot, norm
 from fsw.core.commands import command
 from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import UNKNOWN
@@ -170,16 +172,25 @@ def _update(
     known = state.estimator.estimate if state.attitude.valid else None
     findings = fdir.examine(measurements, state.health, reference, config.fdir, known)
     fdir.judge_samples(measurements, state.health, findings)
-    used = update(state.estimator, measurements, reference, config.estimator, wheel_nms)
+    turn_rad = _field_turn_rad(state.sample, usable_field(measurements), state.tick)
+    used = update(state.estimator, measurements, reference, config.estimator, wheel_nms, turn_rad)
     limits = config.estimator
     attitude = orbital_attitude(
         state.estimator.estimate,
         reference,
         limits.valid_sigma_rad,
         limits.usable_sigma_rad,
+        limits.fastest_valid_radps,
         state.attitude.valid,
     )
     return Observation(measurements, reference, state.estimator, attitude, used, findings)
+
+
+def _field_turn_rad(before: FieldSample, b_body_t: Vec3 | None, tick: int) -> float:
+    """By how much the measured field has turned in the body in one tick; 0 without a sample of each."""
+    if b_body_t is None or before.tick != tick - 1:
+        return 0.0
+    return atan2(norm(cross(before.b_body_t, b_body_t)), dot(before.b_body_t, b_body_t))
 
 
 def _judge(state: FlightState, observation: Observation, wheel_nms: Vec3, config: FlightConfig) -> None:

@@ -27,8 +27,8 @@ from sim.progress import note, progress
 from sim.record.destination import check_folder
 from sim.record.run_dir import RUN, write_json
 from sim.record.whole_file import replace_text
-from sim.report.figures.controlled import SETTLED_DEG, Controlled, controlled
 from sim.report.summary_text import last_orbit
+from sim.scenario.controlled import SETTLED_DEG, Controlled, controlled
 from sim.scenario.schema import Scenario, flight_table, load, orbit_period_s, parse_settings, shipped_names
 from sim.tuning.applicable import aims_of
 from sim.tuning.cost import BY_RATE

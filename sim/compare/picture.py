@@ -11,7 +11,7 @@ from sim.compare.case import Driver
 from sim.compare.score import WINDOW_ORBITS, Result
 from sim.drawing.canvas import AXES_COLOURS, INK, MORE_COLOURS, MUTED, log_y, stacked, style, trace
 from sim.record.whole_file import replacing
-from sim.report.figures.controlled import Controlled
+from sim.scenario.controlled import Controlled
 from sim.value_types import Array
 
 COLOURS = (*AXES_COLOURS, *MORE_COLOURS, INK, "#7b3fa0", "#8a6d3b", "#8f9a1f")

@@ -15,9 +15,10 @@ from sim.errors import HarnessError
 from sim.record.truth import Histories
 from sim.report.charts.drawn_flight import whole_flight
 from sim.report.figures.coil_effort import dipole_squared_a2m4s, driven_s
-from sim.report.figures.controlled import Controlled, error_vectors
+from sim.report.figures.controlled import error_vectors
 from sim.report.figures.histories import FlightHistories
 from sim.report.figures.spans import spans
+from sim.scenario.controlled import Controlled
 from sim.scenario.schema import Scenario, orbit_period_s
 from sim.statistics.settling import settled_tick
 from sim.value_types import Array

@@ -12,7 +12,7 @@ from typing import Any
 from fsw.core.laws.entry import Aim
 from sim.compare.score import Score
 from sim.drawing.page_parts import Table
-from sim.report.figures.controlled import Controlled
+from sim.scenario.controlled import Controlled
 from sim.tuning.cost import BY_RATE
 
 SCHEMA_VERSION = 2

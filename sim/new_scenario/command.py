@@ -17,8 +17,9 @@ from sim.new_scenario.satellite import NewSatellite, gains_for
 from sim.record.destination import check_file
 from sim.scenario.names import ALLOWED, is_name
 from sim.scenario.schema import Scenario, scenario_of, shipped_names
-from sim.sizing.command import points
+from sim.sizing.command import doubt_of, points
 from sim.sizing.expectation import expect
+from sim.sizing.gravity import gravity_on
 from sim.sizing.levels import levels_against, two_digits
 from sim.sizing.scenario_warnings import scenario_warnings
 
@@ -52,8 +53,10 @@ def new(satellite: NewSatellite, out: Path | None) -> int:
     for doubt in (*figure_warnings(satellite, scenario), *scenario_warnings(scenario)):
         warn(doubt)
     expectation = expect(scenario)
-    pointing_deg = expectation.pointing_deg if points(expectation) else None
+    pointing_deg = expectation.pointing_deg if points(expectation, gravity_on(scenario)) else None
     about = "no pointing" if pointing_deg is None else f"about {pointing_deg:.1f} deg RMS"
+    if pointing_deg is not None and (doubt := doubt_of(expectation)):
+        warn(doubt)
     say(f"written: {file}; {about} to expect (torquer size {file})")
     say(f"fly it: torquer sil {file}")
     answer({"file": file, "name": scenario.name, "pointing_rms_deg": pointing_deg})

@@ -49,6 +49,14 @@ def requirement_table(summary: Json) -> Table:
     return Table(("verdict", "requirement", "why"), rows)
 
 
+def diagnosis_table(summary: Json) -> Table:
+    """What limits the pointing, if anything does, and a row for each thing that may; none of an older run."""
+    found = summary.get("diagnosis", {"findings": {}, "reasons": []})
+    rows = [("why not settled", reason["text"]) for reason in found["reasons"]]
+    rows += found["findings"].items()
+    return Table(("", "what the flight shows"), [(name, text.replace("m^2", "m²")) for name, text in rows])
+
+
 def badges(summary: Json, run: RunRecord | None, audit: AuditReport) -> list[Badge]:
     """The verdicts: requirements, limits, refusals, replay, mode, isolation, completeness.
 

@@ -85,6 +85,7 @@ def write_report(
         headline=headline.headline(summary),
         badges=headline.badges(summary, run, audit),
         tiles=headline.tiles(summary),
+        diagnosis=headline.diagnosis_table(summary),
         requirements=headline.requirement_table(summary),
         violations=tables.violations(audit),
         violations_left_out=max(0, len(audit.violations) - tables.VIOLATIONS_SHOWN),

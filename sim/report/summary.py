@@ -98,6 +98,9 @@ def summarise(
     summary |= performance.figures()
     summary["spin_radps"] = _spin(performance.spin(), audit)
     summary["requirements"] = performance.judgement.outcomes(audit, tally.out_of_use, "flown" in run)
+    if "controlled" in summary and "flown" in run:
+        settled = summary["controlled"].get("settle_orbits")
+        summary["diagnosis"] = performance.judgement.diagnosis(settled, audit, tally.out_of_use)
     summary["isolated"] = tally.isolated
     summary["event_count"] = tally.event_count
     summary["events"] = tally.events

@@ -7,6 +7,7 @@ from sim.report.requirements.judge import Outcome
 from sim.statistics.settling import HELD_S
 from sim.value_types import Json
 
+TUMBLING_DEGPS = 1.0
 _HEADS = {Outcome.MET: "met", Outcome.FAILED: "FAILED", Outcome.NOT_JUDGED: "not judged"}
 
 
@@ -34,10 +35,16 @@ def _requirements(summary: Json) -> Iterator[tuple[str, str]]:
 
 def _figures(summary: Json) -> Iterator[tuple[str, str]]:
     yield "limits", _limits(summary)
+    if (tumble := tumble_words(summary)) is not None:
+        yield "rate", tumble
     if "controlled" in summary:
         yield from _pointing(summary)
     elif "pointing_deg" in summary:
         yield "pointing", f"{summary['pointing_deg']['rms_last_orbit']:.2f} deg RMS over the last orbit"
+    reasons = [reason["text"] for one in summary.get("requirements", ()) for reason in one["reasons"]]
+    for reason in summary.get("diagnosis", {}).get("reasons", ()):
+        if reason["text"] not in reasons:
+            yield "why", reason["text"]
     if "spin_radps" in summary:
         spin = summary["spin_radps"]
         yield (
@@ -87,6 +94,21 @@ def _pointing(summary: Json) -> Iterator[tuple[str, str]]:
     axis1 = summary["axis1_deg"]
     under = _under(axis1.get("settle_orbits_5deg"), 5.0, "deg")
     yield "axis 1", f"{axis1['rms_last_orbit']:.2f} deg RMS off the vertical, {under}"
+
+
+def tumble_words(summary: Json) -> str | None:
+    """How a tumble was stopped; None of a flight that began slowly, or of an older summary."""
+    rate = summary.get("rate_degps", {"start": 0.0})
+    if rate["start"] <= TUMBLING_DEGPS:
+        return None
+    per_orbit = summary["orbits"] / summary["sim_seconds"]
+    reached = [
+        f"under {limit} deg/s from {rate[key] / 3600.0:.1f} h ({rate[key] * per_orbit:.1f} orbits) on"
+        if key in rate
+        else f"not under {limit} deg/s"
+        for limit, key in (("1", "under_1_s"), ("0.1", "under_0.1_s"))
+    ]
+    return f"{rate['start']:.1f} deg/s at the start, {rate['final']:.2f} at the end; {', '.join(reached)}"
 
 
 def _under(settled: float | None, threshold: float, unit: str) -> str:

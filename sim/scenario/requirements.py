@@ -131,7 +131,7 @@ _FORM = "write INDEX<VALUE or INDEX.WHAT<VALUE, for instance 'ape<2' or 'ape.axi
 def expectation(text: str, orbits: float) -> RequirementSection:
     """A requirement from a text such as ``ape<2``, on a flight of ``orbits`` orbits.
 
-    It is judged at the end of the flight, over its last orbit, or over the whole of a shorter flight.
+    It is judged at the end of the flight, over its last orbit; a shorter flight is not judged.
 
     Raises:
         TableError: one sentence on what is wrong.
@@ -152,9 +152,8 @@ def expectation(text: str, orbits: float) -> RequirementSection:
     unit = DEGPS if what == "spin" and INDICES[index].unit is DEG else INDICES[index].unit
     if symbol is not None and symbol != unit.symbol:
         raise TableError(f"--expect {text[:80]!r}: the unit of {index} is {unit.symbol}, not {symbol}")
-    values = {"index": index, unit.key: value, "by_orbit": orbits, "last_orbits": min(1.0, orbits)}
-    if unit is ORBITS:
-        values["by_orbit"] = max(orbits, value)
+    least = value if unit is ORBITS else 1.0
+    values = {"index": index, unit.key: value, "by_orbit": max(orbits, least), "last_orbits": 1.0}
     if what is not None:
         values["what"] = what
     return validated(RequirementSection, values, f"--expect {text[:80]!r}")

@@ -1,5 +1,6 @@
 """``torquer size``: coil levels, and what pointing to expect, of a scenario's satellite."""
 
+from dataclasses import asdict
 from itertools import permutations
 from math import pi
 
@@ -7,9 +8,10 @@ import numpy as np
 
 from sim.console import answer, say
 from sim.design.from_scenario import body_of
-from sim.errors import HarnessError
 from sim.scenario.schema import Scenario
+from sim.sizing.detumbling import detumbling, detumbling_words
 from sim.sizing.expectation import Expectation, expect
+from sim.sizing.gravity import Gravity, gravity_on, gravity_words, moments_of
 from sim.sizing.levels import MOST_LOAD, Levels, levels_against
 
 ROUNDED = 1.05
@@ -17,27 +19,26 @@ ROUNDED = 1.05
 SMALL_DEG = 15.0
 """Above it a floor by small angles is no figure: the satellite will not point."""
 SURE_DEG = 3.0
-"""Up to it flights agree with the figure."""
+"""Floor up to which flights agree with the figure."""
+STEADY_DEG = 0.6
+"""Turn between two pulses up to which they do: of four kinds of cubesat, and most of a heavier one."""
 MOST_SPREAD = 20.0
 """Ratio of the moments of inertia up to which the least level is judged by the lightest axis."""
 
 
 def size(scenario: Scenario) -> int:
-    """Print what is expected and what levels would do; 1 if the coils cannot balance the disturbance.
-
-    Raises:
-        HarnessError: its coils are driven continuously.
-    """
-    if scenario.coils.driver == "continuous":
-        raise HarnessError("size needs pulsed coils: the scenario has coils.driver = 'continuous'")
+    """Print what is expected and what levels would do; 1 if the coils cannot balance the disturbance."""
     expectation = expect(scenario)
     levels = levels_against(scenario, expectation)
-    say(as_text(scenario, expectation, levels), failed=expectation.load > 1.0)
-    answer(as_json(scenario, expectation, levels))
+    gravity = gravity_on(scenario)
+    say(as_text(scenario, expectation, levels, gravity), failed=expectation.load > 1.0)
+    answer(as_json(scenario, expectation, levels, gravity))
     return int(expectation.load > 1.0)
 
 
-def as_json(scenario: Scenario, expectation: Expectation, levels: Levels) -> dict[str, object]:
+def as_json(
+    scenario: Scenario, expectation: Expectation, levels: Levels, gravity: Gravity
+) -> dict[str, object]:
     """The same for programs."""
     body = body_of(scenario)
     return {
@@ -50,34 +51,56 @@ def as_json(scenario: Scenario, expectation: Expectation, levels: Levels) -> dic
         "field_across_coil_t": expectation.field_t,
         "disturbance_rms_nm": expectation.disturbance_nm,
         "load": expectation.load,
-        "pointing_rms_deg": expectation.pointing_deg if points(expectation) else None,
+        "gravity_holds": not gravity.away,
+        "gravity_away_nm": gravity.away_nm,
+        "detumbling": asdict(detumbling(scenario)),
+        "pointing_rms_deg": expectation.pointing_deg if points(expectation, gravity) else None,
         "floor_deg": expectation.floor_deg,
         "quantum_deg": expectation.quantum_deg,
         "ripple_deg": expectation.ripple_deg,
         "knowledge_deg": expectation.knowledge_deg,
-        "points": points(expectation),
+        "points": points(expectation, gravity),
     }
 
 
-def points(expectation: Expectation) -> bool:
-    """Whether there is a pointing error to expect: the disturbance is balanced, by small angles."""
-    return expectation.load <= 1.0 and expectation.floor_deg <= SMALL_DEG
+def points(expectation: Expectation, gravity: Gravity) -> bool:
+    """Whether there is a pointing error to expect.
+
+    Gravity does not turn the body over, and the disturbance is balanced, by small angles.
+    """
+    return not gravity.falls_over and expectation.load <= 1.0 and expectation.floor_deg <= SMALL_DEG
 
 
-def as_text(scenario: Scenario, expectation: Expectation, levels: Levels) -> str:
+def doubt_of(expectation: Expectation) -> str:
+    """Why flights may have several times the expected error; empty where they agree with it."""
+    if expectation.floor_deg > SURE_DEG:
+        return "so large an error is a lower bound: flights had it or several times as much"
+    if expectation.ripple_deg > STEADY_DEG:
+        return (
+            f"the disturbance turns it by {expectation.ripple_deg:.2g} deg between two pulses: flights of "
+            "such bodies had the expected error or several times as much, and took up to ten orbits to settle"
+        )
+    return ""
+
+
+def as_text(scenario: Scenario, expectation: Expectation, levels: Levels, gravity: Gravity) -> str:
     """What is given, what to expect and why, what levels would do."""
-    body, coils = body_of(scenario), scenario.coils
-    moments = "/".join(f"{moment:.3g}" for moment in np.linalg.eigvalsh(np.asarray(body.inertia_kgm2)))
+    body = body_of(scenario)
+    up, ahead, normal = moments_of(body)
     lines = [
-        f"{scenario.name}: J {moments} kg m^2, {body.altitude_km:.0f} km, {body.inclination_deg:.1f} deg; "
+        f"{scenario.name}: J {up:.3g} up, {ahead:.3g} ahead, {normal:.3g} along the normal, kg m^2; "
+        f"{body.altitude_km:.0f} km, {body.inclination_deg:.1f} deg; "
         f"orbit {pi / body.rate_radps / 30.0:.1f} min, {1e6 * expectation.field_t:.1f} uT across a coil",
-        f"  pulses     {coils.pulse_s:g} s every {coils.pulse_s + coils.backoff_s:g} s, levels "
-        f"{_levels(coils.levels_am2)} A m^2",
+        f"  coils      {_coils(scenario)}",
         f"  disturbed by {expectation.disturbance_nm:.2e} N m RMS: balancing it takes {expectation.load:.1%} "
         "of what the coils can give",
-        _pointing(expectation),
-        f"  levels     {_levels(levels)} A m^2 would do",
+        f"  gravity    {gravity_words(gravity)}",
+        _pointing(expectation, gravity),
     ]
+    if scenario.coils.driver == "pulsed":
+        lines.append(f"  levels     {_levels(levels)} A m^2 would do")
+    driven_freely = scenario.coils.driver == "continuous"
+    lines.append(f"  detumbling {detumbling_words(detumbling(scenario), driven_freely)}")
     turned_deg = principal_turn_deg(body.inertia_kgm2)
     if turned_deg > 0.0:
         lines.insert(
@@ -87,8 +110,8 @@ def as_text(scenario: Scenario, expectation: Expectation, levels: Levels) -> str
         )
     if expectation.load > MOST_LOAD * ROUNDED:
         lines.append(f"  note: over {MOST_LOAD:.0%} of the coils' time: they hardly turn and damp as well")
-    if points(expectation) and expectation.floor_deg > SURE_DEG:
-        lines.append("  note: so large an error is a lower bound: flights had it or several times as much")
+    if points(expectation, gravity) and (doubt := doubt_of(expectation)):
+        lines.append(f"  note: {doubt}")
     if _spread(body.inertia_kgm2) > MOST_SPREAD:
         lines.append("  note: about its lightest axis such a body turns freely: judge it by axis 1 alone")
     return "\n".join(lines)
@@ -109,13 +132,27 @@ def principal_turn_deg(inertia_kgm2: object) -> float:
     return float(np.degrees(np.arccos(min(1.0, 0.5 * (max(traces) - 1.0)))))
 
 
-def _pointing(expectation: Expectation) -> str:
+def _coils(scenario: Scenario) -> str:
+    coils = scenario.coils
+    if coils.driver == "continuous":
+        return (
+            f"driven continuously, {coils.largest_am2:g} A m^2 for {coils.on_fraction:.0%} of a tick at most"
+        )
+    return (
+        f"pulses of {coils.pulse_s:g} s every {coils.pulse_s + coils.backoff_s:g} s, levels "
+        f"{_levels(coils.levels_am2)} A m^2"
+    )
+
+
+def _pointing(expectation: Expectation, gravity: Gravity) -> str:
     parts = (
         f"{expectation.floor_deg:.2f} disturbance, {expectation.quantum_deg:.2f} least level, "
         f"{expectation.ripple_deg:.2f} between pulses, "
         f"{expectation.knowledge_deg:.2f} estimate"
     )
-    if not points(expectation):
+    if gravity.falls_over:
+        return f"  pointing   none to rely on: gravity turns it over ({parts} deg where the coils hold it)"
+    if not points(expectation, gravity):
         return f"  pointing   none to expect: the disturbance is too strong ({parts} deg)"
     return f"  pointing   {expectation.pointing_deg:.2f} deg RMS once settled ({parts})"
 

@@ -1,4 +1,4 @@
-"""What pointing to expect of pulsed coils, and how much of their time it takes.
+"""What pointing to expect of coils, and how much of their time it takes.
 
 Four parts that do not depend on each other add up by their squares:
 
@@ -17,6 +17,8 @@ turns and what the filter does not know need the rest.
 
 Equal principal moments are taken apart by ``SPREAD``: about such an axis nothing holds the body, and the
 linear motion has no periodic answer to a torque, which the coils give it all the same.
+
+A continuous driver has neither quantum nor back-off: its cycle is a tick.
 
 B is the root mean square of the direct dipole's field across a coil's axis, B_0 sqrt(1 + 3/2 sin^2 i)
 sqrt(2/3), since B^2 = B_0^2 (1 + 3 sin^2 i sin^2 u).
@@ -69,7 +71,7 @@ class Expectation:
 
 
 def expect(scenario: Scenario) -> Expectation:
-    """What to expect of a satellite at body = orbit, its coils pulsed; what overflows is infinite."""
+    """What to expect of a satellite at body = orbit; what overflows is infinite."""
     with np.errstate(all="ignore"):
         return _expect(scenario)
 
@@ -78,11 +80,12 @@ def _expect(scenario: Scenario) -> Expectation:
     body, coils, torque_nm = apart(body_of(scenario)), scenario.coils, disturbance_torque(scenario)
     response = least_error(body, torque_nm)
     field_t = field_across(body)
-    cycle_s = coils.pulse_s + coils.backoff_s
+    pulsed = coils.driver == "pulsed"
+    cycle_s = coils.pulse_s + coils.backoff_s if pulsed else 1.0 / scenario.time.tick_hz
     least_kgm2 = float(np.linalg.eigvalsh(np.asarray(body.inertia_kgm2))[0])
-    quantum_rad = coils.levels_am2[0] * field_t * coils.pulse_s * cycle_s / least_kgm2
+    quantum_rad = coils.levels_am2[0] * field_t * coils.pulse_s * cycle_s / least_kgm2 if pulsed else 0.0
     by_coil_am2 = np.abs(response.dipole_am2).mean(axis=0)
-    one_at_a_time = coils.driver == "pulsed" and coils.shared
+    one_at_a_time = pulsed and coils.shared
     balancing_am2 = float(by_coil_am2.sum() if one_at_a_time else by_coil_am2.max())
     disturbance_nm = float(np.sqrt(np.mean(np.sum(torque_nm**2, axis=1))))
     return Expectation(

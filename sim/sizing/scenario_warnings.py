@@ -23,6 +23,7 @@ from sim.scenario.schema import Scenario, flight_table
 from sim.scenario.sections import ScenarioCoils, ScenarioOrbit, SunSensorSection
 from sim.scenario.telecommands import unsent_telecommands
 from sim.sizing.expectation import expect, field_across
+from sim.sizing.gravity import gravity_on, gravity_words
 from sim.sizing.levels import TOO_WEAK, levels_against, levels_for
 from sim.sizing.torques import surface_torque
 
@@ -168,6 +169,12 @@ def _load(scenario: Scenario) -> Iterator[str]:
             f"{expectation.load:.0%} of what coils.levels_am2 can give in pulses: too weak to point with; "
             f"a strongest level of {high:g} A m^2 would do"
         )
+
+
+def _gravity(scenario: Scenario) -> Iterator[str]:
+    gravity = gravity_on(scenario)
+    if gravity.away:
+        yield f"gravity {gravity_words(gravity)}"
 
 
 def _ticks(scenario: Scenario) -> Iterator[str]:
@@ -349,6 +356,7 @@ _JUDGES: tuple[Callable[[Scenario], Iterator[str]], ...] = (
     _currents,
     _sensors,
     _sizes,
+    _gravity,
     _load,
     _beyond_bounds,
     _drag_and_light,

@@ -16,9 +16,9 @@ def torquer(*words):
 
 @pytest.fixture(scope="module")
 def missed(tmp_path_factory):
-    """A flight off by 40 deg, of which 2 are expected."""
+    """A flight that begins 40 deg off, of which 2 are expected over its only orbit."""
     path = tmp_path_factory.mktemp("runs") / "run"
-    words = ("microsat", "--bus", "virtual", "--orbits", "0.02", "--out", path)
+    words = ("microsat", "--bus", "virtual", "--orbits", "1", "--out", path)
     return torquer("sil", *words, "--expect", "ape<2", "--expect", "duty<9"), path
 
 

@@ -58,6 +58,7 @@ CONFIG = EstimatorConfig(
     restart_after_rejections=6,
     valid_sigma_rad=radians(5.0),
     usable_sigma_rad=radians(5.0),
+    fastest_valid_radps=0.1,
 )
 AGED = replace(CONFIG, mekf=tuned(delay_s=Prior((0.3, 0.3), (0.0, 0.0), mean=(0.5, 0.5))))
 """Where the age of the samples is not known."""

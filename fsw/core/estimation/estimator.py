@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
+from math import ceil
 from typing import ClassVar, Final, final
 
 from fsw.core.algebra.vector import ZERO, Vec3, dot, norm
@@ -22,6 +23,7 @@ from fsw.core.estimation.kalman import largest_variance
 from fsw.core.estimation.measurement import deflected_sun, field_sampled
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.estimation.mekf_config import MekfConfig, WheelMotion
+from fsw.core.estimation.orbital_attitude import MOST_TURN_RAD
 from fsw.core.estimation.parameters import ATTITUDE_AND_RATE, Parameters
 from fsw.core.estimation.samples import saturated_field, sensed_sun, usable_cells, usable_field, usable_sun
 from fsw.core.estimation.start.batch import SampleBatch, discard_samples, pass_tick
@@ -38,6 +40,8 @@ from fsw.wire.value import Value
 
 MAX_ELAPSED_S = 60.0
 """After a longer silence the filter restarts instead of predicting."""
+WAIT_S: Final = 60.0
+"""After the field has turned too far in a tick: it does so once a turn at least, unless it is the axis."""
 EASED: Final = 2.0
 """Factor on the standard deviations of attitude, rate and bias when the estimate is eased, and from then on
 on the bounds of what changes."""
@@ -74,6 +78,7 @@ class EstimatorConfig:
     restart_after_rejections: int
     valid_sigma_rad: float
     usable_sigma_rad: float
+    fastest_valid_radps: float
     blank_ticks: int = 0
     changes: Changes = NO_CHANGES
 
@@ -85,7 +90,8 @@ class EstimatorState:
 
     ``first``: what the parameters start from, None: the prior's mean; of it, those components that were
     ``loaded``, by number. ``easings``: how often an estimate was eased. ``frozen``: the parameters are not
-    estimated. ``batch``: samples for a start from fewer than three lit cells.
+    estimated. ``batch``: samples for a start from fewer than three lit cells. ``wait_ticks``: until an
+    estimate may start, for the body turned too far in a tick.
     """
 
     estimate: Estimate | None = None
@@ -98,6 +104,7 @@ class EstimatorState:
     batch: SampleBatch = field(default_factory=SampleBatch)
     loaded: tuple[int, ...] = ()
     easings: int = 0
+    wait_ticks: int = 0
 
     def copy(self) -> "EstimatorState":
         """A state that goes on by itself from here."""
@@ -112,6 +119,7 @@ class EstimatorState:
             self.batch.copy(),
             self.loaded,
             self.easings,
+            self.wait_ticks,
         )
 
 
@@ -188,8 +196,11 @@ def update(
     reference: Reference,
     config: EstimatorConfig,
     wheel_nms: Vec3 = ZERO,
+    field_turn_rad: float = 0.0,
 ) -> Used:
     """Take the samples of this tick, or start from them; which of them were taken.
+
+    No estimate starts on a body that turns too far in a tick: it would be lost within a minute.
 
     Args:
         state: predicted to this tick.
@@ -197,12 +208,17 @@ def update(
         reference: field, Sun and orbit at this tick.
         config: tuning.
         wheel_nms: momentum of a driven wheel, body axes.
+        field_turn_rad: by how much the measured field has turned since the tick before.
     """
     field, sun, cells = usable_field(measurements), usable_sun(measurements), config.mekf.cells
     currents = usable_cells(measurements, cells)
     blanked = field is None and measurements.field is not None and measurements.field_trusted
     if state.estimate is None:
-        started = _start(state, field, sun, currents, reference, config)
+        if field_turn_rad > MOST_TURN_RAD:
+            state.wait_ticks = ceil(WAIT_S / config.mekf.tick_s)
+        elif state.wait_ticks > 0:
+            state.wait_ticks -= 1
+        started = state.wait_ticks == 0 and _start(state, field, sun, currents, reference, config)
         return Used(started, started, blanked)
 
     estimate, frozen = state.estimate, state.frozen

@@ -33,6 +33,7 @@ NUMBERS: tuple[str, ...] = (
     *(f"controlled_{figure}" for figure in (*_LAST, "settle_orbits")),
     *(f"pointing_deg_{figure}" for figure in ("final", *_LAST)),
     *(f"axis1_deg_{figure}" for figure in ("final", *_LAST, "mean_last_orbit", "settle_orbits_5deg")),
+    *(f"rate_degps_{figure}" for figure in ("start", "final", "under_1_s", "under_0_1_s")),
     *INDEX_FIGURES,
     *(f"estimate_deg_{figure}" for figure in ("rms_sunlit", "rms_eclipse", "max", "within_3sigma")),
     *("converged_at_s", "nees_mean"),

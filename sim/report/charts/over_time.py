@@ -6,7 +6,7 @@ from fsw.wire.messages import Mode
 from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, MORE_COLOURS, MUTED, Span, shade, stacked
 from sim.drawing.time_chart import DrawnChart, Level, Panel, Series, TimeChart, draw
 from sim.report.charts.drawn_flight import DrawnFlight
-from sim.report.figures.controlled import SETTLED_DEG
+from sim.scenario.controlled import SETTLED_DEG
 from sim.value_types import Array, Json
 
 MODE_COLOURS = {
@@ -67,12 +67,14 @@ def pointing(flight: DrawnFlight) -> DrawnChart:
 
 def rates(flight: DrawnFlight) -> DrawnChart:
     """Rates relative to the orbital frame: components, and magnitude on a logarithmic scale."""
-    omega, total = 1e3 * flight.line("omega_degps"), 1e3 * flight.line("rate_degps")
+    tumbles = float(np.nanmax(flight.line("rate_degps"))) >= 1.0
+    unit, factor = ("deg/s", 1.0) if tumbles else ("mdeg/s", 1e3)
+    omega, total = factor * flight.line("omega_degps"), factor * flight.line("rate_degps")
     components = Panel(
-        "Rates relative to the orbital frame, body axes", "rate [mdeg/s]", 1.6, _by_axis(omega)
+        "Rates relative to the orbital frame, body axes", f"rate [{unit}]", 1.6, _by_axis(omega)
     )
     magnitude = Panel(
-        "Their magnitude", "rate [mdeg/s]", 1.3, (Series("magnitude", total, INK),), decades=4.0
+        "Their magnitude", f"rate [{unit}]", 1.3, (Series("magnitude", total, INK),), decades=4.0
     )
     return draw(flight.time, TimeChart(flight.t_s, (components, magnitude)))
 

@@ -86,14 +86,14 @@ class ChartSection(NamedTuple):
 
 
 def sections(scenario: Scenario, lines: Lines, audit: AuditReport) -> list[ChartSection]:
-    """All sections with charts."""
+    """All sections with charts; that of the attitude is first, as it is looked at first."""
     if lines.ticks == 0:
         return [ChartSection("attitude", "Flight", note="No tick was flown: there is nothing to draw.")]
     flight = DrawnFlight.of(scenario, lines, audit)
     with style():
         return [
-            ChartSection("track", "Ground track", _charts(flight, _TRACK)),
             ChartSection("attitude", "Attitude", _charts(flight, _ATTITUDE)),
+            ChartSection("track", "Ground track", _charts(flight, _TRACK)),
             ChartSection("estimate", "Estimate", _charts(flight, _ESTIMATE))
             if lines.has_estimates
             else ChartSection("estimate", "Estimate", note=_NO_ESTIMATE[scenario.knowledge]),

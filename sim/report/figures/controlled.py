@@ -1,52 +1,19 @@
-"""The quantity that a scenario's modes and law control, its errors by tick, and when it has settled."""
+"""The errors by tick of what a scenario's modes and law control, and when it has settled."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 
-from fsw.core.laws.entry import Aim
 from fsw.core.laws.interface import MAX_SPIN_RADPS
-from fsw.core.laws.table import LAWS
-from fsw.table.own_law import declared
-from fsw.table.sections import ControlTable
 from sim.record.truth import Histories
 from sim.report.figures.attitude_arrays import axis1_errors, errors
 from sim.report.figures.mean import Mean
-from sim.scenario.schema import Scenario, flight_table
+from sim.scenario.controlled import Controlled
+from sim.scenario.schema import Scenario
 from sim.scenario.telecommands import SendSpin, first_tick
 from sim.statistics.settling import Settling
 from sim.value_types import Array, Json
-
-SETTLED_DEG = 5.0
-
-
-class Controlled(NamedTuple):
-    """What is controlled: its name in requirements, in words, and the error below which it has settled."""
-
-    what: str
-    words: str
-    unit: str
-    threshold: float
-
-
-def controlled(scenario: Scenario) -> Controlled:
-    """Body axis 1 or the whole attitude, as the modes judge; the rate under a law that does not point."""
-    table = flight_table(scenario)
-    modes = table.modes
-    if modes.axis_only:
-        return Controlled("axis", "axis 1", "deg", SETTLED_DEG)
-    if _aim(table.control) in (Aim.THREE_AXIS, Aim.AXIS):
-        return Controlled("attitude", "whole attitude", "deg", SETTLED_DEG)
-    return Controlled("rate", "rate", "deg/s", modes.slow_degps)
-
-
-def _aim(control: ControlTable) -> Aim:
-    """Of the law that flies; one whose source is withheld is taken to point."""
-    if control.own:
-        return Aim.THREE_AXIS if control.law_withheld else declared(control).aim
-    return LAWS[control.law].aim
 
 
 def spin_reference_radps(scenario: Scenario, t_s: Array) -> Array:

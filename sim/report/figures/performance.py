@@ -11,7 +11,7 @@ from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures import parameters
 from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad
-from sim.report.figures.controlled import SETTLED_DEG, ControlledError, controlled, spin_reference_radps
+from sim.report.figures.controlled import ControlledError, spin_reference_radps
 from sim.report.figures.estimate_error import (
     CONVERGED_DEG,
     CONVERGED_FOR_S,
@@ -22,13 +22,17 @@ from sim.report.figures.estimate_error import (
 from sim.report.figures.mean import Mean
 from sim.report.figures.spans import spans
 from sim.report.requirements.judge import Judgement
+from sim.scenario.controlled import SETTLED_DEG, controlled
 from sim.scenario.schema import Scenario, orbit_period_s
+from sim.statistics.indices import magnitudes
 from sim.statistics.settling import Settling, held_ticks
 from sim.value_types import Array, Json
 
 BLOCK_TICKS = 4096
 """Sums are taken over blocks of this many ticks, however a flight is handed over: so they are bit-exact."""
 SPIN_SETTLED_RADPS = 1e-3
+SLOW_DEGPS, SLOWEST_DEGPS = 1.0, 0.1
+"""Rates under which a tumble counts as stopped: one that an estimate can follow, and one to point from."""
 
 
 @dataclass(slots=True)
@@ -151,6 +155,30 @@ class _Spin:
         self.settling.take(deviation < SPIN_SETTLED_RADPS)
 
 
+@dataclass(slots=True)
+class _Rate:
+    """The rate relative to the orbital frame: at start and end, and since when it stays under two limits."""
+
+    slow: Settling
+    slowest: Settling
+    start_degps: float = np.nan
+    final_degps: float = np.nan
+
+    def take(self, rate_degps: Array) -> None:
+        if self.slow.taken == 0:
+            self.start_degps = float(rate_degps[0])
+        self.final_degps = float(rate_degps[-1])
+        self.slow.take(rate_degps < SLOW_DEGPS)
+        self.slowest.take(rate_degps < SLOWEST_DEGPS)
+
+    def figures(self, hz: float) -> Json:
+        result: Json = {"start": self.start_degps, "final": self.final_degps}
+        for name, settling in (("under_1_s", self.slow), ("under_0.1_s", self.slowest)):
+            if settling.tick is not None:
+                result[name] = settling.tick / hz
+        return result
+
+
 class Performance:
     """What a flight of ``ticks`` ticks achieves, from its blocks in order.
 
@@ -169,6 +197,7 @@ class Performance:
         self._pointing, self._axis1 = _Angle(Settling(held)), _Angle(Settling(held))
         self._convergence = _Convergence(round(CONVERGED_FOR_S * self._hz))
         self._spin = _Spin(Settling(held))
+        self._rate = _Rate(Settling(held), Settling(held))
         self._controlled = ControlledError(controlled(scenario), scenario, Settling(held))
         self.judgement = Judgement(scenario, ticks)
         """By the requirements of the scenario."""
@@ -183,6 +212,7 @@ class Performance:
         recent = slice(max(0, self._last_orbit_from - first), rows)
         self._pointing.take(np.degrees(angle_rad(q)), recent)
         self._axis1.take(np.degrees(axis1_angle_rad(q)), recent)
+        self._rate.take(np.degrees(magnitudes(truth["omega_body_orbit_radps"])))
         self._convergence.take(truth, estimates, first)
         reference_radps = spin_reference_radps(self._scenario, truth["t_s"])
         self._spin.take(truth["omega_body_orbit_radps"][:, 0], reference_radps, recent)
@@ -205,6 +235,7 @@ class Performance:
             "controlled": self._controlled.figures(self._orbit_s * self._hz),
             "pointing_deg": self._pointing.figures(),
             "axis1_deg": axis1,
+            "rate_degps": self._rate.figures(self._hz),
         }
         if self._convergence.found and self._convergence.first is not None:
             result |= self._convergence.consistency.figures()

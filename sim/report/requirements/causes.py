@@ -19,6 +19,7 @@ from sim.report.requirements.evidence import FlightEvidence, Missed
 from sim.report.requirements.sizing import balance, gradient_level_am2, least_error_deg, pulse_turn_deg
 from sim.report.requirements.words import number, orbits, part
 from sim.scenario.schema import Scenario, flight_table
+from sim.sizing.gravity import gravity_on, gravity_words
 from sim.sizing.levels import TOO_WEAK
 
 # --- Where the satellite of a scenario differs from its onboard table by more than the bounds of that table
@@ -130,7 +131,7 @@ def swings(missed: Missed, evidence: FlightEvidence) -> str:
 
 
 def _unit(missed: Missed) -> str:
-    return "deg/s" if missed.what == "spin" else "deg"
+    return "deg/s" if missed.what in ("spin", "rate") else "deg"
 
 
 # --- The causes
@@ -142,6 +143,10 @@ COARSE = 4.0
 error is about a fifth of the turn."""
 CONTRADICTED = 1.5
 """Times the error of the flight that the least one by linear theory may be."""
+OVER_DEG = 20.0
+"""Error from which a body that gravity does not hold has fallen over."""
+HOPELESS = 0.25
+"""Part of what gravity takes below which the highest level is too weak, however short the flight."""
 LATE = 0.4
 """Fraction of a flight after which it is late for what must come first: attitude, low rate."""
 
@@ -279,6 +284,14 @@ def _unstable(missed: Missed, evidence: FlightEvidence) -> str:
     return f"the gains are unstable by Floquet theory: a deviation grows {growth} times an orbit"
 
 
+def _gravity(missed: Missed, evidence: FlightEvidence) -> str:
+    trend = evidence.trend
+    if len(trend) < TREND or missed.what not in ("attitude", "axis") or trend[-1] < OVER_DEG:
+        return ""
+    gravity = gravity_on(evidence.scenario)
+    return f"gravity {gravity_words(gravity)}" if gravity.away else ""
+
+
 def _coarse(missed: Missed, evidence: FlightEvidence) -> str:
     lowest, total = evidence.levels[0], sum(evidence.levels)
     if (
@@ -306,7 +319,10 @@ def _weak(missed: Missed, evidence: FlightEvidence) -> str:
     most = evidence.saturated_part if not total else highest / total
     if most < 0.6 or (total and total < 5):
         return ""
-    least = max(gradient_level_am2(evidence.scenario), 2.0 * evidence.scenario.coils.largest_am2)
+    largest_am2, gradient_am2 = evidence.scenario.coils.largest_am2, gradient_level_am2(evidence.scenario)
+    if len(evidence.trend) < TREND and largest_am2 > HOPELESS * gradient_am2:
+        return ""  # strong coils, too, are at their highest level while they turn the body
+    least = max(gradient_am2, 2.0 * largest_am2)
     of = f"the pulses of {of}" if total else of
     return (
         f"the coils are too weak: at the highest level in {part(most)} of {of}; "
@@ -338,7 +354,7 @@ def _short(missed: Missed, evidence: FlightEvidence) -> str:
     near = sum(evidence.in_mode.get(mode, 0.0) for mode in (Mode.ACQUIRE, Mode.POINT))
     if len(evidence.trend) >= TREND or near < 0.5 or _has_settled(missed):
         return ""
-    return f"{orbits(evidence.orbits)} are too short to settle, or to tell when it would"
+    return f"too early to say: {orbits(evidence.orbits)} are too short to settle, or to tell when it would"
 
 
 def _not_settled(missed: Missed, evidence: FlightEvidence) -> str:
@@ -362,7 +378,7 @@ SETTLING = frozenset(("settling",))
 KNOWING = POINTING | {"ake"}
 ALL = KNOWING | {"duty", "energy"}
 BEFORE_POINTING = frozenset(("safe", "dark", "tumbling", "estimate"))
-CANNOT_POINT = frozenset(("isolated", "unstable", "disturbance", "any_law"))
+CANNOT_POINT = frozenset(("isolated", "gravity", "unstable", "disturbance", "any_law"))
 POINT_IS_LOST = BEFORE_POINTING | CANNOT_POINT | {"coarse", "weak", "not_settled"}
 
 CAUSES: Sequence[Diagnosis] = (
@@ -374,13 +390,14 @@ CAUSES: Sequence[Diagnosis] = (
     Diagnosis("mismatch", ALL, _mismatch),
     Diagnosis("any_law", POINTING, _any_law),
     Diagnosis("disturbance", ALL - {"ake"}, _disturbance),
-    Diagnosis("unstable", ALL - {"ake"}, _unstable),
+    Diagnosis("gravity", POINTING, _gravity, BEFORE_POINTING | {"isolated"}),
+    Diagnosis("unstable", ALL - {"ake"}, _unstable, frozenset(("gravity",))),
     Diagnosis("coarse", POINTING, _coarse, BEFORE_POINTING | CANNOT_POINT),
     Diagnosis("weak", POINTING, _weak, BEFORE_POINTING | CANNOT_POINT),
     Diagnosis("not_settled", POINTING, _not_settled, CANNOT_POINT | {"coarse"}),
     Diagnosis("short", POINTING, _short, POINT_IS_LOST),
     Diagnosis("never_in_point", POINTING, _never_in_point, POINT_IS_LOST | {"short"}),
-    Diagnosis("fell_back", SETTLING, fell_back, frozenset(("safe", "tumbling"))),
+    Diagnosis("fell_back", SETTLING, fell_back, frozenset(("safe", "tumbling", "gravity"))),
     Diagnosis("left_again", SETTLING, left_again, POINT_IS_LOST | {"fell_back"}),
     Diagnosis("slow", SETTLING, slow, POINT_IS_LOST | {"fell_back", "left_again"}),
     Diagnosis(

@@ -11,12 +11,14 @@ from sim.audit.findings import AuditReport
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures.coil_effort import dipole_squared_a2m4s, driven_s
-from sim.report.figures.controlled import controlled, error_vectors
+from sim.report.figures.controlled import error_vectors
 from sim.report.figures.estimate_error import knowledge_errors
 from sim.report.figures.mean import Mean
 from sim.report.requirements.causes import reasons
+from sim.report.requirements.diagnosis import diagnose
 from sim.report.requirements.evidence import EvidenceGatherer, Missed
 from sim.report.requirements.words import number, orbits
+from sim.scenario.controlled import controlled
 from sim.scenario.requirements import DEG, INDICES, OF, ORBITS, RequirementSection
 from sim.scenario.schema import Scenario, orbit_period_s
 from sim.statistics.indices import magnitudes
@@ -204,7 +206,8 @@ class Judgement:
     def __init__(self, scenario: Scenario, ticks: int) -> None:
         self._scenario = scenario
         self._gathered = [Gathered(section, scenario, ticks) for section in scenario.requirement]
-        judged = {one.what for one in self._gathered if one.judged}
+        self._controlled = controlled(scenario)
+        judged = {one.what for one in self._gathered if one.judged} | {self._controlled.what}
         self._evidence = {what: EvidenceGatherer(scenario, what, ticks) for what in sorted(judged)}
 
     def take(self, truth: Histories, estimates: Estimates) -> None:
@@ -239,6 +242,19 @@ class Judgement:
                 outcome = self._judged(one, audit, isolated_s)
             outcomes.append(_stated(one) | outcome | {"text": f"{_name(one)}{outcome['text']}"})
         return outcomes
+
+    def diagnosis(
+        self, settled_orbits: float | None, audit: AuditReport, isolated_s: Mapping[str, float]
+    ) -> Json:
+        """What the flight shows of its satellite, whatever is required of it.
+
+        Args:
+            settled_orbits: since when what is controlled has settled; None: it has not.
+            audit: as for ``outcomes``.
+            isolated_s: as for ``outcomes``.
+        """
+        evidence = self._evidence[self._controlled.what].evidence(audit, isolated_s)
+        return diagnose(self._controlled, settled_orbits, evidence)
 
     def _judged(self, one: Gathered, audit: AuditReport, isolated_s: Mapping[str, float]) -> Json:
         section = one.section

@@ -27,7 +27,7 @@ from sim.campaign.study import (
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures.attitude_arrays import axis1_angle_rad
-from sim.report.figures.controlled import SETTLED_DEG
+from sim.scenario.controlled import SETTLED_DEG
 from sim.scenario.schema import Scenario
 from sim.statistics.settling import settled_tick
 

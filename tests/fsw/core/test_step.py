@@ -261,6 +261,26 @@ class TestTicks:
         assert (isolated != []) is hidden
 
 
+class TestFastTumble:
+    """17 deg/s at 1 Hz, 0.3 rad a tick: the filter cannot follow, and waits."""
+
+    def test_no_estimate_starts_again_and_again_and_none_is_valid(self, make_world):
+        world = make_world(initial={"rate_degps": [10.0, 10.0, 10.0]})
+        replies, valid = [], []
+        for _ in range(900):
+            replies.append(world.step())
+            valid.append(world.state.attitude.valid)
+        starts = [event for event in events_of(replies) if event[1] == Event.FILTER_STARTED]
+        assert len(starts) <= 2, "one before a second sample shows the tumble"
+        assert not any(valid)
+
+    def test_one_that_has_been_slow_for_a_minute_starts(self, make_world):
+        world = make_world()
+        world.state.estimator.wait_ticks = 60
+        began = [world.step() and world.state.estimator.estimate is not None for _ in range(62)]
+        assert began.index(True) in (59, 60)
+
+
 class TestEvents:
     def test_of_an_undisturbed_flight(self, flight):
         """Each change once, and nothing while it lasts."""

@@ -8,7 +8,7 @@ from sim.compare.case import Driver
 from sim.compare.command import compare_page
 from sim.compare.score import History, Result, Score
 from sim.drawing.canvas import TimeAxis
-from sim.report.figures.controlled import Controlled
+from sim.scenario.controlled import Controlled
 from sim.scenario.schema import load
 
 TIME = TimeAxis("orbits of 100.0 min", 6000.0, 0.0, 12000.0, ((1000.0, 3000.0),))

@@ -11,7 +11,7 @@ from sim.compare.case import Driver
 from sim.compare.picture import picture, spread
 from sim.compare.score import History, Result, Score
 from sim.drawing.canvas import TimeAxis
-from sim.report.figures.controlled import Controlled
+from sim.scenario.controlled import Controlled
 
 TIME = TimeAxis("orbits", 6000.0, 0.0, 12000.0, ((1000.0, 3000.0),))
 T_S = np.linspace(0.0, 12000.0, 120)

@@ -9,7 +9,7 @@ import pytest
 from fsw.core.laws.entry import Aim
 from sim.compare.case import Driver, cases
 from sim.compare.score import fly_case, history, judge
-from sim.report.figures.controlled import Controlled
+from sim.scenario.controlled import Controlled
 from sim.scenario.schema import load, orbit_period_s
 
 CONTINUOUS = {"coils": {"driver": "continuous", "max_dipole_am2": 8.0, "on_fraction": 0.5}}

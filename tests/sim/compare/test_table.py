@@ -11,7 +11,7 @@ from fsw.core.laws.entry import Aim
 from sim.compare.case import Driver
 from sim.compare.score import Score
 from sim.compare.table import as_csv, as_json, as_text, error_text, ranked
-from sim.report.figures.controlled import Controlled
+from sim.scenario.controlled import Controlled
 
 
 def score(law, pointing, rate=0.01, aim=Aim.THREE_AXIS, driver=Driver.PULSED, **more):

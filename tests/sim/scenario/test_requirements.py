@@ -61,8 +61,9 @@ def test_an_expectation_is_a_requirement_at_the_end_of_the_flight(text, index, w
     assert (found.by_orbit, found.last_orbits) == (5.0, 1.0)
 
 
-def test_on_a_flight_shorter_than_an_orbit_the_whole_flight_counts():
-    assert expectation("ape<2", 0.25).last_orbits == 0.25
+def test_a_flight_shorter_than_an_orbit_is_too_early_to_judge():
+    found = expectation("ape<2", 0.25)
+    assert (found.by_orbit, found.last_orbits) == (1.0, 1.0)
 
 
 def test_settling_is_not_judged_before_it_may_have_taken_place():

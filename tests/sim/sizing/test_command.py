@@ -3,10 +3,10 @@
 import pytest
 
 from sim.console import Console, speaking
-from sim.errors import HarnessError
 from sim.scenario.schema import load, parse_settings
 from sim.sizing.command import as_text, principal_turn_deg, size
 from sim.sizing.expectation import expect
+from sim.sizing.gravity import gravity_on
 from sim.sizing.levels import levels_against
 
 KEYS = {
@@ -19,6 +19,9 @@ KEYS = {
     "field_across_coil_t": float,
     "disturbance_rms_nm": float,
     "load": float,
+    "gravity_holds": bool,
+    "gravity_away_nm": float,
+    "detumbling": dict,
     "pointing_rms_deg": float | None,
     "floor_deg": float,
     "quantum_deg": float,
@@ -58,9 +61,39 @@ def test_what_is_doubtful_is_said(settings, code, words, capsys):
     assert words in capsys.readouterr().out
 
 
-def test_a_continuous_driver_is_refused():
-    with pytest.raises(HarnessError, match="size needs pulsed coils"):
-        sized("microsat", "coils.driver=continuous", "coils.max_dipole_am2=0.5")
+def test_a_continuous_driver_has_no_pulses_and_no_levels(capsys):
+    code, values = sized("microsat", "coils.driver=continuous", "coils.max_dipole_am2=0.5")
+    assert code == 0
+    assert values["quantum_deg"] == 0.0
+    assert values["ripple_deg"] < 1e-3
+    out = capsys.readouterr().out
+    assert "driven continuously, 0.5 A m^2 for 80% of a tick at most" in out
+    assert "would do" not in out
+    assert "without pulse limits" not in out
+
+
+class TestAxesThatGravityDoesNotHold:
+    """A 3U whose long axis is z, as most have it, and the same with its axes in the order that is held."""
+
+    LONG_Z, HELD = "body.inertia_kgm2=[0.04,0.04,0.008]", "body.inertia_kgm2=[0.008,0.04,0.04]"
+
+    def test_no_pointing_is_promised(self, capsys):
+        _, values = sized("cubesat3u", self.LONG_Z)
+        assert values["pointing_rms_deg"] is None
+        assert not values["points"]
+        assert not values["gravity_holds"]
+        out = capsys.readouterr().out
+        assert "J 0.04 up, 0.04 ahead, 0.008 along the normal" in out
+        assert "turns the body over about axes 1 and 2" in out
+        assert "it would hold axis 3, of the least moment, up" in out
+        assert "number the axes so that body.inertia_kgm2 = [0.008, 0.04, 0.04]" in out
+        assert "none to rely on" in out
+
+    def test_the_order_that_is_named_is_held(self, capsys):
+        _, values = sized("cubesat3u", self.HELD)
+        assert values["gravity_holds"]
+        assert values["points"]
+        assert "holds the body, but for turns about axis 1" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -80,5 +113,5 @@ def test_products_of_inertia_are_said_with_their_sign():
     inertia = [[1.02, 0.1, 0.0], [0.1, 1.85, 0.0], [0.0, 0.0, 1.95]]
     scenario = load("microsat", {"body": {"inertia_kgm2": inertia}})
     expectation = expect(scenario)
-    text = as_text(scenario, expectation, levels_against(scenario, expectation))
+    text = as_text(scenario, expectation, levels_against(scenario, expectation), gravity_on(scenario))
     assert "axes turned by 6.8 deg from the body axes, with products of inertia as J_xy = - integral" in text

@@ -70,8 +70,9 @@ def test_what_flies_can_be_read_again_and_what_cannot_is_refused_before_anything
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
 
 
+@pytest.mark.long
 def test_what_is_expected_is_judged_and_a_failure_of_the_run(tmp_path):
-    run = torquer.fly("microsat", orbits=SHORT, expect=["ape<2", "ape<90"], out=tmp_path / "run")
+    run = torquer.fly("microsat", orbits=1.0, expect=["ape<2", "ape<90"], out=tmp_path / "run")
     assert [one["verdict"] for one in run.summary["requirements"][-2:]] == ["failed", "met"]
     assert not run.ok
     assert "APE of whole attitude" in run.failures["requirements"]
@@ -82,6 +83,12 @@ def test_what_the_caller_holds_is_collected_as_before(tmp_path):
     before = gc.get_freeze_count()
     torquer.fly("microsat", orbits=SHORT, out=tmp_path / "run")
     assert gc.get_freeze_count() == before
+
+
+def test_what_is_expected_of_a_flight_that_is_too_short_is_not_judged(tmp_path):
+    run = torquer.fly("microsat", orbits=SHORT, expect=["ape<2"], out=tmp_path / "run")
+    assert run.summary["requirements"][-1]["verdict"] == "not judged"
+    assert run.ok
 
 
 @pytest.mark.long

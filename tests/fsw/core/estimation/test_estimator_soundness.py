@@ -66,7 +66,8 @@ class TestSoundness:
             broken = replace(settled, estimate=replace(settled.estimate, covariance=covariance))
             state, _ = step(broken, seen_from())
             assert state.estimate is None or mekf.healthy(state.estimate)
-            orbital_attitude(state.estimate, REFERENCE, CONFIG.valid_sigma_rad, CONFIG.usable_sigma_rad)
+            limits = CONFIG.valid_sigma_rad, CONFIG.usable_sigma_rad, CONFIG.fastest_valid_radps
+            orbital_attitude(state.estimate, REFERENCE, *limits)
 
     def test_a_covariance_that_overflows_in_the_prediction_is_caught_before_the_update(self, settled):
         spinning = replace(

@@ -17,6 +17,7 @@ from fsw.core.orbit.ephemeris import Reference
 from fsw.wire.messages import RefAttitude, RefRate
 
 VALID_SIGMA_RAD, USABLE_SIGMA_RAD = radians(2.0), radians(7.0)
+FASTEST_RADPS = 0.1
 REFERENCE = Reference(
     r_eci_m=(4.0e6, -5.0e6, 3.0e6),
     radius_m=norm((4.0e6, -5.0e6, 3.0e6)),
@@ -35,7 +36,7 @@ ESTIMATE = Estimate(
 
 
 def attitude_of(estimate, was_valid=False):
-    return orbital_attitude(estimate, REFERENCE, VALID_SIGMA_RAD, USABLE_SIGMA_RAD, was_valid)
+    return orbital_attitude(estimate, REFERENCE, VALID_SIGMA_RAD, USABLE_SIGMA_RAD, FASTEST_RADPS, was_valid)
 
 
 class TestOrbitalAttitude:
@@ -54,6 +55,14 @@ class TestOrbitalAttitude:
         normal_body = rotate(moving.q_body_from_eci, normal_eci)
         expected = np.array(moving.omega_body_radps) - 1.04e-3 * np.array(normal_body)
         np.testing.assert_allclose(attitude.omega_body_orbit_radps, expected, atol=1e-15)
+
+    @pytest.mark.parametrize(("rate_radps", "valid"), [(0.099, True), (0.101, False)])
+    def test_a_body_that_turns_too_far_in_a_tick_has_no_valid_attitude(self, rate_radps, valid):
+        """About whatever axis; its rate is told all the same, and it stays usable for damping."""
+        turning = replace(ESTIMATE, omega_body_radps=scale(rate_radps, unit((2.0, -1.0, 3.0))))
+        for was_valid in (False, True):
+            attitude = attitude_of(turning, was_valid)
+            assert (attitude.valid, attitude.usable) == (valid, True)
 
     def test_a_body_at_rest_in_the_orbital_frame_is(self):
         normal_eci = rotate(conjugate(REFERENCE.q_orbit_from_eci), (0.0, 0.0, 1.0))

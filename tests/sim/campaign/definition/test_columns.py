@@ -59,7 +59,7 @@ def test_failed_requirements_are_not_counted_while_one_is_not_judged():
 SHARED = {"scenario", "seed", "wall_seconds", "realtime_factor", "events"}
 """By all runs, or different in each flight."""
 SHARED |= {f"controlled_{key}" for key in ("what", "words", "unit", "threshold")}
-LISTS = ("events_", "requirements_")
+LISTS = ("events_", "requirements_", "diagnosis_")
 """Of these there is no column an element."""
 
 

@@ -81,6 +81,7 @@ FOUND = {
     "mismatch": sound("flight.body.inertia_kgm2=[1.95,1.85,1.02]"),
     "any_law": replace(sound(), torque_nm=(3e-7, 3e-7, 3e-7), trend=(4.6, 4.5, 4.6, 4.4, 4.5, 4.6)),
     "disturbance": sound(*DIPOLE, "coils.levels_am2=[0.5,2,11]"),
+    "gravity": replace(sound("body.inertia_kgm2=[1.95,1.85,1.02]"), trend=(80.0, 95.0, 120.0, 90.0)),
     "unstable": sound("control.law=pd", "control.k_w=1e9"),
     "coarse": replace(sound("coils.levels_am2=[20,30,40]"), levels=(40, 5, 0)),
     "weak": replace(sound("coils.levels_am2=[0.25,1.0,4.0]"), levels=(0, 3, 50)),

@@ -8,9 +8,11 @@ from typing import NamedTuple
 
 import pytest
 
+from fsw.input.schema import merge
 from sim.campaign.flight import record_scenario
 from sim.report.requirements.judge import Outcome
-from sim.scenario.schema import expecting, load, parse_settings
+from sim.scenario.requirements import expectation
+from sim.scenario.schema import load, parse_settings
 
 PERFECT = "knowledge=perfect"
 UNDISTURBED = (
@@ -72,14 +74,22 @@ FLIGHTS = {
         expected="settling<0.3",
         quick=False,
     ),
+    "axes turned": Flight(
+        (PERFECT, "body.inertia_kgm2=[1.95,1.85,1.02]", "initial.angle_deg=60"), 4.0, "gravity", quick=False
+    ),
+    "strong coils, short flight": Flight(
+        (PERFECT, "coils.levels_am2=[0.25,1.0,4.0]", "initial.angle_deg=90"), 0.3, "short"
+    ),
     "too short": Flight((PERFECT,), 0.3, "short"),
 }
 ALL = os.environ.get("TORQUER_FAILING_FLIGHTS") == "all"
 
 
 def outcome(flight):
-    scenario = load(flight.scenario, parse_settings((*flight.settings, "requirement=[]")))
-    record = record_scenario(expecting(scenario, (flight.expected,), flight.orbits), 1, flight.orbits)
+    by_then = {"by_orbit": flight.orbits, "last_orbits": min(1.0, flight.orbits)}
+    expected = expectation(flight.expected, 1.0).model_dump(mode="json", exclude_none=True) | by_then
+    scenario = load(flight.scenario, merge(parse_settings(flight.settings), {"requirement": [expected]}))
+    record = record_scenario(scenario, 1, flight.orbits)
     (one,) = record.summary()["requirements"]
     return one
 

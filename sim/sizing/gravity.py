@@ -1,0 +1,121 @@
+"""Whether gravity holds a body in its nominal attitude, body = orbit, and in which one it would.
+
+A body that turns with its orbit rests where its principal axes are those of the orbit. Small turns about
+axis 1 (up), 2 (ahead) and 3 (the orbit's normal) from there are turned back by
+
+    k1 = w0^2 (J3 - J2) + w0 h3,    k2 = 4 w0^2 (J3 - J1) + w0 h3,    k3 = 3 w0^2 (J2 - J1)
+
+per radian, h3 being the momentum of wheels about axis 3: gravity's torque and that of the turn with the
+orbit (Hughes 1986, Spacecraft Attitude Dynamics, sections 9.2 and 9.3). Damping needs all three: the least
+moment up, the largest along the normal. Where one is negative the body turns away, with k sin(2 d) / 2 at a
+turn d, and the coils have to hold it all the time. About axis 1 they do, as it is the gyroscopic torque alone
+and a weak one; with k2 or k3 negative two of three flights that began at 40 deg fell over (docs/sizing.md).
+"""
+
+from dataclasses import dataclass
+
+from sim.design.from_scenario import body_of
+from sim.design.theory.bodies import Body
+from sim.scenario.controlled import controlled
+from sim.scenario.schema import Scenario
+from sim.sizing.expectation import field_across
+
+NEUTRAL = 0.01
+"""Part of the largest moment by which two may differ and count as equal: nothing turns the body then."""
+UP, AHEAD, NORMAL = range(3)
+
+
+@dataclass(frozen=True, slots=True)
+class Gravity:
+    """What gravity does to a body in its nominal attitude, about the axes that matter to what is controlled.
+
+    Attributes:
+        moments_kgm2: about the body axes 1, 2, 3.
+        free: the axes, 0 to 2, about which nothing turns it.
+        away: those about which gravity turns it away.
+        away_nm: the most with which it does, about any of them.
+        coils_nm: what its coils give in the mean, about an axis across the field.
+    """
+
+    moments_kgm2: tuple[float, float, float]
+    free: tuple[int, ...]
+    away: tuple[int, ...]
+    away_nm: float
+    coils_nm: float
+
+    @property
+    def falls_over(self) -> bool:
+        """Whether the coils can hardly hold it: it is gravity's own torque that turns it away."""
+        return AHEAD in self.away or NORMAL in self.away
+
+    @property
+    def held_order(self) -> tuple[int, int, int]:
+        """The body axes that gravity would hold up, ahead and along the normal."""
+        least, middle, largest = sorted(range(3), key=lambda axis: self.moments_kgm2[axis])
+        return least, middle, largest
+
+
+def gravity_on(scenario: Scenario) -> Gravity:
+    """What gravity does to the satellite of a scenario."""
+    body, coils, what = body_of(scenario), scenario.coils, controlled(scenario).what
+    matter = {"attitude": (UP, AHEAD, NORMAL), "axis": (AHEAD, NORMAL)}.get(what, ())
+    if scenario.control.spin_radps != 0.0:
+        matter = ()
+    about, square = stiffness(body), body.rate_radps**2
+    moments_kgm2 = moments_of(body)
+    neutral_nm = NEUTRAL * square * max(moments_kgm2)
+    away = tuple(axis for axis in matter if about[axis] < -neutral_nm)
+    return Gravity(
+        moments_kgm2,
+        free=tuple(axis for axis in matter if abs(about[axis]) <= neutral_nm),
+        away=away,
+        away_nm=max((-0.5 * about[axis] for axis in away), default=0.0),
+        coils_nm=coils.on_part * coils.largest_am2 * field_across(body),
+    )
+
+
+def moments_of(body: Body) -> tuple[float, float, float]:
+    """The moments about the body axes: the diagonal of the tensor."""
+    first, second, third = body.inertia_kgm2
+    return first[0], second[1], third[2]
+
+
+def stiffness(body: Body) -> tuple[float, float, float]:
+    """k1, k2, k3, per radian [N m]."""
+    j1, j2, j3 = moments_of(body)
+    square, gyroscopic = body.rate_radps**2, body.rate_radps * body.wheel_nms[2]
+    return square * (j3 - j2) + gyroscopic, 4.0 * square * (j3 - j1) + gyroscopic, 3.0 * square * (j2 - j1)
+
+
+def gravity_words(gravity: Gravity) -> str:
+    """What it does in the nominal attitude, and how to number the axes where it does not hold it."""
+    words = gravity_predicate(gravity)
+    return f"{words}: {turn_needed(gravity)}" if gravity.away else words
+
+
+def gravity_predicate(gravity: Gravity) -> str:
+    """Whether it holds the nominal attitude, turns the body away or leaves it free."""
+    if not gravity.away:
+        return f"holds the body{f', but for turns about {_axes(gravity.free)}' if gravity.free else ''}"
+    how = (
+        f"about {_axes(gravity.away)}, with up to {gravity.away_nm:.2g} N m, "
+        f"{gravity.away_nm / gravity.coils_nm:.0%} of what the coils give in the mean"
+    )
+    if gravity.falls_over:
+        return f"turns the body over {how}"
+    return f"turns the body away {how}, so that these have to hold it all the time"
+
+
+def turn_needed(gravity: Gravity) -> str:
+    """Which attitude gravity holds, and how to write it, as clauses."""
+    up, _, normal = gravity.held_order
+    moments = ", ".join(f"{gravity.moments_kgm2[axis]:.3g}" for axis in gravity.held_order)
+    return (
+        f"it would hold axis {up + 1}, of the least moment, up and axis {normal + 1}, of the largest, along "
+        f"the orbit's normal; number the axes so that body.inertia_kgm2 = [{moments}]"
+    )
+
+
+def _axes(axes: tuple[int, ...]) -> str:
+    *first, last = (str(axis + 1) for axis in axes)
+    return f"axes {', '.join(first)} and {last}" if first else f"axis {last}"
