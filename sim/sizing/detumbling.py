@@ -3,7 +3,7 @@
 B-dot with the strongest level takes angular momentum away at c m_3 B p, B being the field across a coil's
 axis, p the part of the time for which a coil may be driven, and c how well the coils stand to the field and
 to the rate: measured on flights of two cubesats at 5 to 17 deg/s, within a quarter. From 1 to 0.1 deg/s takes
-1.5 orbits more: what is along the field has to wait until the field has turned.
+1 to 5 orbits more: B-dot ends at twice the orbital rate, with which the field turns; the law does the rest.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from sim.value_types import Vec3
 
 ONE_AT_A_TIME, EACH, CONTINUOUS = 0.7, 1.25, 1.1
 """c of coils that share their back-off, that have one each, and that are driven continuously."""
-LAST_ORBITS = 1.5
+LAST_ORBITS = 2.5
 USUAL_DEGPS: Vec3 = (10.0, 10.0, 10.0)
 """About each axis, after a rough separation: where the scenario begins slowly."""
 SLOW_DEGPS, SLOWEST_DEGPS = 1.0, 0.1
