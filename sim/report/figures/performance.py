@@ -156,7 +156,7 @@ class _Spin:
 
 
 @dataclass(slots=True)
-class _Rate:
+class _Tumble:
     """The rate relative to the orbital frame: at start and end, and since when it stays under two limits."""
 
     slow: Settling
@@ -197,7 +197,7 @@ class Performance:
         self._pointing, self._axis1 = _Angle(Settling(held)), _Angle(Settling(held))
         self._convergence = _Convergence(round(CONVERGED_FOR_S * self._hz))
         self._spin = _Spin(Settling(held))
-        self._rate = _Rate(Settling(held), Settling(held))
+        self._tumble = _Tumble(Settling(held), Settling(held))
         self._controlled = ControlledError(controlled(scenario), scenario, Settling(held))
         self.judgement = Judgement(scenario, ticks)
         """By the requirements of the scenario."""
@@ -212,7 +212,7 @@ class Performance:
         recent = slice(max(0, self._last_orbit_from - first), rows)
         self._pointing.take(np.degrees(angle_rad(q)), recent)
         self._axis1.take(np.degrees(axis1_angle_rad(q)), recent)
-        self._rate.take(np.degrees(magnitudes(truth["omega_body_orbit_radps"])))
+        self._tumble.take(np.degrees(magnitudes(truth["omega_body_orbit_radps"])))
         self._convergence.take(truth, estimates, first)
         reference_radps = spin_reference_radps(self._scenario, truth["t_s"])
         self._spin.take(truth["omega_body_orbit_radps"][:, 0], reference_radps, recent)
@@ -235,7 +235,7 @@ class Performance:
             "controlled": self._controlled.figures(self._orbit_s * self._hz),
             "pointing_deg": self._pointing.figures(),
             "axis1_deg": axis1,
-            "rate_degps": self._rate.figures(self._hz),
+            "rate_degps": self._tumble.figures(self._hz),
         }
         if self._convergence.found and self._convergence.first is not None:
             result |= self._convergence.consistency.figures()
