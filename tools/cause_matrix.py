@@ -4,6 +4,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from itertools import chain
 from typing import NamedTuple
 
 from fsw.input.schema import Nested, merge
@@ -67,7 +68,7 @@ def table(found: list[tuple[Case, tuple[str, ...]]]) -> Iterator[str]:
         told = [causes for case, causes in found if case.cause == cause]
         right = sum(cause in causes if cause else not causes for causes in told)
         wrong = [sorted(set(causes) - {cause} - planted.also) for causes in told]
-        which = ", ".join(f"{name} {count}" for name, count in Counter(sum(wrong, [])).most_common())
+        which = ", ".join(f"{name} {count}" for name, count in Counter(chain.from_iterable(wrong)).most_common())
         yield f"| {cause or 'nothing'} | {len(told)} | {right} | {sum(map(bool, wrong))} | {which} |"
 
 
