@@ -23,6 +23,7 @@ class JunitCase(NamedTuple):
         wall_s: how long it took, s.
         failure: why it failed; empty where it did not.
         skipped: why it was not judged; empty where it was.
+        properties: the evidence, names and values.
     """
 
     classname: str
@@ -30,6 +31,7 @@ class JunitCase(NamedTuple):
     wall_s: float = 0.0
     failure: str = ""
     skipped: str = ""
+    properties: Sequence[tuple[str, str]] = ()
 
 
 def junit_xml(name: str, suites: Mapping[str, Sequence[JunitCase]]) -> str:
@@ -105,6 +107,10 @@ def _add(suite: ElementTree.Element, case: JunitCase) -> None:
     test = ElementTree.SubElement(
         suite, "testcase", classname=_text(case.classname), name=_text(case.name), time=f"{case.wall_s:.3f}"
     )
+    if case.properties:
+        evidence = ElementTree.SubElement(test, "properties")
+        for name, value in case.properties:
+            ElementTree.SubElement(evidence, "property", name=_text(name), value=_text(value))
     for tag, message in (("failure", case.failure), ("skipped", case.skipped)):
         if message:
             ElementTree.SubElement(test, tag, message=_text(message))

@@ -21,4 +21,4 @@ def _check(text: str) -> str:
 
 
 Name = Annotated[str, AfterValidator(_check)]
-"""A text of a scenario that becomes part of a path."""
+"""A text of a scenario that becomes part of a path, or may."""

@@ -11,6 +11,7 @@ from typing import Annotated, Literal, NamedTuple, Self
 from pydantic import Field, Strict, model_validator
 
 from fsw.input.schema import Positive, Section, TableError, validated
+from sim.scenario.names import Name
 
 
 class Unit(NamedTuple):
@@ -57,17 +58,25 @@ OF = {"attitude": "whole attitude", "axis": "axis 1", "spin": "spin rate"}
 """What an index is of, in words."""
 
 
+def in_words(index: str, what: str | None) -> str:
+    """An index and what it is of; ``what`` does not matter where the index has no choice of it."""
+    row = INDICES[index]
+    return f"{row.words} of {OF[what]}" if row.of and what else row.words
+
+
 class RequirementSection(Section):
     """The upper limit of an index, to be met by the orbit ``by_orbit``; a shorter flight is not judged.
 
-    ``what``: the whole attitude, body axis 1 relative to the vertical, or the spin about it; by default what
-    the scenario's modes point. ``window``: the last ``last_orbits`` orbits of the flight, or all from
+    ``id`` is the name by which verdicts call it, each only once in a scenario. ``what``: the whole attitude,
+    body axis 1 relative to the vertical, or the spin about it; by default what the scenario's modes point.
+    ``window``: the last ``last_orbits`` orbits of the flight, or all from
     settling on, when the error of ``what`` stays below ``settled_deg`` (``settled_degps`` for a spin rate);
     then it must have settled by that orbit. ``sunlit``: only the ticks in sunlight. The limit is on the root
     mean square over the window or, with ``probability``, holds for that fraction of the time: 1 is always.
     ``average_s`` is the time over which MPE takes the mean and RPE the deviation from it.
     """
 
+    id: Name | None = None
     index: Literal[tuple(INDICES)]  # type: ignore[valid-type]  # the names are those of the table
     what: Literal["attitude", "axis", "spin"] | None = None
     at_most_deg: Positive | None = None
@@ -123,6 +132,24 @@ class RequirementSection(Section):
 
 
 Requirements = Annotated[tuple[RequirementSection, ...], Strict(False)]
+
+
+def check_ids(requirements: Requirements) -> None:
+    """Check that no two requirements have the same name.
+
+    Raises:
+        ValueError: two have.
+    """
+    first: dict[str, int] = {}
+    for number, one in enumerate(requirements):
+        if one.id is None:
+            continue
+        if one.id in first:
+            raise ValueError(
+                f"requirement.{number}.id = '{one.id}' is that of requirement.{first[one.id]} too"
+            )
+        first[one.id] = number
+
 
 _EXPECTATION = re.compile(r"\s*(\w+)(?:\.(\w+))?\s*<=?\s*([-+.\w]+?)\s*(deg/s|deg|orbits|%|J)?\s*")
 _FORM = "write INDEX<VALUE or INDEX.WHAT<VALUE, for instance 'ape<2' or 'ape.axis<2'"

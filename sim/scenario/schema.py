@@ -35,7 +35,7 @@ from fsw.table.table import FlightTable
 from sim.faults.section import Faults, check_sensors
 from sim.scenario.names import Name
 from sim.scenario.own_effects import Effects, with_digests
-from sim.scenario.requirements import Requirements, expectation
+from sim.scenario.requirements import Requirements, check_ids, expectation
 from sim.scenario.sections import (
     DisturbanceSection,
     ScenarioBody,
@@ -124,6 +124,7 @@ class Scenario(Section):
             self._check_decay()
         if self.coils.resistance_ohm is None and any(one.index == "energy" for one in self.requirement):
             raise ValueError("a requirement on energy needs coils.resistance_ohm")
+        check_ids(self.requirement)
         cells = self.sensors.cells
         check_sensors(self.fault, 0 if cells is None else len(cells.normals))
         return self

@@ -29,6 +29,16 @@ def test_suites_count_what_failed_and_what_was_not_judged():
     assert list(root[0][0]) == []
 
 
+def test_evidence_is_in_properties_before_the_failure():
+    case = JunitCase("c", "n", failure="x", properties=(("limit", "2.0"), ("unit", "\x1b")))
+    (test,) = ElementTree.fromstring(junit_xml("t", {"s": [case]}))[0]
+    assert [child.tag for child in test] == ["properties", "failure"]
+    assert [dict(one.attrib) for one in test[0]] == [
+        {"name": "limit", "value": "2.0"},
+        {"name": "unit", "value": "\\x1b"},
+    ]
+
+
 def test_what_xml_cannot_hold_is_escaped():
     text = junit_xml("a\0b", {"s": [JunitCase("c", "<n>\udcff", failure='\x1b & "x"')]})
     root = ElementTree.fromstring(text)

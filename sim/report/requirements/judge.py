@@ -19,7 +19,7 @@ from sim.report.requirements.diagnosis import diagnose
 from sim.report.requirements.evidence import EvidenceGatherer, Missed
 from sim.report.requirements.words import number, orbits
 from sim.scenario.controlled import controlled
-from sim.scenario.requirements import DEG, INDICES, OF, ORBITS, RequirementSection
+from sim.scenario.requirements import DEG, INDICES, ORBITS, RequirementSection, in_words
 from sim.scenario.schema import Scenario, orbit_period_s
 from sim.statistics.indices import magnitudes
 from sim.statistics.settling import HELD_S, Settling, held_ticks
@@ -277,6 +277,7 @@ def _stated(one: Gathered) -> Json:
     """What is required."""
     section = one.section
     return {
+        "id": section.id,
         "index": section.index,
         "what": one.what if INDICES[section.index].of else None,
         "limit": section.limit,
@@ -337,9 +338,8 @@ def _of_coils(one: Gathered, scenario: Scenario, audit: AuditReport) -> float:
 
 
 def _name(one: Gathered) -> str:
-    row = INDICES[one.section.index]
-    of = f" of {OF[one.what]}" if row.of else ""
-    return f"{row.words}{of}"
+    words = in_words(one.section.index, one.what)
+    return words if one.section.id is None else f"{one.section.id}: {words}"
 
 
 def _window(one: Gathered) -> str:

@@ -44,6 +44,31 @@ def test_what_makes_no_sense_is_refused_in_one_sentence(values, words):
     assert "\n" not in str(caught.value)
 
 
+def test_a_requirement_may_have_a_name_by_which_others_know_it():
+    assert requirement(id="REQ-01.a_2").requirement[0].id == "REQ-01.a_2"
+    assert requirement().requirement[0].id is None
+
+
+@pytest.mark.parametrize("name", ["", "REQ 01", "REQ/01", "REQ:01", "\u00e91", "x" * 101])
+def test_a_name_of_other_characters_is_refused_in_one_sentence(name):
+    with pytest.raises(TableError) as caught:
+        requirement(id=name)
+    assert "requirement.0.id: " in str(caught.value)
+    assert "allowed are letters, digits" in str(caught.value)
+
+
+def test_a_name_given_twice_is_refused_in_one_sentence():
+    one = {"index": "ape", "at_most_deg": 1.0, "by_orbit": 2.0, "id": "REQ-01"}
+    with pytest.raises(TableError) as caught:
+        load("microsat", {"requirement": [one, {**one, "id": "REQ-02"}, one]})
+    assert str(caught.value) == "scenario microsat: requirement.2.id = 'REQ-01' is that of requirement.0 too"
+
+
+def test_requirements_without_a_name_may_be_several():
+    one = {"index": "ape", "at_most_deg": 1.0, "by_orbit": 2.0}
+    assert len(load("microsat", {"requirement": [one, one]}).requirement) == 2
+
+
 @pytest.mark.parametrize(
     ("text", "index", "what", "limit", "unit"),
     [

@@ -22,6 +22,12 @@ def test_a_flight_that_is_as_long_as_its_orbit_is_judged_and_a_shorter_one_is_no
     assert short["text"] == "APE of whole attitude: judged by orbit 1, flown were 0.50 orbits"
 
 
+def test_a_requirement_with_a_name_is_called_by_it(judge_made, orbit_ticks):
+    named, nameless = judge_made([ape(id="REQ-01"), ape()], np.full(orbit_ticks, 1.0))
+    assert (named["id"], nameless["id"]) == ("REQ-01", None)
+    assert named["text"] == f"REQ-01: {nameless['text']}"
+
+
 def test_a_missed_one_says_by_how_much_and_why(judge_made, orbit_ticks):
     (one,) = judge_made([ape()], np.full(orbit_ticks, 130.0))
     assert one["verdict"] == Outcome.FAILED
