@@ -9,6 +9,7 @@ from fsw.core.fdir.faults import CoilFault, SensorFault
 from fsw.core.monitors import Monitor
 from fsw.wire.messages import CoilRefusedReason, Mode, Severity
 from hil_stub.coils.events import CoilEventCode
+from hil_stub.wheel.wheel_driver import WheelEventCode
 from sim.audit.findings import seconds_text
 from sim.drawing.page_parts import Table
 from sim.flight.isolations import UNITS
@@ -143,6 +144,17 @@ _COIL: dict[int, Words] = {
 }
 _WORDS = {"FSW": _FSW, "COIL": _COIL}
 """By node, then by the number of the event."""
+_NAMES: Mapping[str, type[IntEnum]] = {"FSW": Event, "COIL": CoilEventCode, "WHEEL": WheelEventCode}
+"""The names of the events of a node."""
+
+
+def event_names(node: str, event: int, severity: int) -> dict[str, str | None]:
+    """The names of an event of a node and of its severity; None for a number that has none."""
+    kind = _NAMES.get(node)
+    return {
+        "name": kind(event).name if kind is not None and event in set(kind) else None,
+        "severity_name": Severity(severity).name if severity in set(Severity) else None,
+    }
 
 
 def in_words(event: Json) -> EventInWords:

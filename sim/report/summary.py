@@ -8,6 +8,7 @@ from sim.audit.findings import DipoleCount
 from sim.flight.isolations import isolated_unit, readmitted_unit
 from sim.record.candump import LogEntry
 from sim.record.run_record import FlightRecord
+from sim.report.event_words import event_names, in_words
 from sim.report.figures.performance import Performance
 from sim.scenario.schema import Scenario
 from sim.value_types import Json
@@ -45,15 +46,7 @@ class BusTally:
             self._take_isolation(values["event"], values["argument"], seconds)
         self.event_count += 1
         if len(self.events) < MAX_EVENTS:
-            self.events.append(
-                {
-                    "t_s": seconds,
-                    "node": SENDERS[can_id],
-                    "event": values["event"],
-                    "severity": values["severity"],
-                    "argument": values["argument"],
-                }
-            )
+            self.events.append(_event(seconds, SENDERS[can_id], **values))
 
     def _take_isolation(self, event: int, argument: int, seconds: float) -> None:
         unit = isolated_unit(event, argument)
@@ -62,6 +55,21 @@ class BusTally:
             if unit not in self.isolated:
                 self.isolated.append(unit)
         self.out_of_use.pop(readmitted_unit(event, argument) or "", None)
+
+
+def _event(seconds: float, node: str, event: int, severity: int, argument: int, **_: int) -> Json:
+    """An event with its names, and in words."""
+    names = event_names(node, event, severity)
+    stated = {
+        "t_s": seconds,
+        "node": node,
+        "event": event,
+        "name": names["name"],
+        "severity": severity,
+        "severity_name": names["severity_name"],
+        "argument": argument,
+    }
+    return stated | {"text": in_words(stated).what}
 
 
 def summarise(

@@ -3,8 +3,10 @@
 import pytest
 
 from fsw.core.events import SEVERITY, Event
+from fsw.wire.messages import Severity
 from hil_stub.coils.events import CoilEventCode
-from sim.report.event_words import event_table, in_words
+from hil_stub.wheel.wheel_driver import WheelEventCode
+from sim.report.event_words import event_names, event_table, in_words
 from sim.scenario.schema import load
 
 
@@ -41,6 +43,26 @@ def test_every_event_has_words_and_a_meaning(node, event):
 )
 def test_what_happened_is_said_with_its_argument(event, argument, what):
     assert words("FSW", event, argument).what == what
+
+
+@pytest.mark.parametrize(
+    ("node", "event", "name"),
+    [
+        *(("FSW", event, event.name) for event in Event),
+        *(("COIL", event, event.name) for event in CoilEventCode),
+        *(("WHEEL", event, event.name) for event in WheelEventCode),
+        ("FSW", 200, None),
+        ("MAG", 1, None),
+    ],
+)
+def test_an_event_has_its_name_beside_its_number(node, event, name):
+    found = event_names(node, int(event), 0)
+    assert found == {"name": name, "severity_name": "INFO"}
+
+
+@pytest.mark.parametrize(("severity", "name"), [*((one, one.name) for one in Severity), (99, None)])
+def test_so_has_a_severity(severity, name):
+    assert event_names("FSW", Event.MODE_CHANGED, int(severity))["severity_name"] == name
 
 
 def test_a_strange_node_severity_or_number_is_no_error():

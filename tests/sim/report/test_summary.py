@@ -117,7 +117,16 @@ class TestRealFlight:
 
     def test_events_and_mode(self, summary):
         assert [event["node"] for event in summary["events"]] == ["FSW"] * len(summary["events"])
-        assert summary["events"][0] == {"t_s": 0.0, "node": "FSW", "event": 2, "severity": 0, "argument": 0}
+        assert summary["events"][0] == {
+            "t_s": 0.0,
+            "node": "FSW",
+            "event": 2,
+            "name": "FILTER_STARTED",
+            "severity": 0,
+            "severity_name": "INFO",
+            "argument": 0,
+            "text": "filter started",
+        }
         changes = [event["argument"] for event in summary["events"] if event["event"] == 1]
         assert summary["mode_final"] == Mode(changes[-1]).name
 

@@ -324,9 +324,10 @@ class TestTally:
         tally.take(self.entry(FswEvent(2, 4, 17, -5).encode(), 17.25))
         tally.take(self.entry(PlantEvent(1, 9, 18, 3).encode(), 18.0))
         tally.take(self.entry(TickDone(18, 1).encode(), 18.0))
-        assert tally.events == [
-            {"t_s": 17.25, "node": "FSW", "event": 4, "severity": 2, "argument": -5},
-            {"t_s": 18.0, "node": "PLANT", "event": 9, "severity": 1, "argument": 3},
+        shown = ("t_s", "node", "event", "name", "severity", "severity_name", "argument", "text")
+        assert [tuple(event[key] for key in shown) for event in tally.events] == [
+            (17.25, "FSW", 4, "MONITOR_TRIPPED", 2, "ERROR", -5, "monitor tripped: number -5"),
+            (18.0, "PLANT", 9, None, 1, "WARNING", 3, "event 9 (3)"),
         ]
 
     def test_all_events_are_counted_and_the_first_kept_and_the_cut_is_said(self, audit):
