@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
 
-from fsw.input.near import did_you_mean
+from fsw.input.near import did_you_mean, toml_files_near
 from fsw.input.toml_text import BoundsError, load_toml
 
 Triple = Annotated[tuple[float, float, float], Strict(False)]
@@ -56,7 +56,9 @@ def read_toml(path: Path) -> Nested:
     try:
         return load_toml(path)
     except OSError as error:
-        raise TableError(f"{path}: cannot be read ({error.strerror or error})") from None
+        files = toml_files_near(path) if isinstance(error, FileNotFoundError) else []
+        hint = f"; did you mean {' or '.join(files)}?" if files else ""
+        raise TableError(f"{path}: cannot be read ({error.strerror or error}){hint}") from None
     except BoundsError as error:
         raise TableError(f"{path}: {error}") from None
     except tomllib.TOMLDecodeError as error:

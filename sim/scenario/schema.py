@@ -16,7 +16,7 @@ from typing import Any, Literal, Self
 from pydantic import Field, model_validator
 
 from fsw.core.orbit.tle import tle_elements
-from fsw.input.near import did_you_mean
+from fsw.input.near import did_you_mean, toml_files_near
 from fsw.input.schema import (
     Nested,
     Section,
@@ -298,17 +298,27 @@ def _with_floor(sigma: float, floor: float) -> float:
 
 
 def _read(name_or_path: str) -> tuple[Nested, str]:
-    if name_or_path.endswith(".toml"):
-        path = Path(name_or_path)
+    path = Path(name_or_path)
+    if name_or_path.endswith(".toml") or _is_misspelt_path(path, name_or_path):
         return with_digests(named(read_toml(path), path.parent), path.parent), name_or_path
     names = shipped_names()
     if name_or_path not in names:
+        hint = did_you_mean(name_or_path, [*names, *toml_files_near(path)])
         raise TableError(
-            f"there is no scenario {name_or_path!r}{did_you_mean(name_or_path, names)}: choose one of "
+            f"there is no scenario {name_or_path!r}{hint}: choose one of "
             f"{', '.join(names)}, or a path that ends in .toml"
         )
     shipped_file = resources.files("sim.scenario.shipped").joinpath(f"{name_or_path}.toml")
     return tomllib.loads(shipped_file.read_text(encoding="utf-8")), f"scenario {name_or_path}"
+
+
+def _is_misspelt_path(path: Path, text: str) -> bool:
+    """Whether a text is no name, but the path of no file, and is near that of one that there is."""
+    try:
+        is_path = ("." in text or "/" in text) and not path.exists()
+    except OSError:  # too long to be one
+        return False
+    return is_path and bool(toml_files_near(path))
 
 
 def shipped_names() -> list[str]:

@@ -1,8 +1,10 @@
 """What a user may have meant."""
 
+from pathlib import Path
+
 import pytest
 
-from fsw.input.near import did_you_mean, near
+from fsw.input.near import did_you_mean, near, toml_files_near
 
 KNOWN = ("control.law", "coils.backoff", "coils.backoff_s", "inertia_kgm2", "per_coil", "shared")
 
@@ -26,6 +28,26 @@ def test_the_likest_known_word_comes_first(word, first):
 def test_nothing_is_near_a_word_like_none(word):
     assert near(word, KNOWN) == []
     assert did_you_mean(word, KNOWN) == ""
+
+
+class TestFiles:
+    @pytest.fixture
+    def folder(self, tmp_path):
+        for name in ("my3u.toml", "other.toml", "my3u.csv"):
+            (tmp_path / name).touch()
+        return tmp_path
+
+    @pytest.mark.parametrize("name", ["my3u.tml", "my3u", "My3U.toml", "m3u.toml", "my3u.toml.txt"])
+    def test_the_likest_toml_file_beside_one_that_does_not_exist(self, folder, name):
+        assert toml_files_near(folder / name) == [str(folder / "my3u.toml")]
+
+    def test_a_file_in_the_working_folder_is_named_without_it(self, folder, monkeypatch):
+        monkeypatch.chdir(folder)
+        assert toml_files_near(Path("my3u.tml")) == ["my3u.toml"]
+
+    @pytest.mark.parametrize("name", ["a.tml", "zzz.toml", "none/my3u.toml", "my3u.csv/my3u.toml"])
+    def test_nothing_is_near_a_file_like_none_or_in_no_folder(self, folder, name):
+        assert toml_files_near(folder / name) == []
 
 
 def test_at_most_three_are_named():

@@ -185,6 +185,15 @@ class TestReadToml:
         with pytest.raises(TableError, match=r"a\.toml: cannot be read \(No such file or directory\)"):
             read_toml(tmp_path / "a.toml")
 
+    def test_of_a_missing_file_a_similar_one_beside_it_is_named(self, tmp_path):
+        (tmp_path / "my3u.toml").touch()
+        with pytest.raises(TableError) as caught:
+            read_toml(tmp_path / "my3.toml")
+        assert str(caught.value) == (
+            f"{tmp_path}/my3.toml: cannot be read (No such file or directory); "
+            f"did you mean {tmp_path}/my3u.toml?"
+        )
+
     def test_a_folder(self, tmp_path):
         with pytest.raises(TableError, match="cannot be read"):
             read_toml(tmp_path)

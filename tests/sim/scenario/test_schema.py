@@ -3,6 +3,7 @@
 from datetime import UTC, datetime
 from importlib import resources
 from math import hypot
+from pathlib import Path
 
 import pytest
 
@@ -115,6 +116,27 @@ class TestFinding:
 
     def test_a_missing_file(self, tmp_path):
         assert "cannot be read (No such file or directory)" in fault(str(tmp_path / "x.toml"))
+
+    @pytest.mark.parametrize("given", ["my3u.tml", "./my3u", "my3u."])
+    def test_of_a_missing_file_with_another_ending_a_similar_one_is_named(self, tmp_path, monkeypatch, given):
+        monkeypatch.chdir(tmp_path)
+        (tmp_path / "my3u.toml").touch()
+        missing = "cannot be read (No such file or directory)"
+        assert fault(given) == f"{Path(given)}: {missing}; did you mean my3u.toml?"
+
+    def test_a_name_may_have_meant_a_file(self, tmp_path, monkeypatch):
+        monkeypatch.chdir(tmp_path)
+        (tmp_path / "mysat.toml").touch()
+        assert "there is no scenario 'mysat' (did you mean 'mysat.toml'?): choose one of " in fault("mysat")
+
+    @pytest.mark.parametrize("given", ["my3u.tml", "mine.txt", "mine." + 300 * "x", "\0/a.tml"])
+    def test_what_is_near_no_file_or_is_one_of_another_kind_is_no_scenario(
+        self, tmp_path, monkeypatch, given
+    ):
+        monkeypatch.chdir(tmp_path)
+        (tmp_path / "mine.txt").touch()
+        (tmp_path / "mine.toml").touch()
+        assert f"there is no scenario {given!r}" in fault(given)
 
     def test_a_fault_in_a_file_bears_its_path(self, tmp_path):
         file = tmp_path / "mine.toml"
