@@ -61,8 +61,9 @@ def compare(
     settings: tuple[str, ...],
 ) -> int:
     """Fly every applicable control law on SCENARIO, all else the same: table and picture."""
-    from sim.compare import command
     from sim.flight.record_flight import ticks_of
 
     load_scenario(scenario, settings, lambda chosen: ticks_of(chosen, orbits))
+    from sim.compare import command  # loaded once the scenario is known to be sound: it takes a second
+
     return command.compare(scenario, settings, laws, driver, orbits, seed, workers, out, gains)

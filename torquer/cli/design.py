@@ -55,20 +55,22 @@ def design(
     """
     from sim.console import answer, current, say
     from sim.scenario.schema import load, parse_settings
-    from torquer.api.design import design
 
     over = parse_settings(settings)
     _check_together(
         laws, {"--gains": gains, "--write": write, "--out": out}, {"--keep": keep, "--flights": flights}
     )
+    name = load(scenario, over).name
     if laws is not None:
         from sim.tuning.command import design_laws
 
         kept = design_laws(scenario, over, laws, keep, flights)
         answer({"gains": kept.rows})
         return 0
+    from torquer.api.design import design  # loaded once the scenario is known to be sound: it takes a second
+
     if out is None and not current().as_json:
-        out = Path("runs") / f"design-{load(scenario, over).name}"
+        out = Path("runs") / f"design-{name}"
     found = design(scenario, gains=gains, set=over, write=write, out=out, progress=True)
     say(str(found), failed=not found.ok)
     answer(found.values)

@@ -208,3 +208,25 @@ def test_elements_from_a_pipe_are_refused_at_once(tmp_path, capsys):
     code, out, err = run(capsys, "size", "--tle", str(tmp_path / "tle.txt"))
     assert (code, out) == (2, "")
     assert f"{tmp_path / 'tle.txt'}: cannot be read" in err
+
+
+REFUSED = """
+import sys
+from torquer.cli.main import main
+try:
+    main.main(sys.argv[1:], prog_name="torquer")
+except SystemExit as ended:
+    slow = {"matplotlib.figure", "scipy.stats", "scipy.optimize"} & set(sys.modules)
+    print(ended.code, *sorted(slow))
+"""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("command", ["sil", "size", "design", "compare", "campaign", "hil"])
+def test_a_malformed_scenario_is_refused_before_what_takes_long_to_load(tmp_path, command):
+    path = tmp_path / "bad.toml"
+    path.write_text('name = "bad"\n')
+    words = [sys.executable, "-c", REFUSED, command, str(path)]
+    done = subprocess.run(words, capture_output=True, text=True, check=True, timeout=60)
+    assert "bad.toml: summary is missing" in done.stderr
+    assert done.stdout.split() == ["2"]
