@@ -118,8 +118,8 @@ def test_a_flight(capsys, tmp_path, monkeypatch):
         ("run complete", 0),
     ]
     judged = values["summary"]["requirements"]
-    assert [case[0].tag for case in requirements] == ["skipped"] * len(judged)
-    assert [case[0].get("message") for case in requirements] == [one["text"] for one in judged]
+    assert [[part.tag for part in case] for case in requirements] == [["properties", "skipped"]] * len(judged)
+    assert [case[1].get("message") for case in requirements] == [one["text"] for one in judged]
 
 
 @pytest.mark.long
