@@ -1,13 +1,17 @@
 """The user's own code that a table names: ``FILE.py:NAME``, or the name of an entry point.
 
 Finding it reads its source and gives its SHA-256; only loading it executes it, and only if its source has
-the digest that was named.
+the digest that was named. ``object MODULE:NAME`` names what a program has given as an object: there is no
+source to execute, and it is neither found nor loaded here.
 """
 
 import hashlib
 import re
 import sys
 import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
@@ -20,8 +24,12 @@ from fsw.input.schema import TableError
 MOST_BYTES = 1_000_000
 LONGEST_ERROR = 300
 """Most characters of an error of the user's code in a sentence."""
+GUARD = 'put the call under if __name__ == "__main__"'
 
 _IN_FILE = re.compile(r"(?P<file>.+\.py):(?P<name>[A-Za-z_]\w{0,99})", re.S)
+_GIVEN = re.compile(r"object (?P<module>[^:]*):(?P<name>[^:]+)", re.S)
+_LOADING: ContextVar[tuple[str, ...]] = ContextVar("loading", default=())
+"""What is being executed for what it defines, the innermost last."""
 
 
 class Found(NamedTuple):
@@ -36,16 +44,45 @@ def in_file(reference: str) -> bool:
     return _IN_FILE.fullmatch(reference) is not None
 
 
+def given_as(reference: str) -> tuple[str, str] | None:
+    """Module and qualified name of what was given as an object; None: a reference of another form."""
+    match = None if in_file(reference) else _GIVEN.fullmatch(reference)
+    return (match["module"], match["name"]) if match else None
+
+
 def short_name(reference: str) -> str:
-    """The NAME of ``FILE.py:NAME``; the name of an entry point as it is."""
-    match = _IN_FILE.fullmatch(reference)
+    """The NAME of ``FILE.py:NAME``, or the last of an object's; the name of an entry point as it is."""
+    match, given = _IN_FILE.fullmatch(reference), given_as(reference)
+    if given is not None:
+        return given[1].rpartition(".")[2]
     return match["name"] if match else reference
 
 
 def display(reference: str) -> str:
     """A reference without the folders of its file."""
-    match = _IN_FILE.fullmatch(reference)
+    match, given = _IN_FILE.fullmatch(reference), given_as(reference)
+    if given is not None:
+        return f"{given[1]} of {given[0]}, given as an object"
     return f"{match['name']} of {Path(match['file']).name}" if match else reference
+
+
+def is_running(reference: str) -> bool:
+    """Whether a reference is of the very file that Python runs as its script."""
+    match = _IN_FILE.fullmatch(reference)
+    script = getattr(sys.modules.get("__main__"), "__file__", None)
+    if match is None or not isinstance(script, str):
+        return False
+    return Path(script).resolve() == Path(match["file"]).resolve()
+
+
+def refuse_while_loading(what: str) -> None:
+    """Refuse what flies, in a file that is executed for what it defines: it would fly each time that it is.
+
+    Raises:
+        TableError: such a file is being executed.
+    """
+    if _LOADING.get():
+        raise TableError(f"{what}: a file that is loaded for what it defines flies nothing: {GUARD}")
 
 
 def find(reference: str, folder: Path, group: str) -> Found | None:
@@ -70,16 +107,18 @@ def find(reference: str, folder: Path, group: str) -> Found | None:
     return None if entry is None else Found(reference, _package_sha256(entry))
 
 
-def load(reference: str, sha256: str | None, group: str) -> object:
-    """Execute the code, and return what it has under the name.
+def load(reference: str, sha256: str | None, group: str, afresh: bool = False) -> object:
+    """Execute the code, and return what it has under the name; the script that runs is not executed again.
 
     Args:
         reference: as ``find`` gives it.
         sha256: the one that its source must have; None: any.
         group: of entry points.
+        afresh: execute the script that runs as well, as another process does.
 
     Raises:
-        TableError: it is not there, its source has another digest, it fails, or it has no such name.
+        TableError: it is not there, its source has another digest, it fails, it has no such name, or it is
+            being executed already.
     """
     found = find(reference, Path(), group)
     if found is None:
@@ -89,14 +128,23 @@ def load(reference: str, sha256: str | None, group: str) -> object:
             f"{reference}: its source has the SHA-256 {found.sha256[:16]}..., not {str(sha256)[:16]}..."
         )
     match = _IN_FILE.fullmatch(reference)
-    if match:
-        return _of_file(Path(match["file"]), match["name"], found.sha256)
-    entry = _entry(reference, group)
-    assert entry is not None
+    if match and is_running(reference) and not afresh:
+        return _of_script(match["file"], match["name"])
+    with _while_loading(match["file"] if match else reference):
+        if match:
+            return _of_file(Path(match["file"]), match["name"], found.sha256)
+        return _of_entry(reference, group)
+
+
+@contextmanager
+def _while_loading(what: str) -> Iterator[None]:
+    if what in _LOADING.get():
+        raise TableError(f"{what} asks for what it defines while it is loaded for it: {GUARD}")
+    before = _LOADING.set((*_LOADING.get(), what))
     try:
-        return entry.load()
-    except (Exception, SystemExit) as error:
-        raise TableError(f"{reference} ({entry.value}): {error_clause(error)}") from None
+        yield
+    finally:
+        _LOADING.reset(before)
 
 
 def error_clause(error: BaseException, file: str = "") -> str:
@@ -113,6 +161,26 @@ def _text(error: BaseException) -> str:
         return str(error)[:LONGEST_ERROR]
     except Exception:  # its own __str__ fails
         return "without a text"
+
+
+def _of_script(file: str, name: str) -> object:
+    """What the script that runs has under the name."""
+    defined = vars(sys.modules["__main__"])
+    if name not in defined:
+        raise TableError(
+            f"{file}: there is no {name} in it yet: define it above the call, or {GUARD} at its end"
+        )
+    found: object = defined[name]
+    return found
+
+
+def _of_entry(name: str, group: str) -> object:
+    entry = _entry(name, group)
+    assert entry is not None
+    try:
+        return entry.load()
+    except (Exception, SystemExit) as error:
+        raise TableError(f"{name} ({entry.value}): {error_clause(error)}") from None
 
 
 def _of_file(path: Path, name: str, sha256: str) -> object:

@@ -2,7 +2,7 @@
 
 import signal
 from dataclasses import dataclass, replace
-from inspect import signature
+from inspect import signature, unwrap
 from itertools import islice
 from math import isfinite
 from operator import index
@@ -22,6 +22,7 @@ from fsw.input.quantities import with_values
 from fsw.input.schema import Nested, TableError
 from fsw.own_law import GROUP, ControlLaw, Law
 from fsw.own_law import Demand as OwnDemand
+from fsw.table.given_law import given_law
 from fsw.table.sections import ControlTable
 
 LONGEST_S = 5.0
@@ -32,6 +33,10 @@ ARGUMENTS = ("inputs", "memory", "setpoint", "config")
 """Of a law, in this order."""
 ASKED_TWICE = 16
 """In each tick that is a multiple of this the law is called twice; a pure one gives the same answer."""
+
+
+ONLY_ITS_OWNER = "only whoever has it can replay the run, by torquer.load(RUN, law=IT)"
+"""Of a law that was given as an object."""
 
 
 class LawError(TableError):
@@ -59,6 +64,10 @@ def named(values: Nested, folder: Path) -> Nested:
     law = control.get("law") if isinstance(control, dict) else None
     if not isinstance(control, dict) or not isinstance(law, str) or law in LAWS or "law_sha256" in control:
         return values
+    if own_code.given_as(law) is not None:
+        given = given_law()
+        digest = {} if given is None or given.sha256 is None else {"law_sha256": given.sha256}
+        return {**values, "control": {**control, **digest}}
     found = own_code.find(law, folder, GROUP)
     if found is None:
         return values
@@ -67,6 +76,8 @@ def named(values: Nested, folder: Path) -> Nested:
 
 def withheld(control: ControlTable) -> str:
     """Why the source of the table's own law is not executed, as a sentence."""
+    if own_code.given_as(control.law) is not None:
+        return f"the run flew a law of its own ({flown(control)}): {ONLY_ITS_OWNER}"
     return (
         f"the run flew a law of its own ({flown(control)}), which is executed only where it is named again: "
         f"--law {quote(control.law)}"
@@ -75,7 +86,8 @@ def withheld(control: ControlTable) -> str:
 
 def flown(control: ControlTable) -> str:
     """The table's own law and its digest, in words."""
-    return f"{own_code.display(control.law)}, SHA-256 {str(control.law_sha256)[:16]}..."
+    digest = "without a digest" if control.law_sha256 is None else f"SHA-256 {control.law_sha256[:16]}..."
+    return f"{own_code.display(control.law)}, {digest}"
 
 
 def declared(control: ControlTable) -> ControlLaw:
@@ -86,7 +98,7 @@ def declared(control: ControlTable) -> ControlLaw:
     """
     if control.law_withheld:
         raise TableError(withheld(control))
-    found = own_code.load(control.law, control.law_sha256, GROUP)
+    found = _found(control)
     if isinstance(found, ControlLaw):
         parts = {"point": found.point, "acquire": found.acquire or found.point}
         for name, part in parts.items():
@@ -101,6 +113,18 @@ def declared(control: ControlTable) -> ControlLaw:
         return ControlLaw(found)
     kind = f"the class {found.__name__}" if isinstance(found, type) else f"of type {type(found).__name__}"
     raise TableError(f"{control.law} is {kind}, not a law: neither a function nor a ControlLaw")
+
+
+def _found(control: ControlTable) -> object:
+    """What the table's own law names, loaded or given as an object."""
+    if own_code.given_as(control.law) is None:
+        return own_code.load(control.law, control.law_sha256, GROUP)
+    given = given_law()
+    if given is None or given.sha256 != control.law_sha256:
+        raise TableError(
+            f"the law is {flown(control)}: only whoever has it can fly it, by torquer.fly with law=IT"
+        )
+    return given.law
 
 
 def _check_form(form: object, what: str) -> None:
@@ -128,9 +152,16 @@ def with_own_law(config: ControlConfig, control: ControlTable) -> ControlConfig:
     elif given:
         raise TableError(f"{control.law}: control.gains.{name}: the law has no gains of its own")
     called = own_code.display(control.law)
-    file = control.law.rpartition(":")[0]
-    acquire, point = (GuardedLaw(form, called, file) for form in (law.acquire or law.point, law.point))
+    forms = (law.acquire or law.point, law.point)
+    acquire, point = (GuardedLaw(form, called, _file_of(form, control.law)) for form in forms)
     return replace(config, gains=gains, own=OwnLaw(name, acquire, point))
+
+
+def _file_of(form: Law, reference: str) -> str:
+    """The file that a traceback names, of a function that this process had before the law was asked for."""
+    here = own_code.given_as(reference) is not None or own_code.is_running(reference)
+    code = getattr(unwrap(form), "__code__", None) if here else None
+    return reference.rpartition(":")[0] if code is None else str(code.co_filename)
 
 
 @dataclass(frozen=True, slots=True)

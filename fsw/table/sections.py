@@ -12,7 +12,7 @@ from fsw.core.laws.table import LAWS
 from fsw.core.orbit.propagation import sgp4_orbit
 from fsw.core.orbit.tle import plain_line
 from fsw.input.near import did_you_mean
-from fsw.input.own_code import short_name
+from fsw.input.own_code import given_as, short_name
 from fsw.input.schema import NotNegative, Positive, Section, Square, StepNt, StepOfOne, Triple
 from fsw.table.inertia import check_inertia, three_numbers, without_rounding
 
@@ -171,7 +171,8 @@ class ControlTable(Section):
     Units: ``k_w`` N m s/T^2, ``k_a`` N m/T^2, ``k_i`` N m/(T^2 s). ``gains`` holds, by law, that law's own
     parameters. ``minimiser`` is how a continuous driver finds the dipole of a predictive law. A law that is
     not in the table of laws is ``FILE.py:NAME`` or the name of an entry point; ``law_sha256`` is the digest
-    of its source, by which it is recognised; ``law_withheld`` keeps that source from being executed.
+    of its source, by which it is recognised; ``law_withheld`` keeps that source from being executed. One that
+    a program gave as an object is ``object MODULE:NAME``, and flies only where the program gives it.
     """
 
     law_sha256: str | None = Field(default=None, pattern="^[0-9a-f]{64}$")
@@ -199,7 +200,7 @@ class ControlTable(Section):
     @classmethod
     def _law_exists(cls, law: str, info: ValidationInfo) -> str:
         named = info.data.get("law_sha256") is not None
-        if law not in LAWS and not named:
+        if law not in LAWS and not named and given_as(law) is None:
             names = ", ".join(map(repr, LAWS))
             raise ValueError(
                 f"{law!r}{did_you_mean(law, LAWS)} is not allowed: allowed is {names}, FILE.py:NAME or the "

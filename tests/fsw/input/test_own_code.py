@@ -3,11 +3,12 @@
 import hashlib
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 from fsw.input import own_code
-from fsw.input.own_code import display, find, in_file, load, short_name
+from fsw.input.own_code import display, find, given_as, in_file, is_running, load, short_name
 from fsw.input.schema import TableError
 
 GROUP = "torquer.laws"
@@ -42,6 +43,9 @@ def sentence(reference, sha256=None):
         ("a.py", False, "a.py"),
         ("a.py:2law", False, "a.py:2law"),
         ("a.py:law.point", False, "a.py:law.point"),
+        ("object __main__:law", False, "law"),
+        ("object laws:make.<locals>.law", False, "law"),
+        ("object __main__:<lambda>", False, "<lambda>"),
     ],
 )
 def test_a_reference_is_of_a_file_or_a_name(reference, file, name):
@@ -120,6 +124,37 @@ def test_an_entry_point_that_is_not_installed():
 def test_a_reference_is_displayed_without_its_folders():
     assert display("/home/somebody/a.py:law") == "law of a.py"
     assert display("installed") == "installed"
+    assert display("object __main__:law") == "law of __main__, given as an object"
+
+
+def test_what_was_given_as_an_object_is_told_from_a_file():
+    assert given_as("object a.b:f.<locals>.law") == ("a.b", "f.<locals>.law")
+    assert given_as("object a.py:law") is None
+    assert given_as("installed") is None
+
+
+def test_the_script_that_runs_is_not_executed_again_but_where_it_is_asked_for(source, monkeypatch):
+    reference, sha256 = source("law = []\n")
+    script = ModuleType("__main__")
+    script.__file__ = reference.rpartition(":")[0]
+    monkeypatch.setitem(sys.modules, "__main__", script)
+    assert is_running(reference)
+    assert "there is no law in it yet: define it above the call" in sentence(reference)
+    script.law = [1]
+    assert load(reference, sha256, GROUP) is script.law
+    assert load(reference, sha256, GROUP, afresh=True) == []
+    del script.__file__
+    assert not is_running(reference)
+
+
+def test_a_file_that_asks_for_itself_and_one_that_flies(source):
+    text = "from fsw.input.own_code import load, refuse_while_loading\n"
+    own_code.refuse_while_loading("fly")
+    reference, _ = source(f"{text}load(__file__ + ':law', None, '')\nlaw = 1\n")
+    assert "asks for what it defines while it is loaded for it: put the call under" in sentence(reference)
+    reference, _ = source(f"{text}refuse_while_loading('fly')\nlaw = 1\n")
+    assert "line 2: TableError: fly: a file that is loaded for what it defines flies" in sentence(reference)
+    own_code.refuse_while_loading("fly")
 
 
 @pytest.fixture
