@@ -16,6 +16,7 @@ import numpy as np
 from fsw.compiled import standing
 from fsw.core.estimation.kalman import Algebra, available
 from fsw.input import gzip_text
+from fsw.input.own_code import given_as
 from fsw.input.schema import Nested, TableError
 from sim.errors import HarnessError, writing
 from sim.record.destination import check_folder
@@ -112,11 +113,22 @@ def begin(
                 "code": standing().code,
                 "platform": fingerprint(),
                 "algebra": available(Algebra(flight_table(scenario).estimator.algebra)),
+                **_law_object(scenario),
                 DIGESTS: {},
                 "complete": False,
             },
         )
     return path
+
+
+def _law_object(scenario: Scenario) -> Json:
+    """The key of run.json that a law has which was given as an object."""
+    control = flight_table(scenario).control
+    given = given_as(control.law)
+    if given is None:
+        return {}
+    module, name = given
+    return {"law_object": {"module": module, "qualname": name, "source_sha256": control.law_sha256}}
 
 
 def update(path: Path, **values: object) -> None:

@@ -64,11 +64,21 @@ class SenderRecord(TypedDict):
 
 
 @with_config(_OPEN)
+class LawRecord(TypedDict):
+    """The law that a program gave as an object; ``source_sha256`` is None where its source cannot be told."""
+
+    module: Text
+    qualname: Text
+    source_sha256: Digest | None
+
+
+@with_config(_OPEN)
 class RunRecord(FlightRecord):
     """run.json.
 
     ``code``: whether the flight code ran compiled; ``algebra``: what computed the filter's matrices;
-    ``ended``: why a flight was not completed, where the plant knows.
+    ``ended``: why a flight was not completed, where the plant knows; ``law_object``: only whoever has that
+    law can replay the run.
     """
 
     schema_version: int
@@ -88,6 +98,7 @@ class RunRecord(FlightRecord):
     algebra: NotRequired[Text]
     second_senders: NotRequired[list[SenderRecord]]
     ended: NotRequired[Text]
+    law_object: NotRequired[LawRecord]
 
 
 _RECORD = TypeAdapter(RunRecord)

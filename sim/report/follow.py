@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from fsw.input.own_code import given_as, is_running
 from sim.errors import HarnessError
 from sim.flight.sil import exit_text, start_node
 from sim.record import run_dir
@@ -34,7 +35,8 @@ def follow(path: Path, ticks: int, law: str | None = None) -> Iterator[Conclude]
     Yields:
         What concludes the run; it raises ``HarnessError`` as ``conclude`` does.
     """
-    if ticks < LEAST_TICKS or (os.cpu_count() or 1) < 2:
+    stays = law is not None and (given_as(law) is not None or is_running(law))  # no other process has it
+    if stays or ticks < LEAST_TICKS or (os.cpu_count() or 1) < 2:
         from sim.report.conclude import conclude  # noqa: PLC0415 the flight does not need it
 
         yield lambda watch: conclude(path, watch, law)

@@ -7,7 +7,7 @@ from typing import Any
 import tomli_w
 
 from fsw.core.orbit.tle import read_tle, tle_elements
-from fsw.input.own_code import display
+from fsw.input.own_code import display, given_as
 from sim.audit.auditor import AuditReport
 from sim.audit.findings import COILS, seconds_text
 from sim.drawing.page_parts import Table
@@ -123,6 +123,8 @@ def scenario_in_words(scenario: Scenario) -> tuple[Pairs, Pairs]:
         ("Law", f"{display(control.law)}, k_w {control.k_w:g} N m s/T², k_a {control.k_a:g} N m/T²"),
         ("Tick rate", f"{scenario.time.tick_hz} Hz"),
     ]
+    if given_as(control.law) is not None:
+        right.append(("Replay", "only by whoever has the law, which was given as an object"))
     return left, right
 
 
