@@ -24,6 +24,7 @@ import pytest
 
 if TYPE_CHECKING:
     from torquer.api.audit import Audit
+    from torquer.api.laws import LawLike
     from torquer.api.run import Run
 
 _COMPARISONS: dict[str, Callable[[Any, Any], bool]] = {
@@ -121,7 +122,7 @@ class Fly(Protocol):
         *,
         orbits: float | None = None,
         seed: int = 1,
-        law: str | None = None,
+        law: "LawLike | None" = None,
         **sections: dict[str, Any],
     ) -> FlownScenario:
         """Fly a scenario by its name or path.
@@ -130,7 +131,7 @@ class Fly(Protocol):
             scenario: a shipped one, or a path that ends in .toml.
             orbits: how long; None: as the scenario says.
             seed: of all random streams.
-            law: FILE.py:NAME or an installed law, instead of the scenario's.
+            law: FILE.py:NAME, an installed law, a function or a ControlLaw, instead of the scenario's.
             sections: laid over the scenario, for instance ``control={"k_w": 1e6}``.
 
         Raises:
@@ -148,7 +149,7 @@ def fly(tmp_path_factory: pytest.TempPathFactory) -> Fly:
         *,
         orbits: float | None = None,
         seed: int = 1,
-        law: str | None = None,
+        law: "LawLike | None" = None,
         **sections: dict[str, Any],
     ) -> FlownScenario:
         import torquer

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
 
+from fsw.input.own_code import refuse_while_loading
 from fsw.input.schema import Section
 from sim.campaign import command
 from sim.campaign.command import PAGE, FlownCampaign
@@ -197,6 +198,7 @@ def campaign(
         InputError: an argument, the file, a key, or the folder.
         Error: the results can no longer be written.
     """
+    refuse_while_loading("torquer.campaign")
     options = checked(
         _CampaignOptions,
         "campaign",

@@ -2,14 +2,16 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Annotated
 
 from pydantic import Field, Strict
 
+from fsw.input.own_code import display, given_as, refuse_while_loading
 from fsw.input.schema import Section, TableError
-from fsw.table.own_law import LawError
+from fsw.table.own_law import ONLY_ITS_OWNER, LawError
 from sim.errors import FlightError
 from sim.flight.record_flight import check_can_fly, ticks_of
 from sim.flight.sil import fly_processes, serve_bus
@@ -26,6 +28,7 @@ from sim.scenario.schema import Scenario, expecting, orbit_period_s
 from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
 from torquer.api.audit import optional_key
 from torquer.api.errors import one_sentence
+from torquer.api.laws import LawLike, check_two_processes, checked_law, law_given
 from torquer.api.run import Run
 
 Flight = Callable[[Path, Watch], None]
@@ -50,7 +53,7 @@ def fly(
     bus: str = "virtual",
     pace: str = "lockstep",
     set: Settings | None = None,
-    law: str | PathLike[str] | None = None,
+    law: LawLike | None = None,
     expect: Sequence[str] = (),
     out: str | PathLike[str] | None = None,
     compress: bool = False,
@@ -69,7 +72,8 @@ def fly(
         bus: ``virtual``: in this process; ``loop``, ``auto``, ``socketcan:NAME``, ``slcan:PORT``: as two.
         pace: ``lockstep``, or ``realtime[:FACTOR]``.
         set: values laid over the scenario by key: ``{"time.tick_hz": 10}`` or ``{"time": {"tick_hz": 10}}``.
-        law: ``FILE.py:NAME``, a law of one's own, or an installed one by its name; None: the scenario's.
+        law: ``FILE.py:NAME``, a law of one's own, or an installed one by its name; or the law itself, a
+            function or a ``ControlLaw``, which flies on the virtual bus alone; None: the scenario's.
         expect: requirements beside those of the scenario, such as ``ape<2``, judged at the end of the flight.
         out: directory of the run; None: a new one, ``runs/<scenario>-<UTC time>``.
         compress: write the log as ``bus.log.gz``.
@@ -83,29 +87,49 @@ def fly(
     options = checked(
         _FlightOptions, "fly", orbits=orbits, seed=seed, bus=bus, pace=pace, compress=compress, expect=expect
     )
+    refuse_while_loading("torquer.fly")
     if options.orbits is not None and options.orbits <= 0.0:
         raise TableError(f"fly: orbits = {options.orbits:g} is not allowed: allowed is a number above 0")
     key = None if sign is None else private_key(Path(path_text(sign, "sign")))
-    chosen, folder = chosen_scenario(scenario, set, law), optional_path(out, "out")
-    chosen_pace = parse_pace(options.pace)
-    ticks = ticks_of(chosen, options.orbits)
-    chosen = expecting(chosen, options.expect, ticks / chosen.time.tick_hz / orbit_period_s(chosen))
-    check_can_fly(chosen, options.seed)
-    with shown(progress), _flight_on(options.bus, chosen) as (kind, flight):
-        path = run_dir.begin(folder, chosen, options.seed, ticks, kind, chosen_pace, options.compress)
+    with shown(progress), law_given(law) as named:
+        run = _fly(chosen_scenario(scenario, set, named), options, optional_path(out, "out"))
+    if key is not None and not run.ended:
+        sign_run(run.path, key)
+    held = run.law is not None and given_as(str(run.law)) is not None
+    return replace(run, law=law) if held else run
+
+
+def _fly(scenario: Scenario, options: _FlightOptions, folder: Path | None) -> Run:
+    """The flight of a scenario whose law can be executed here."""
+    pace, ticks = parse_pace(options.pace), ticks_of(scenario, options.orbits)
+    scenario = expecting(scenario, options.expect, ticks / scenario.time.tick_hz / orbit_period_s(scenario))
+    law = scenario.own_law
+    if options.bus != "virtual":
+        check_two_processes(scenario, options.bus)
+    check_can_fly(scenario, options.seed)
+    notes = _notes(law)
+    with _flight_on(options.bus, scenario) as (kind, flight):
+        path = run_dir.begin(folder, scenario, options.seed, ticks, kind, pace, options.compress)
         if options.bus == "auto":
             note(f"bus: {kind} (auto)")
-        with follow(path, ticks, chosen.own_law) as conclude_flight:
+        for line in notes:
+            note(f"note: {line}")
+        with follow(path, ticks, law) as conclude_flight:
             try:
-                with progress_of(f"flying {chosen.name}", ticks) as watch:
+                with progress_of(f"flying {scenario.name}", ticks) as watch:
                     flight(path, watch)
             except (FlightError, LawError) as error:
-                return Run(path, chosen.own_law, ended=str(error))
+                return Run(path, law, ended=str(error), notes=notes)
             with progress_of("replaying", ticks) as watch:
                 conclude_flight(watch)
-    if key is not None:
-        sign_run(path, key)
-    return Run(path, chosen.own_law)
+    return Run(path, law, notes=notes)
+
+
+def _notes(law: str | None) -> tuple[str, ...]:
+    """What a run of this law says of it."""
+    if law is None or given_as(law) is None:
+        return ()
+    return (f"the law is {display(law)}: {ONLY_ITS_OWNER}",)
 
 
 @contextmanager
@@ -122,7 +146,7 @@ def _flight_on(bus: str, scenario: Scenario) -> Iterator[tuple[str, Flight]]:
 def report(
     run: str | PathLike[str],
     *,
-    law: str | PathLike[str] | None = None,
+    law: LawLike | None = None,
     sign: str | PathLike[str] | None = None,
     verify: str | PathLike[str] | None = None,
     progress: bool = False,
@@ -131,7 +155,7 @@ def report(
 
     Args:
         run: its directory.
-        law: the law of its own that the run flew, named again; without it none is executed.
+        law: the law of its own that the run flew, named or given again; without it none is executed.
         sign: private Ed25519 key in PEM with which the run is signed.
         verify: public Ed25519 key in PEM; the run must be signed by its private half.
         progress: show progress on stderr.
@@ -145,8 +169,7 @@ def report(
     """
     path = Path(path_text(run, "run"))
     key = None if sign is None else private_key(Path(path_text(sign, "sign")))
-    named = None if law is None else path_text(law, "law")
-    with shown(progress):
+    with shown(progress), law_given(law) as named:
         binding = require_sources(path, optional_key(verify))
         before = (path / run_dir.RUN).read_bytes()
         with progress_of("replaying", run_dir.read_run(path)["ticks"]) as watch:
@@ -155,4 +178,4 @@ def report(
             sign_run(path, key)
         elif signature_path(path / run_dir.RUN).exists() and (path / run_dir.RUN).read_bytes() != before:
             note(f"note: {run_dir.RUN} is no longer what was signed: --sign KEY signs it again")
-    return Run(path, named, mismatched=not binding.holds, notes=tuple(binding.lines))
+    return Run(path, checked_law(law), mismatched=not binding.holds, notes=tuple(binding.lines))

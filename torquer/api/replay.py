@@ -11,6 +11,7 @@ from sim.scenario.settings import nested
 from torquer.api.arguments import Settings, path_text
 from torquer.api.audit import optional_key
 from torquer.api.errors import one_sentence
+from torquer.api.laws import LawLike, law_given
 
 
 @one_sentence
@@ -21,7 +22,7 @@ def replay(
     set: Settings | None = None,
     plant: bool = False,
     onto: str | None = None,
-    law: str | PathLike[str] | None = None,
+    law: LawLike | None = None,
     effects: bool = False,
     channel: str | None = None,
     verify: str | PathLike[str] | None = None,
@@ -35,7 +36,7 @@ def replay(
         set: values laid over the scenario by key.
         plant: feed the recorded commands to the plant instead, and compare its frames.
         onto: play the log onto this bus instead, at its own pace.
-        law: the law of its own that the run flew, named again; without it none is executed.
+        law: the law of its own that the run flew, named or given again; without it none is executed.
         effects: execute the effects of its own that the run names; ``plant`` needs them.
         channel: the one to read, of a log that has several.
         verify: public Ed25519 key in PEM; the run must be signed by its private half.
@@ -49,8 +50,7 @@ def replay(
         raise HarnessError(f"plant, and onto {onto}: a replay is one or the other")
     path = Path(path_text(run_or_log, "run_or_log"))
     of_log = None if scenario is None else path_text(scenario, "scenario")
-    named = None if law is None else path_text(law, "law")
-    with shown(progress):
+    with shown(progress), law_given(law) as named:
         log, run = command.locate(path, of_log, nested(set), optional_key(verify), named, effects, channel)
         with run.binding.beside_errors():
             if onto is not None:

@@ -19,6 +19,7 @@ from sim.scenario.schema import Scenario
 from torquer.api.arguments import path_text
 from torquer.api.audit import Audit, check
 from torquer.api.errors import one_sentence
+from torquer.api.laws import LawLike, checked_law, law_given
 from torquer.api.replay import replay
 
 if TYPE_CHECKING:
@@ -35,14 +36,14 @@ class Run:
 
     Attributes:
         path: the directory.
-        law: the law of its own that it flew, which may be executed again; None: none.
+        law: the law of its own that it flew, or its name, which may be executed again; None: none.
         ended: why the flight ended before its time, as far as ``fly`` knows; empty otherwise.
         mismatched: whether ``torquer.report`` found a file that had been changed since it was written.
-        notes: what it found, a line each.
+        notes: what it found, a line each; of ``torquer.fly``, who can replay the run if not everybody.
     """
 
     path: Path
-    law: str | None = None
+    law: LawLike | None = None
     ended: str = ""
     mismatched: bool = False
     notes: tuple[str, ...] = ()
@@ -134,7 +135,8 @@ class Run:
         """
         from torquer.api.datasets import estimate  # noqa: PLC0415  an extra
 
-        return estimate(self.path, with_law_named(self.scenario, self.law)[0], self.record)
+        with law_given(self.law) as named:
+            return estimate(self.path, with_law_named(self.scenario, named)[0], self.record)
 
     @cached_property
     @one_sentence
@@ -152,16 +154,16 @@ class Run:
 
 
 @one_sentence
-def load(path: str | PathLike[str], *, law: str | PathLike[str] | None = None) -> Run:
+def load(path: str | PathLike[str], *, law: LawLike | None = None) -> Run:
     """The run in a directory, flown here or elsewhere, complete or not.
 
     Args:
         path: the directory.
-        law: the law of its own that the run flew, named again; without it none is executed.
+        law: the law of its own that the run flew, named or given again; without it none is executed.
 
     Raises:
         InputError: the directory holds no run.
     """
     folder = Path(path_text(path, "path"))
     run_dir.read_run(folder)
-    return Run(folder, None if law is None else path_text(law, "law"))
+    return Run(folder, checked_law(law))
