@@ -1,6 +1,8 @@
 """The code of docs/own-law.md does what the page says."""
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -28,6 +30,16 @@ def test_its_law_flies_with_the_gain_of_the_page(folder):
 
 
 GAIN = {"control.gains.damp.damping_nms_per_t2": 3e6}
+
+
+@pytest.mark.long
+def test_its_script_flies_and_replays(folder):
+    done = subprocess.run(
+        [sys.executable, "script.py"], cwd=folder, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    (run,) = (folder / "runs").iterdir()
+    assert torquer.load(run).record["law_object"]["qualname"] == "idle"
 
 
 def test_its_effects_fly(folder):
