@@ -19,7 +19,7 @@ from sim.scenario.names import ALLOWED, is_name
 from sim.scenario.schema import Scenario, scenario_of, shipped_names
 from sim.sizing.command import doubt_of, points
 from sim.sizing.expectation import expect
-from sim.sizing.gravity import gravity_on
+from sim.sizing.gravity import gravity_on, turned_away
 from sim.sizing.levels import levels_against, two_digits
 from sim.sizing.scenario_warnings import scenario_warnings
 
@@ -89,7 +89,7 @@ def scenario_text(satellite: NewSatellite, file: str) -> str:
     """
     satellite.check()
     text = _rendered(satellite, file)
-    if satellite.levels_am2 is not None:
+    if satellite.levels_am2 is not None or satellite.dipole_am2 is not None:
         return text
     scenario = scenario_made(text)
     levels = levels_against(scenario, expect(scenario))
@@ -130,6 +130,12 @@ def _aligned(line: str) -> str:
     return f"{value:<{COMMENTS - 1}} {comment}" if tab else line
 
 
+def _driver(satellite: NewSatellite) -> str:
+    if satellite.continuous:
+        return "coils driven continuously"
+    return f"pulsed coils with {'own' if satellite.per_coil else 'shared'} back-off"
+
+
 def _figures(satellite: NewSatellite) -> dict[str, Any]:
     body, moments, levels = satellite.body, satellite.moments_kgm2, satellite.levels
     gains, strongest = gains_for(body), levels[2]
@@ -138,7 +144,7 @@ def _figures(satellite: NewSatellite) -> dict[str, Any]:
     orbit = f"{body.altitude_km:.0f} km, {body.inclination_deg:.1f} deg"
     return {
         "name": satellite.name,
-        "summary": f"{mass}{orbit}, pulsed coils with {'own' if satellite.per_coil else 'shared'} back-off",
+        "summary": f"{mass}{orbit}, {_driver(satellite)}",
         "tle": satellite.tle,
         "epoch": f"{satellite.epoch:%Y-%m-%dT%H:%M:%SZ}",
         "altitude_km": satellite.altitude_km,
@@ -146,8 +152,11 @@ def _figures(satellite: NewSatellite) -> dict[str, Any]:
         "mass_kg": satellite.mass_kg,
         "edges": None if satellite.inertia_kgm2 else satellite.edges_m,
         "moments": [float(f"{moment:.6g}") for moment in moments],
-        "unstable": not moments[0] < moments[1] < moments[2],
+        "unstable": bool(turned_away(body)),
         "levels": levels,
+        "axes": satellite.axes,
+        "continuous": satellite.continuous,
+        "cells": satellite.cells,
         "backoff": "per_coil" if satellite.per_coil else "shared",
         "dipole_per_ampere": two_digits(strongest / STRONGEST_A),
         "coil_field": two_digits(COIL_FIELD_NT / strongest),

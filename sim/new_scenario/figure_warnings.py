@@ -18,6 +18,7 @@ OPTIONS = {
     "orbit.tle": "--tle",
     "body.inertia_kgm2": "--inertia-kgm2, or what follows from --mass-kg and --size-m,",
     "coils.levels_am2": "--levels-am2",
+    "coils.max_dipole_am2": "--dipole-am2",
 }
 """The option that gives each key of a scenario."""
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
-from math import pi
+from math import pi, sqrt
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from sim.sizing.levels import Levels, levels_for, two_digits
 from sim.value_types import Vec3
 
 PULSE_S = 3.0
+AXES = ("x", "y", "z")
+LEAST_PART = 16.0
+"""The strongest level over the least one, at least: each is four times the one before."""
 RANGES = {
     "altitude_km": (150.0, 40_000.0),
     "inclination_deg": (0.0, 180.0),
@@ -25,6 +28,7 @@ RANGES = {
     "size_m": (0.01, 100.0),
     "inertia_kgm2": (1e-7, 1e9),
     "levels_am2": (1e-6, 1e5),
+    "dipole_am2": (1e-6, 1e5),
     "magnetometer_nt": (0.0, 1e6),
     "sun_deg": (0.0, 90.0),
 }
@@ -44,9 +48,15 @@ class NewSatellite:
         altitude_km: of the circular orbit.
         inclination_deg: of the circular orbit.
         mass_kg: with ``size_m`` in place of the inertia.
-        size_m: edges of a homogeneous box; the longest becomes axis 1, the shortest axis 3.
+        size_m: edges of a homogeneous box; the longest becomes axis 1, the shortest axis 3, unless ``axes``
+            says otherwise.
         inertia_kgm2: principal moments; None: from mass and size.
         levels_am2: of the coils; None: as ``sim.sizing`` suggests.
+        axes: which of the user's axes x, y, z become 1 (up), 2 (ahead) and 3 (the orbit's normal); moments
+            and edges are in the user's order then.
+        dipole_am2: the largest of a coil, from which the levels follow; None: as suggested.
+        continuous: the coils are driven continuously, without the limits of pulses.
+        cells: Sun cells on the six sides in place of a Sun sensor.
         per_coil: each coil has a back-off of its own.
         magnetometer_nt: noise, standard deviation.
         sun_deg: noise of the Sun sensor.
@@ -63,6 +73,10 @@ class NewSatellite:
     size_m: Vec3 | None = None
     inertia_kgm2: Vec3 | None = None
     levels_am2: Levels | None = None
+    axes: tuple[str, str, str] | None = None
+    dipole_am2: float | None = None
+    continuous: bool = False
+    cells: bool = False
     per_coil: bool = False
     magnetometer_nt: float = 200.0
     sun_deg: float = 0.5
@@ -81,6 +95,19 @@ class NewSatellite:
                 if value is not None and not least <= value <= most:
                     option = name.replace("_", "-")
                     raise HarnessError(f"--{option}: {value:g} is not allowed: {least:g} to {most:g} is")
+        if self.axes is not None and sorted(self.axes) != list(AXES):
+            given = " ".join(self.axes)
+            raise HarnessError(
+                f"--axes: {given!r} is not allowed: x, y and z, each once, the one that looks up first"
+            )
+        if self.levels_am2 is not None and self.dipole_am2 is not None:
+            raise HarnessError("--levels-am2 and --dipole-am2 exclude each other")
+        if self.levels_am2 is not None and len(set(self.levels_am2)) == 1:
+            level = self.levels_am2[0]
+            raise HarnessError(
+                "--levels-am2: three equal levels are one: they are the dipoles of each coil, least first; "
+                f"for coils of {level:g} A m^2 give --dipole-am2 {level:g}"
+            )
         try:
             check_inertia(diagonal(self.moments_kgm2))
         except ValueError as error:
@@ -91,6 +118,8 @@ class NewSatellite:
         """The edges along axis 1, 2, 3."""
         if self.size_m is None:
             return None
+        if self.axes is not None:
+            return self._in_order(self.size_m)
         longest, middle, shortest = sorted(self.size_m, reverse=True)
         return longest, middle, shortest
 
@@ -102,12 +131,18 @@ class NewSatellite:
             HarnessError: neither inertia nor mass and size are given.
         """
         if self.inertia_kgm2 is not None:
-            return self.inertia_kgm2
+            return self.inertia_kgm2 if self.axes is None else self._in_order(self.inertia_kgm2)
         if self.mass_kg is None or self.edges_m is None:
             raise HarnessError("give --inertia-kgm2 A B C, or --mass-kg and --size-m A B C")
         a, b, c = self.edges_m
         factor = self.mass_kg / 12.0
         return factor * (b * b + c * c), factor * (a * a + c * c), factor * (a * a + b * b)
+
+    def _in_order(self, of_user: Vec3) -> Vec3:
+        """Values about the user's axes, about axis 1, 2, 3."""
+        assert self.axes is not None
+        up, ahead, normal = (of_user[AXES.index(axis)] for axis in self.axes)
+        return up, ahead, normal
 
     @property
     def body(self) -> Body:
@@ -127,8 +162,14 @@ class NewSatellite:
 
     @property
     def levels(self) -> Levels:
-        """The levels given, or those of a body without disturbances."""
-        return self.levels_am2 or levels_for(self.body, PULSE_S)
+        """The levels given, those below the dipole given, or those of a body without disturbances."""
+        if self.levels_am2 is not None:
+            return self.levels_am2
+        usual = levels_for(self.body, PULSE_S)
+        if self.dipole_am2 is None:
+            return usual
+        least = min(usual[0], self.dipole_am2 / LEAST_PART)
+        return two_digits(least), two_digits(sqrt(least * self.dipole_am2)), self.dipole_am2
 
 
 @cache

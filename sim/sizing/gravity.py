@@ -61,12 +61,10 @@ def gravity_on(scenario: Scenario) -> Gravity:
     matter = {"attitude": (UP, AHEAD, NORMAL), "axis": (AHEAD, NORMAL)}.get(what, ())
     if scenario.control.spin_radps != 0.0:
         matter = ()
-    about, square = stiffness(body), body.rate_radps**2
-    moments_kgm2 = moments_of(body)
-    neutral_nm = NEUTRAL * square * max(moments_kgm2)
-    away = tuple(axis for axis in matter if about[axis] < -neutral_nm)
+    about, neutral_nm = stiffness(body), neutral(body)
+    away = tuple(axis for axis in turned_away(body) if axis in matter)
     return Gravity(
-        moments_kgm2,
+        moments_of(body),
         free=tuple(axis for axis in matter if abs(about[axis]) <= neutral_nm),
         away=away,
         away_nm=max((-0.5 * about[axis] for axis in away), default=0.0),
@@ -85,6 +83,16 @@ def stiffness(body: Body) -> tuple[float, float, float]:
     j1, j2, j3 = moments_of(body)
     square, gyroscopic = body.rate_radps**2, body.rate_radps * body.wheel_nms[2]
     return square * (j3 - j2) + gyroscopic, 4.0 * square * (j3 - j1) + gyroscopic, 3.0 * square * (j2 - j1)
+
+
+def neutral(body: Body) -> float:
+    """Up to this stiffness, per radian [N m], nothing turns the body about an axis."""
+    return NEUTRAL * body.rate_radps**2 * max(moments_of(body))
+
+
+def turned_away(body: Body) -> tuple[int, ...]:
+    """The axes, 0 to 2, about which gravity turns the body away."""
+    return tuple(axis for axis, k in enumerate(stiffness(body)) if k < -neutral(body))
 
 
 def gravity_words(gravity: Gravity) -> str:

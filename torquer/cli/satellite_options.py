@@ -21,7 +21,34 @@ _OPTIONS = (
     click.option("--mass-kg", type=_ABOVE_0, help="Of a homogeneous box, with --size-m."),
     click.option("--size-m", type=_THREE, metavar="A B C", help="Its edges; the longest points up."),
     click.option("--inertia-kgm2", type=_THREE, metavar="A B C", help="Principal moments, kg m^2."),
-    click.option("--levels-am2", type=_THREE, metavar="A B C", help="Of the coils. Default: as suggested."),
+    click.option(
+        "--axes",
+        type=(str, str, str),
+        metavar="UP AHEAD NORMAL",
+        help="Your axes that look up, ahead and along the orbit's normal, as z x y: moments and edges are "
+        "about x, y, z then.",
+    ),
+    click.option(
+        "--levels-am2",
+        type=_THREE,
+        metavar="A B C",
+        help="Three dipoles of each coil, least first. Default: as suggested.",
+    ),
+    click.option("--dipole-am2", type=_ABOVE_0, help="Largest dipole of each coil; the levels follow."),
+    click.option(
+        "--driver",
+        default="pulsed",
+        show_default=True,
+        type=click.Choice(["pulsed", "continuous"]),
+        help="pulsed: 3 s every 103 s, as PoSAT-1's; continuous: a dipole each tick.",
+    ),
+    click.option(
+        "--sun",
+        default="sensor",
+        show_default=True,
+        type=click.Choice(["sensor", "cells"]),
+        help="A Sun sensor, or Sun cells on the six sides.",
+    ),
 )
 
 
@@ -44,7 +71,9 @@ def satellite(name: str, tle: Path | None, figures: dict[str, Any]) -> "NewSatel
         raise HarnessError("--tle and --altitude-km, --inclination-deg exclude each other")
     if figures["inertia_kgm2"] is not None and figures["size_m"] is not None:
         raise HarnessError("--inertia-kgm2 and --size-m exclude each other")
-    return NewSatellite(name, None if tle is None else tle_lines(tle), **figures)
+    given = figures | {"continuous": figures["driver"] == "continuous", "cells": figures["sun"] == "cells"}
+    del given["driver"], given["sun"]
+    return NewSatellite(name, None if tle is None else tle_lines(tle), **given)
 
 
 def tle_lines(file: Path) -> tuple[str, str]:
@@ -79,12 +108,23 @@ def asked(figures: dict[str, Any], tle: Path | None) -> tuple[dict[str, Any], Pa
             if found[name] is None:
                 found[name] = click.prompt(text, usual, type=kind)
     if not has_body and found["mass_kg"] is None and found["size_m"] is None:
-        found["inertia_kgm2"] = _optional("Moments of inertia, kg m^2 (Enter: by mass and size)", _three)
+        question = "Moments of inertia about x, y, z, kg m^2 (Enter: by mass and size)"
+        found["inertia_kgm2"] = _optional(question, _three)
+        if found["inertia_kgm2"] is not None and found["axes"] is None:
+            question = "Which of them look up, ahead, along the orbit's normal (Enter: x y z)"
+            found["axes"] = _optional(question, _axes)
     if found["inertia_kgm2"] is None:
         found["mass_kg"] = found["mass_kg"] or click.prompt("Mass, kg", 4.0, type=_ABOVE_0)
         found["size_m"] = found["size_m"] or click.prompt("Edges, m", "0.34 0.1 0.1", value_proc=_three)
-    if found["levels_am2"] is None and not (has_orbit and has_body):
-        found["levels_am2"] = _optional("Coil levels, A m^2 (Enter: as suggested)", _three)
+    if not (has_orbit and has_body):
+        drivers, suns = click.Choice(["pulsed", "continuous"]), click.Choice(["sensor", "cells"])
+        found["driver"] = click.prompt(
+            "Coils in pulses of 3 s every 103 s, or", found["driver"], type=drivers
+        )
+        if found["levels_am2"] is None and found["dipole_am2"] is None:
+            question = "Largest dipole of a coil, A m^2 (Enter: as suggested)"
+            found["dipole_am2"] = _optional(question, _positive)
+        found["sun"] = click.prompt("Sun sensor or cells", found["sun"], type=suns)
     return found, tle
 
 
@@ -103,6 +143,26 @@ def _tle_file(text: str) -> Path:
     except HarnessError as error:
         raise click.BadParameter(str(error)) from None
     return file
+
+
+def _axes(text: str) -> tuple[str, str, str]:
+    """The three axes in an order; what is none is asked for again."""
+    words = text.lower().replace(",", " ").split()
+    if sorted(words) != ["x", "y", "z"]:
+        raise click.BadParameter(f"{text!r}: x, y and z are needed, each once")
+    up, ahead, normal = words
+    return up, ahead, normal
+
+
+def _positive(text: str) -> float:
+    """A positive number; what is none is asked for again."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not value > 0.0:
+        raise click.BadParameter(f"{text!r}: a positive number is needed")
+    return value
 
 
 def _three(text: str) -> tuple[float, float, float]:

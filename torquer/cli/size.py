@@ -40,7 +40,8 @@ def size(
     from sim.sizing.command import size as command
     from sim.sizing.scenario_warnings import scenario_warnings
 
-    given = [name for name, value in {"tle": tle, **figures}.items() if value is not None]
+    usual = {"driver": "pulsed", "sun": "sensor"}
+    given = [name for name, value in {"tle": tle, **figures}.items() if value != usual.get(name)]
     if scenario is not None and given:
         raise HarnessError(f"SCENARIO and --{given[0].replace('_', '-')} exclude each other")
     if scenario is not None:

@@ -84,6 +84,33 @@ def test_the_longest_edge_of_a_box_points_up():
     )
 
 
+def test_moments_in_the_user_s_order_are_renumbered_by_where_the_axes_look():
+    given = NewSatellite("mine", None, 550.0, 97.6, inertia_kgm2=(0.03, 0.04, 0.01), axes=("z", "x", "y"))
+    assert written(given).body.inertia_kgm2 == (0.01, 0.03, 0.04)
+    text = scenario_text(given, "mine.toml")
+    assert "are your z, x, y" in text
+    assert "does not hold" not in text
+    box = NewSatellite("mine", None, 550.0, 97.6, 4.0, (0.1, 0.2, 0.34), axes=("x", "y", "z"))
+    assert box.edges_m == (0.1, 0.2, 0.34), "not the longest edge up: as they said"
+
+
+def test_a_continuous_driver_takes_the_dipole_given():
+    given = NewSatellite(
+        "mine", None, 550.0, 97.6, inertia_kgm2=(0.01, 0.03, 0.04), dipole_am2=0.3, continuous=True
+    )
+    coils = written(given).coils
+    assert (coils.driver, coils.max_dipole_am2, coils.levels_am2[2]) == ("continuous", 0.3, 0.3)
+    low, middle, high = coils.levels_am2
+    assert 0.0 < 2.0 * low < middle < 0.5 * high
+
+
+def test_cells_stand_in_place_of_the_sun_sensor():
+    given = NewSatellite("mine", None, 550.0, 97.6, inertia_kgm2=(0.01, 0.03, 0.04), cells=True)
+    scenario = written(given)
+    assert scenario.sensors.cells is not None
+    assert len(scenario.sensors.cells.normals) == 6
+
+
 def test_a_body_that_the_gravity_gradient_turns_over_is_said_to_be_one():
     turned = NewSatellite("mine", None, 550.0, 97.6, inertia_kgm2=(0.03, 0.03, 0.01))
     assert "does not hold this body upright" in scenario_text(turned, "mine.toml")
@@ -162,6 +189,20 @@ def test_names_that_cannot_be(name, file, sentence, tmp_path):
         (NewSatellite("x", None, 550.0, 97.6, mass_kg=inf, size_m=(1.0,) * 3), "--mass-kg: inf is not"),
         (NewSatellite("x", None, nan, 97.6, inertia_kgm2=(1.0,) * 3), "--altitude-km: nan is not"),
         (NewSatellite("x", None, 550.0, 97.6, 4.0, (0.0, 1.0, 1.0)), "--size-m: 0 is not"),
+        (
+            NewSatellite("x", None, 550.0, 97.6, inertia_kgm2=(1.0,) * 3, levels_am2=(0.2,) * 3),
+            "three equal levels are one.*for coils of 0.2 A m.2 give --dipole-am2 0.2",
+        ),
+        (
+            NewSatellite(
+                "x", None, 550.0, 97.6, inertia_kgm2=(1.0,) * 3, levels_am2=(1.0, 2.0, 3.0), dipole_am2=3.0
+            ),
+            "--levels-am2 and --dipole-am2 exclude each other",
+        ),
+        (
+            NewSatellite("x", None, 550.0, 97.6, inertia_kgm2=(1.0,) * 3, axes=("z", "z", "x")),
+            "--axes: 'z z x' is not allowed",
+        ),
     ],
 )
 def test_what_is_missing_is_named(satellite, sentence, tmp_path):

@@ -8,7 +8,8 @@ from torquer.cli import satellite_options
 from torquer.cli.main import main
 from torquer.cli.satellite_options import asked, satellite, tle_lines
 
-NOTHING = dict.fromkeys(("altitude_km", "inclination_deg", "mass_kg", "size_m", "inertia_kgm2", "levels_am2"))
+MISSING = ("altitude_km", "inclination_deg", "mass_kg", "size_m", "inertia_kgm2", "levels_am2", "dipole_am2")
+NOTHING = dict.fromkeys((*MISSING, "axes")) | {"driver": "pulsed", "sun": "sensor"}
 TLE = load("microsat").orbit.tle
 OTHER = (
     "1 42680U 16049E   17100.50000000  .00000218  00000-0  80444-4 0  9999",
@@ -26,7 +27,7 @@ def answered(monkeypatch, *answers, tle=None, **given):
 
 
 def test_enter_takes_what_is_usual(monkeypatch):
-    found, tle = answered(monkeypatch, "", "", "", "", "", "", "")
+    found, tle = answered(monkeypatch, *9 * [""])
     assert tle is None
     assert found == {
         "altitude_km": 550.0,
@@ -35,20 +36,29 @@ def test_enter_takes_what_is_usual(monkeypatch):
         "size_m": (0.34, 0.1, 0.1),
         "inertia_kgm2": None,
         "levels_am2": None,
+        "dipole_am2": None,
+        "axes": None,
+        "driver": "pulsed",
+        "sun": "sensor",
     }
 
 
 def test_what_is_no_answer_is_asked_for_again(monkeypatch, capsys):
-    answers = ("", "high", "600", "97", "1 2", "1, 1.9, 2", "a b c", "0.5 2 8")
-    found, _ = answered(monkeypatch, *answers)
-    assert (found["inertia_kgm2"], found["levels_am2"]) == ((1.0, 1.9, 2.0), (0.5, 2.0, 8.0))
-    assert "three numbers are needed" in capsys.readouterr().out
+    body = ("1 2", "1, 1.9, 2", "z z x", "y x z")
+    coils = ("maybe", "continuous", "strong", "-1", "8")
+    found, _ = answered(monkeypatch, "", "high", "600", "97", *body, *coils, "moon", "cells")
+    assert (found["inertia_kgm2"], found["axes"]) == ((1.0, 1.9, 2.0), ("y", "x", "z"))
+    assert (found["driver"], found["dipole_am2"], found["sun"]) == ("continuous", 8.0, "cells")
+    out = capsys.readouterr().out
+    assert "three numbers are needed" in out
+    assert "'z z x': x, y and z are needed, each once" in out
+    assert "'-1': a positive number is needed" in out
 
 
 def test_a_file_without_a_tle_is_asked_for_again_at_once(monkeypatch, capsys, tmp_path):
     file = tmp_path / "x.tle"
     file.write_text("\n".join(TLE))
-    _, tle = answered(monkeypatch, "550", str(file), "1 1.9 2", "")
+    _, tle = answered(monkeypatch, "550", str(file), "1 1.9 2", "", "", "", "")
     assert tle == file
     assert "550: cannot be read (No such file or directory)" in capsys.readouterr().out
 
