@@ -30,7 +30,11 @@ MISLED = frozenset({"estimate", "mismatch"})
 PLANTED = {
     "": Planted((), 8.0),
     "gravity": Planted((*TURNED, "initial.angle_deg=60"), 5.0),
-    "weak": Planted(("coils.levels_am2=[0.02,0.04,0.08]",), 5.0, frozenset({"disturbance"})),
+    "weak": Planted(
+        ("coils.levels_am2=[0.03,0.08,0.2]", "coils.dipole_per_ampere_am2=0.5"),
+        5.0,
+        frozenset({"disturbance"}),
+    ),
     "coarse": Planted(("coils.levels_am2=[20.0,30.0,40.0]",), 5.0),
     "disturbance": Planted(("disturbance.residual_dipole_am2=[0.3,0.3,0.3]",), 4.0, MISLED | {"any_law"}),
     "any_law": Planted(("disturbance.torque_nm=[4e-7,4e-7,4e-7]",), 4.0, MISLED | {"disturbance"}),

@@ -10,7 +10,7 @@ from fsw.core.estimation.changes import EDGE_S, NO_CHANGES, Changes
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.kalman import Algebra
 from fsw.core.estimation.mekf_config import mekf_config
-from fsw.core.estimation.orbital_attitude import MOST_TURN_RAD
+from fsw.core.estimation.orbital_attitude import MOST_AGED_TURN_RAD, MOST_TURN_RAD
 from fsw.core.estimation.start.first import StartLimits
 from fsw.core.fdir.sensors.plausibility import PlausibilityConfig
 from fsw.core.fdir.sensors.standstill import Steps
@@ -87,7 +87,7 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
         restart_after_rejections=MAX_REFUSALS_S * table.time.tick_hz,
         valid_sigma_rad=radians(tuning.valid_sigma_deg),
         usable_sigma_rad=radians(tuning.usable_sigma_deg),
-        fastest_valid_radps=MOST_TURN_RAD / tick_s,
+        fastest_valid_radps=(MOST_AGED_TURN_RAD if known.latency_s > 0.0 else MOST_TURN_RAD) / tick_s,
         blank_ticks=ceil(known.latency_s * table.time.tick_hz - 1e-9),
         changes=_changes(table, known),
     )

@@ -12,9 +12,11 @@ from fsw.core.orbit.ephemeris import Reference
 
 KEPT: Final = 1.5
 """Times the sigma at which an attitude becomes valid: up to that it stays so."""
-MOST_TURN_RAD: Final = 0.1
-"""In a tick. Of a body that turns further the filter's linear steps say too much: at 0.15 to 0.3 rad it took
-ages that no sample shows for known within 0.06 s, and they were wrong by 0.4 s, the attitude by 7 deg."""
+MOST_TURN_RAD: Final = 0.2
+MOST_AGED_TURN_RAD: Final = 0.1
+"""In a tick; the second where the samples' age is estimated. Of a body that turns further the filter's linear
+steps say too much: at 0.15 to 0.3 rad it took ages that no sample shows for known within 0.06 s, and they
+were wrong by 0.4 s, the attitude by 7 deg; without ages it was wrong by 0.4 deg, which its 3 sigma denied."""
 
 
 def orbital_attitude(

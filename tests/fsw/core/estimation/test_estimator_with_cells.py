@@ -23,7 +23,7 @@ from fsw.core.estimation.start.first import StartLimits
 from fsw.wire.messages import SunCells
 
 MEKF = cell_filter()
-CONFIG = EstimatorConfig(MEKF, False, StartLimits(3e-6, inf, 0.0), 6, radians(5.0), radians(5.0))
+CONFIG = EstimatorConfig(MEKF, False, StartLimits(3e-6, inf, 0.0), 6, radians(5.0), radians(5.0), inf)
 SEEN = light(REFERENCE.r_eci_m, REFERENCE.sun_eci, CELLS.albedo)
 SLOW = scale(radians(0.05), unit((0.6, -0.48, 0.64)))
 LIT = sunlit(Q_BODY_FROM_ECI, SEEN, CELLS)
