@@ -25,6 +25,7 @@
 # make attack     a million requests to a coil board, ten minutes on its process, a thousand logs: half an hour
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
 # make verdicts   all flights that miss a requirement for a known reason: is it told, and no wrong one: a minute
+# make causes     satellites that have one cause each: which does their diagnosis name? twenty minutes
 # make planted    schedulers with planted faults, and correct ones, through sim.testing as a user would run it: some minutes
 # make validate-planted   errors planted in laws, models and filter: does validate end with exit code 1? some minutes
 # make mutation     change scheduler, interlock, auditor and codec one thing, the methods one sign at a time: do the tests notice? two hours
@@ -42,7 +43,7 @@ compiled := .venv/.compiled
 pip := TORQUER_INTERPRETED=1 $(bin)/pip install --quiet --disable-pip-version-check --no-compile
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv environment compiled sil test test-interpreted test-long test-unpaced test-paced lint docs docs-gallery notebooks test-vcan test-chromium evidence gains population validate comparison faults pulse-limits sizing golden same-flights fuzz scenarios attack differential replay-elsewhere bench basilisk scaling soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv environment compiled sil test test-interpreted test-long test-unpaced test-paced lint docs docs-gallery notebooks test-vcan test-chromium evidence gains population validate comparison faults pulse-limits sizing golden causes same-flights fuzz scenarios attack differential replay-elsewhere bench basilisk scaling soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -136,6 +137,9 @@ evidence: venv
 
 gains population validate comparison faults pulse-limits sizing: venv
 	$(bin)/python tools/evidence.py $@
+
+causes: venv
+	$(bin)/python tools/cause_matrix.py
 
 golden: venv
 	$(bin)/python tests/golden/record.py

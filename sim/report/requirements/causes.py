@@ -289,7 +289,7 @@ def _gravity(missed: Missed, evidence: FlightEvidence) -> str:
     if len(trend) < TREND or missed.what not in ("attitude", "axis") or trend[-1] < OVER_DEG:
         return ""
     gravity = gravity_on(evidence.scenario)
-    return f"gravity {gravity_words(gravity)}" if gravity.away else ""
+    return f"gravity {gravity_words(gravity)}" if gravity.falls_over else ""
 
 
 def _coarse(missed: Missed, evidence: FlightEvidence) -> str:
@@ -394,10 +394,10 @@ CAUSES: Sequence[Diagnosis] = (
     Diagnosis("unstable", ALL - {"ake"}, _unstable, frozenset(("gravity",))),
     Diagnosis("coarse", POINTING, _coarse, BEFORE_POINTING | CANNOT_POINT),
     Diagnosis("weak", POINTING, _weak, BEFORE_POINTING | CANNOT_POINT),
-    Diagnosis("not_settled", POINTING, _not_settled, CANNOT_POINT | {"coarse"}),
+    Diagnosis("not_settled", POINTING, _not_settled, CANNOT_POINT | {"safe", "coarse"}),
     Diagnosis("short", POINTING, _short, POINT_IS_LOST),
     Diagnosis("never_in_point", POINTING, _never_in_point, POINT_IS_LOST | {"short"}),
-    Diagnosis("fell_back", SETTLING, fell_back, frozenset(("safe", "tumbling", "gravity"))),
+    Diagnosis("fell_back", SETTLING, fell_back, CANNOT_POINT | {"safe", "tumbling", "estimate"}),
     Diagnosis("left_again", SETTLING, left_again, POINT_IS_LOST | {"fell_back"}),
     Diagnosis("slow", SETTLING, slow, POINT_IS_LOST | {"fell_back", "left_again"}),
     Diagnosis(
