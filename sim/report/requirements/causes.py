@@ -394,7 +394,7 @@ CAUSES: Sequence[Diagnosis] = (
     Diagnosis("unstable", ALL - {"ake"}, _unstable, frozenset(("gravity",))),
     Diagnosis("coarse", POINTING, _coarse, BEFORE_POINTING | CANNOT_POINT),
     Diagnosis("weak", POINTING, _weak, BEFORE_POINTING | CANNOT_POINT),
-    Diagnosis("not_settled", POINTING, _not_settled, CANNOT_POINT | {"safe", "coarse"}),
+    Diagnosis("not_settled", POINTING, _not_settled, CANNOT_POINT | {"safe", "estimate", "coarse"}),
     Diagnosis("short", POINTING, _short, POINT_IS_LOST),
     Diagnosis("never_in_point", POINTING, _never_in_point, POINT_IS_LOST | {"short"}),
     Diagnosis("fell_back", SETTLING, fell_back, CANNOT_POINT | {"safe", "tumbling", "estimate"}),
