@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from torquer.api.flight import fly, report
     from torquer.api.replay import replay
     from torquer.api.run import Run, load
+    from torquer.api.satellites import NewScenario, Sizing, new, size
     from torquer.api.scenarios import scenarios
 
 _MODULES = {
@@ -25,15 +26,19 @@ _MODULES = {
     "Design": "design",
     "Error": "errors",
     "InputError": "errors",
+    "NewScenario": "satellites",
     "Run": "run",
+    "Sizing": "satellites",
     "campaign": "campaign",
     "check": "audit",
     "design": "design",
     "fly": "flight",
     "load": "run",
+    "new": "satellites",
     "replay": "replay",
     "report": "flight",
     "scenarios": "scenarios",
+    "size": "satellites",
 }
 """Modules of ``torquer.api`` by what they hold."""
 
@@ -43,15 +48,19 @@ __all__ = [
     "Design",
     "Error",
     "InputError",
+    "NewScenario",
     "Run",
+    "Sizing",
     "campaign",
     "check",
     "design",
     "fly",
     "load",
+    "new",
     "replay",
     "report",
     "scenarios",
+    "size",
 ]
 
 

@@ -44,23 +44,36 @@ def new(satellite: NewSatellite, out: Path | None) -> int:
         HarnessError: figures are missing, the name is taken, the file exists or cannot be written.
         TableError: the figures make no satellite.
     """
+    file, scenario, doubts = write_new(satellite, out)
+    for doubt in doubts:
+        warn(doubt)
+    expectation = expect(scenario)
+    pointing_deg = expectation.pointing_deg if points(expectation, gravity_on(scenario)) else None
+    about = "no pointing" if pointing_deg is None else f"about {pointing_deg:.1f} deg RMS"
+    say(f"written: {file}; {about} to expect (torquer size {file})")
+    say(f"fly it: torquer sil {file}")
+    answer({"file": file, "name": scenario.name, "pointing_rms_deg": pointing_deg})
+    return 0
+
+
+def write_new(satellite: NewSatellite, out: Path | None) -> tuple[Path, Scenario, tuple[str, ...]]:
+    """Write the scenario; its file, what is in it, and what of it is most likely wrong, a sentence each.
+
+    Raises:
+        HarnessError: as for ``new``.
+        TableError: the figures make no satellite.
+    """
     file = out or Path(f"{satellite.name}.toml")
     check_new(satellite.name, file)
     text = scenario_text(satellite, file.name)
     scenario = scenario_made(text)
     with writing(file), file.open("x", encoding="utf-8") as target:
         target.write(text)
-    for doubt in (*figure_warnings(satellite, scenario), *scenario_warnings(scenario)):
-        warn(doubt)
+    doubts = [*figure_warnings(satellite, scenario), *scenario_warnings(scenario)]
     expectation = expect(scenario)
-    pointing_deg = expectation.pointing_deg if points(expectation, gravity_on(scenario)) else None
-    about = "no pointing" if pointing_deg is None else f"about {pointing_deg:.1f} deg RMS"
-    if pointing_deg is not None and (doubt := doubt_of(expectation)):
-        warn(doubt)
-    say(f"written: {file}; {about} to expect (torquer size {file})")
-    say(f"fly it: torquer sil {file}")
-    answer({"file": file, "name": scenario.name, "pointing_rms_deg": pointing_deg})
-    return 0
+    if points(expectation, gravity_on(scenario)) and (doubt := doubt_of(expectation)):
+        doubts.append(doubt)
+    return file, scenario, tuple(doubts)
 
 
 def check_new(name: str, file: Path) -> None:

@@ -3,6 +3,7 @@
 from dataclasses import asdict
 from itertools import permutations
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from sim.sizing.detumbling import detumbling, detumbling_words
 from sim.sizing.expectation import Expectation, expect
 from sim.sizing.gravity import Gravity, gravity_on, gravity_words, moments_of
 from sim.sizing.levels import MOST_LOAD, Levels, levels_against
+from sim.value_types import Json
 
 ROUNDED = 1.05
 """By so much the load of levels that were made for a tenth may exceed it: they have two digits."""
@@ -26,19 +28,34 @@ MOST_SPREAD = 20.0
 """Ratio of the moments of inertia up to which the least level is judged by the lightest axis."""
 
 
+class Sized(NamedTuple):
+    """What to expect of a scenario, in words and values, and whether its disturbance is balanced."""
+
+    text: str
+    values: Json
+    balanced: bool
+
+
 def size(scenario: Scenario) -> int:
     """Print what is expected and what levels would do; 1 if the coils cannot balance the disturbance."""
+    found = sized(scenario)
+    say(found.text, failed=not found.balanced)
+    answer(found.values)
+    return int(not found.balanced)
+
+
+def sized(scenario: Scenario) -> Sized:
+    """What is expected and what levels would do."""
     expectation = expect(scenario)
-    levels = levels_against(scenario, expectation)
-    gravity = gravity_on(scenario)
-    say(as_text(scenario, expectation, levels, gravity), failed=expectation.load > 1.0)
-    answer(as_json(scenario, expectation, levels, gravity))
-    return int(expectation.load > 1.0)
+    levels, gravity = levels_against(scenario, expectation), gravity_on(scenario)
+    return Sized(
+        as_text(scenario, expectation, levels, gravity),
+        as_json(scenario, expectation, levels, gravity),
+        expectation.load <= 1.0,
+    )
 
 
-def as_json(
-    scenario: Scenario, expectation: Expectation, levels: Levels, gravity: Gravity
-) -> dict[str, object]:
+def as_json(scenario: Scenario, expectation: Expectation, levels: Levels, gravity: Gravity) -> Json:
     """The same for programs."""
     body = body_of(scenario)
     return {
