@@ -15,6 +15,7 @@ from fsw.input.near import did_you_mean
 from fsw.input.own_code import given_as, short_name
 from fsw.input.schema import NotNegative, Positive, Section, Square, StepNt, StepOfOne, Triple
 from fsw.table.inertia import check_inertia, three_numbers, without_rounding
+from fsw.table.law_names import laws_by_aim
 
 CIRCULAR_KEYS = ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")
 """Keys of a circular orbit; the other kind has ``tle``."""
@@ -201,10 +202,10 @@ class ControlTable(Section):
     def _law_exists(cls, law: str, info: ValidationInfo) -> str:
         named = info.data.get("law_sha256") is not None
         if law not in LAWS and not named and given_as(law) is None:
-            names = ", ".join(map(repr, LAWS))
+            kinds = laws_by_aim({name: entry.aim for name, entry in LAWS.items()})
             raise ValueError(
-                f"{law!r}{did_you_mean(law, LAWS)} is not allowed: allowed is {names}, FILE.py:NAME or the "
-                "entry point of a package"
+                f"{law!r}{did_you_mean(law, LAWS)} is not allowed: allowed is a law of docs/laws.md, "
+                f"{kinds}, FILE.py:NAME or the entry point of a package"
             )
         if law not in LAWS and short_name(law) in LAWS:
             raise ValueError(f"{law!r} is called like a law of the table: give it another name")

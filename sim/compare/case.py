@@ -7,6 +7,7 @@ from fsw.core.laws.entry import Aim
 from fsw.core.laws.table import LAWS
 from fsw.input.near import did_you_mean
 from fsw.input.schema import Nested, merge
+from fsw.table.law_names import laws_by_aim
 from fsw.table.own_law import declared
 from fsw.table.table import lay_over
 from sim.campaign.flight import Order
@@ -80,8 +81,8 @@ def chosen_laws(scenario: Scenario, text: str | None) -> tuple[str, ...]:
         if word not in {*known, *aims, "all"}:
             hint = did_you_mean(word, [*known, *aims])
             raise HarnessError(
-                f"--laws {text}: there is no law '{word}'{hint}: choose among {', '.join(known)}, "
-                f"all laws of an aim ({', '.join(aims)}), or all"
+                f"--laws {text}: there is no law '{word}'{hint}: give names (docs/laws.md), aims, whose laws "
+                f"are flown, or all; {laws_by_aim(known)}"
             )
     named = {
         name for name, aim in known.items() if {aim.value, "all"} & set(words) and is_suited(name, scenario)

@@ -9,6 +9,7 @@ from pathlib import Path
 from fsw.core.laws.table import LAWS
 from fsw.input.near import did_you_mean
 from fsw.input.schema import Nested, merge
+from fsw.table.law_names import laws_by_aim
 from sim.campaign.claim import Study
 from sim.campaign.runner import StudyResult, run
 from sim.campaign.study_cache import with_cache
@@ -118,7 +119,7 @@ def _chosen(scenario: Scenario, laws: str) -> Sequence[str]:
     for word in words:
         if word not in LAWS:
             raise HarnessError(
-                f"--laws {laws}: there is no law '{word}'{did_you_mean(word, LAWS)}: "
-                f"give all, or names of {', '.join(LAWS)}"
+                f"--laws {laws}: there is no law '{word}'{did_you_mean(word, LAWS)}: give all, or names "
+                f"(docs/laws.md); {laws_by_aim({name: entry.aim for name, entry in LAWS.items()})}"
             )
     return words

@@ -145,7 +145,7 @@ PLANTED = [
     ("coils.backoff_s", -1.0, "a number at least 0"),
     ("coils.backoff_s", 161.0, "at most 160"),
     ("coils.backoff", "none", "'shared' or 'per_coil'"),
-    ("control.law", "magic", "'pd'"),
+    ("control.law", "magic", "three_axis (pd,"),
     ("control.k_w", -1.0, "a number at least 0"),
     ("control.k_a", "1.0", "a number at least 0"),
     ("control.k_a", float("inf"), "a number at least 0"),
