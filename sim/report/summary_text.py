@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 from sim.report.event_words import events_left_out
 from sim.report.requirements.judge import Outcome
+from sim.scenario.controlled import SLOW_DEGPS
 from sim.statistics.settling import HELD_S
 from sim.value_types import Json
 
-TUMBLING_DEGPS = 1.0
 _HEADS = {Outcome.MET: "met", Outcome.FAILED: "FAILED", Outcome.NOT_JUDGED: "not judged"}
 
 
@@ -99,7 +99,7 @@ def _pointing(summary: Json) -> Iterator[tuple[str, str]]:
 def tumble_words(summary: Json) -> str | None:
     """How a tumble was stopped; None of a flight that began slowly, or of an older summary."""
     rate = summary.get("rate_degps", {"start": 0.0})
-    if rate["start"] <= TUMBLING_DEGPS:
+    if rate["start"] <= SLOW_DEGPS:
         return None
     per_orbit = summary["orbits"] / summary["sim_seconds"]
     reached = [

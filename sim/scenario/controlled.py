@@ -9,6 +9,8 @@ from fsw.table.sections import ControlTable
 from sim.scenario.schema import Scenario, flight_table
 
 SETTLED_DEG = 5.0
+SLOW_DEGPS, SLOWEST_DEGPS = 1.0, 0.1
+"""Rates under which a tumble counts as stopped: one that an estimate can follow, and one to point from."""
 
 
 class Controlled(NamedTuple):

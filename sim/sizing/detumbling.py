@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.design.from_scenario import body_of
+from sim.scenario.controlled import SLOW_DEGPS, SLOWEST_DEGPS
 from sim.scenario.schema import Scenario, orbit_period_s
 from sim.scenario.sections import ScenarioCoils
 from sim.sizing.expectation import field_across
@@ -21,7 +22,6 @@ ONE_AT_A_TIME, EACH, CONTINUOUS = 0.7, 1.25, 1.1
 LAST_ORBITS = 2.5
 USUAL_DEGPS: Vec3 = (10.0, 10.0, 10.0)
 """About each axis, after a rough separation: where the scenario begins slowly."""
-SLOW_DEGPS, SLOWEST_DEGPS = 1.0, 0.1
 
 
 @dataclass(frozen=True, slots=True)

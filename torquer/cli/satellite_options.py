@@ -71,7 +71,12 @@ def satellite(name: str, tle: Path | None, figures: dict[str, Any]) -> "NewSatel
         raise HarnessError("--tle and --altitude-km, --inclination-deg exclude each other")
     if figures["inertia_kgm2"] is not None and figures["size_m"] is not None:
         raise HarnessError("--inertia-kgm2 and --size-m exclude each other")
-    given = figures | {"continuous": figures["driver"] == "continuous", "cells": figures["sun"] == "cells"}
+    axes = None if figures["axes"] is None else tuple(axis.lower() for axis in figures["axes"])
+    given = figures | {
+        "axes": axes,
+        "continuous": figures["driver"] == "continuous",
+        "cells": figures["sun"] == "cells",
+    }
     del given["driver"], given["sun"]
     return NewSatellite(name, None if tle is None else tle_lines(tle), **given)
 

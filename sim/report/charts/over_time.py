@@ -6,7 +6,7 @@ from fsw.wire.messages import Mode
 from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, MORE_COLOURS, MUTED, Span, shade, stacked
 from sim.drawing.time_chart import DrawnChart, Level, Panel, Series, TimeChart, draw
 from sim.report.charts.drawn_flight import DrawnFlight
-from sim.scenario.controlled import SETTLED_DEG
+from sim.scenario.controlled import SETTLED_DEG, SLOW_DEGPS
 from sim.value_types import Array, Json
 
 MODE_COLOURS = {
@@ -67,7 +67,7 @@ def pointing(flight: DrawnFlight) -> DrawnChart:
 
 def rates(flight: DrawnFlight) -> DrawnChart:
     """Rates relative to the orbital frame: components, and magnitude on a logarithmic scale."""
-    tumbles = float(np.nanmax(flight.line("rate_degps"))) >= 1.0
+    tumbles = float(np.nanmax(flight.line("rate_degps"))) >= SLOW_DEGPS
     unit, factor = ("deg/s", 1.0) if tumbles else ("mdeg/s", 1e3)
     omega, total = factor * flight.line("omega_degps"), factor * flight.line("rate_degps")
     components = Panel(

@@ -22,7 +22,7 @@ from sim.report.figures.estimate_error import (
 from sim.report.figures.mean import Mean
 from sim.report.figures.spans import spans
 from sim.report.requirements.judge import Judgement
-from sim.scenario.controlled import SETTLED_DEG, controlled
+from sim.scenario.controlled import SETTLED_DEG, SLOW_DEGPS, SLOWEST_DEGPS, controlled
 from sim.scenario.schema import Scenario, orbit_period_s
 from sim.statistics.indices import magnitudes
 from sim.statistics.settling import Settling, held_ticks
@@ -31,8 +31,6 @@ from sim.value_types import Array, Json
 BLOCK_TICKS = 4096
 """Sums are taken over blocks of this many ticks, however a flight is handed over: so they are bit-exact."""
 SPIN_SETTLED_RADPS = 1e-3
-SLOW_DEGPS, SLOWEST_DEGPS = 1.0, 0.1
-"""Rates under which a tumble counts as stopped: one that an estimate can follow, and one to point from."""
 
 
 @dataclass(slots=True)

@@ -354,7 +354,8 @@ def _short(missed: Missed, evidence: FlightEvidence) -> str:
     near = sum(evidence.in_mode.get(mode, 0.0) for mode in (Mode.ACQUIRE, Mode.POINT))
     if len(evidence.trend) >= TREND or near < 0.5 or _has_settled(missed):
         return ""
-    return f"too early to say: {orbits(evidence.orbits)} are too short to settle, or to tell when it would"
+    flown = orbits(evidence.orbits)
+    return f"too early to say: a flight of {flown} is too short to settle, or to tell when it would"
 
 
 def _not_settled(missed: Missed, evidence: FlightEvidence) -> str:

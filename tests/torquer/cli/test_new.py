@@ -94,6 +94,11 @@ def test_what_contradicts_is_refused(tle, given):
         satellite("mine", tle, {**NOTHING, **given})
 
 
+def test_axes_may_be_written_in_capitals():
+    given = {"inertia_kgm2": (0.03, 0.04, 0.01), "axes": ("Z", "X", "Y"), "altitude_km": 500.0}
+    assert satellite("mine", None, {**NOTHING, **given}).moments_kgm2 == (0.01, 0.03, 0.04)
+
+
 def test_without_a_terminal_nothing_is_asked(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(satellite_options, "asked", lambda *given: pytest.fail("asked"))

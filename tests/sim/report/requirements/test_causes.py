@@ -121,7 +121,7 @@ def test_every_cause_of_the_table_is_tried():
         ("weak", "at the highest level in 94 % of the pulses"),
         ("not_settled", "falls to 50 % of itself an orbit, and would be 2 at about 5.49 orbits"),
         ("never_in_point", "DETUMBLE (it ends under 0.3 deg/s for 60 s) for 99 % of the flight"),
-        ("short", "0.50 orbits are too short"),
+        ("short", "a flight of 0.50 orbits is too short"),
         ("fell_back", "fell back to DETUMBLE from 1.54 orbits on for 0.19 orbits"),
         ("left_again", "under 5 deg at 1 orbit and left it again: 30 deg RMS in the half orbit from 1.50"),
         ("slow", "from 40 deg RMS in the first half orbit the error fell to 52 % of itself an orbit"),

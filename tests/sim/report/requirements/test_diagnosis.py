@@ -50,4 +50,4 @@ def test_a_flight_without_requirements_says_why_it_has_not_settled():
     summary = record_scenario(scenario, 1, 0.3).summary()
     (reason,) = summary["diagnosis"]["reasons"]
     assert reason["cause"] == "short"
-    assert "why        too early to say: 0.30 orbits" in summary_text(summary)
+    assert "why        too early to say: a flight of 0.30 orbits is" in summary_text(summary)
