@@ -68,7 +68,7 @@ def as_json(scenario: Scenario, expectation: Expectation, levels: Levels, gravit
         "field_across_coil_t": expectation.field_t,
         "disturbance_rms_nm": expectation.disturbance_nm,
         "load": expectation.load,
-        "gravity_holds": not gravity.away,
+        "gravity_holds": not (gravity.away or gravity.rests_elsewhere),
         "gravity_away_nm": gravity.away_nm,
         "detumbling": asdict(detumbling(scenario)),
         "pointing_rms_deg": expectation.pointing_deg if points(expectation, gravity) else None,
@@ -85,7 +85,8 @@ def points(expectation: Expectation, gravity: Gravity) -> bool:
 
     Gravity does not turn the body over, and the disturbance is balanced, by small angles.
     """
-    return not gravity.falls_over and expectation.load <= 1.0 and expectation.floor_deg <= SMALL_DEG
+    held = not (gravity.falls_over or gravity.rests_elsewhere)
+    return held and expectation.load <= 1.0 and expectation.floor_deg <= SMALL_DEG
 
 
 def doubt_of(expectation: Expectation) -> str:
@@ -167,6 +168,8 @@ def _pointing(expectation: Expectation, gravity: Gravity) -> str:
         f"{expectation.ripple_deg:.2f} between pulses, "
         f"{expectation.knowledge_deg:.2f} estimate"
     )
+    if gravity.rests_elsewhere:
+        return f"  pointing   none to expect: it does not rest in this attitude ({parts} deg)"
     if gravity.falls_over:
         return f"  pointing   none to rely on: gravity turns it over ({parts} deg where the coils hold it)"
     if not points(expectation, gravity):

@@ -14,12 +14,17 @@ and a weak one; with k2 or k3 negative two of three flights that began at 40 deg
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from sim.design.from_scenario import body_of
 from sim.design.theory.bodies import Body
+from sim.design.theory.linear import resting_torque
 from sim.scenario.controlled import controlled
 from sim.scenario.schema import Scenario
 from sim.sizing.expectation import field_across
 
+SLIGHT = 0.25
+"""Part of what coils give in the mean up to which products of inertia are another disturbance."""
 NEUTRAL = 0.01
 """Part of the largest moment by which two may differ and count as equal: nothing turns the body then."""
 UP, AHEAD, NORMAL = range(3)
@@ -34,6 +39,8 @@ class Gravity:
         free: the axes, 0 to 2, about which nothing turns it.
         away: those about which gravity turns it away.
         away_nm: the most with which it does, about any of them.
+        resting_nm: with which it acts on the body at rest in that attitude, by its products of inertia,
+            and its wheels.
         coils_nm: what its coils give in the mean, about an axis across the field.
     """
 
@@ -41,7 +48,13 @@ class Gravity:
     free: tuple[int, ...]
     away: tuple[int, ...]
     away_nm: float
+    resting_nm: float
     coils_nm: float
+
+    @property
+    def rests_elsewhere(self) -> bool:
+        """Whether the nominal attitude is none of rest: the coils would have to hold it there."""
+        return self.resting_nm > SLIGHT * self.coils_nm
 
     @property
     def falls_over(self) -> bool:
@@ -68,6 +81,7 @@ def gravity_on(scenario: Scenario) -> Gravity:
         free=tuple(axis for axis in matter if abs(about[axis]) <= neutral_nm),
         away=away,
         away_nm=max((-0.5 * about[axis] for axis in away), default=0.0),
+        resting_nm=float(np.linalg.norm(resting_torque(body))) if matter else 0.0,
         coils_nm=coils.on_part * coils.largest_am2 * field_across(body),
     )
 
@@ -98,11 +112,19 @@ def turned_away(body: Body) -> tuple[int, ...]:
 def gravity_words(gravity: Gravity) -> str:
     """What it does in the nominal attitude, and how to number the axes where it does not hold it."""
     words = gravity_predicate(gravity)
+    if gravity.rests_elsewhere:
+        return f"{words}: choose body axes along the principal ones"
     return f"{words}: {turn_needed(gravity)}" if gravity.away else words
 
 
 def gravity_predicate(gravity: Gravity) -> str:
     """Whether it holds the nominal attitude, turns the body away or leaves it free."""
+    if gravity.rests_elsewhere:
+        return (
+            "does not let the body rest in its nominal attitude: by its products of inertia and its wheels "
+            f"it takes {gravity.resting_nm:.2g} N m, {gravity.resting_nm / gravity.coils_nm:.0%} of what the "
+            "coils give in the mean, to hold it there"
+        )
     if not gravity.away:
         return f"holds the body{f', but for turns about {_axes(gravity.free)}' if gravity.free else ''}"
     how = (

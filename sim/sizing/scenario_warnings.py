@@ -159,7 +159,7 @@ def _coils(scenario: Scenario) -> Iterator[str]:
 
 
 def _load(scenario: Scenario) -> Iterator[str]:
-    if scenario.coils.driver != "pulsed":
+    if scenario.coils.driver != "pulsed" or gravity_on(scenario).rests_elsewhere:
         return
     expectation = expect(scenario)
     if expectation.load > TOO_WEAK:
@@ -173,7 +173,7 @@ def _load(scenario: Scenario) -> Iterator[str]:
 
 def _gravity(scenario: Scenario) -> Iterator[str]:
     gravity = gravity_on(scenario)
-    if gravity.away:
+    if gravity.away or gravity.rests_elsewhere:
         yield f"gravity {gravity_words(gravity)}"
 
 

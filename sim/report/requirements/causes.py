@@ -289,7 +289,7 @@ def _gravity(missed: Missed, evidence: FlightEvidence) -> str:
     if len(trend) < TREND or missed.what not in ("attitude", "axis") or trend[-1] < OVER_DEG:
         return ""
     gravity = gravity_on(evidence.scenario)
-    return f"gravity {gravity_words(gravity)}" if gravity.falls_over else ""
+    return f"gravity {gravity_words(gravity)}" if gravity.falls_over or gravity.rests_elsewhere else ""
 
 
 def _coarse(missed: Missed, evidence: FlightEvidence) -> str:
@@ -389,9 +389,9 @@ CAUSES: Sequence[Diagnosis] = (
     Diagnosis("tumbling", KNOWING, _tumbling),
     Diagnosis("estimate", KNOWING, _estimate, frozenset(("isolated", "safe", "dark", "tumbling"))),
     Diagnosis("mismatch", ALL, _mismatch),
-    Diagnosis("any_law", POINTING, _any_law),
-    Diagnosis("disturbance", ALL - {"ake"}, _disturbance),
     Diagnosis("gravity", POINTING, _gravity, BEFORE_POINTING | {"isolated"}),
+    Diagnosis("any_law", POINTING, _any_law, frozenset(("gravity",))),
+    Diagnosis("disturbance", ALL - {"ake"}, _disturbance, frozenset(("gravity",))),
     Diagnosis("unstable", ALL - {"ake"}, _unstable, frozenset(("gravity",))),
     Diagnosis("coarse", POINTING, _coarse, BEFORE_POINTING | CANNOT_POINT),
     Diagnosis("weak", POINTING, _weak, BEFORE_POINTING | CANNOT_POINT),

@@ -57,6 +57,18 @@ def test_axes_that_are_free_and_axes_that_turn_away(moments, away, free, falls_o
     assert (found.away_nm > 0.0) is bool(away)
 
 
+def test_a_body_whose_principal_axes_are_turned_rests_elsewhere():
+    """A long body turned by 45 deg about axis 3: not the disturbance is too strong, and no coil too weak."""
+    turned = [[0.0245, 0.0155, 0.0], [0.0155, 0.0245, 0.0], [0.0, 0.0, 0.0385]]
+    found = gravity_on(load("cubesat3u", {"body": {"inertia_kgm2": turned}}))
+    rate_radps = 2.0 * np.pi / 5739.0
+    assert found.resting_nm == pytest.approx(3.0 * rate_radps**2 * 0.0155, rel=0.01)
+    assert found.rests_elsewhere
+    assert "choose body axes along the principal ones" in gravity_words(found)
+    slightly = [[0.0067, 0.0002, 0.0], [0.0002, 0.033, 0.0], [0.0, 0.0, 0.0335]]
+    assert not gravity_on(load("cubesat3u", {"body": {"inertia_kgm2": slightly}})).rests_elsewhere
+
+
 def test_a_wheel_about_the_normal_holds_the_other_two_axes():
     """(J3 - J2) w0^2 + w0 h: by some 1e-3 N m s a body of 50 kg is held whatever its moments."""
     unheld = {"body": {"inertia_kgm2": [1.85, 1.95, 1.02]}}
@@ -67,7 +79,9 @@ def test_a_wheel_about_the_normal_holds_the_other_two_axes():
 
 @pytest.mark.parametrize("name", shipped_names())
 def test_gravity_holds_what_ships(name):
-    assert gravity_on(load(name)).away == ()
+    found = gravity_on(load(name))
+    assert found.away == ()
+    assert not found.rests_elsewhere
 
 
 def test_what_points_one_axis_alone_may_turn_about_it():
