@@ -36,13 +36,10 @@ class FlightConfig:
     event_spacing_ticks: int
     calibration: Calibration = NO_CALIBRATION
     own_field: OwnField | None = None
+    wheel: Wheel | None = None
+    """A wheel that can be driven, its axis in body axes; None: there is none."""
 
     @property
     def leap_ticks(self) -> int:
         """How far ahead a SYNC is believed at once."""
         return LEAP_S * self.tick_hz
-
-    @property
-    def wheel(self) -> Wheel | None:
-        """A wheel that can be driven; None: there is none."""
-        return self.control.wheel

@@ -99,7 +99,9 @@ def judge_conditions(
     state: ModeState,
     config: ModeConfig,
 ) -> Conditions:
-    """The conditions of the table at this tick; rates are relative to the spin of the setpoint.
+    """The conditions of the table at this tick, of the attitude that the laws count by.
+
+    Rates are relative to the spin of the setpoint.
 
     ``can_act``: the magnetometer is not isolated, or the law needs no field; otherwise, and without an
     attitude, no law can act.

@@ -223,7 +223,7 @@ def _law_input(
         state.sample,
         sun_direction(measurements, config.estimator.mekf.cells),
         reference,
-        constant_torque(parameters, reference),
+        constant_torque(parameters, reference, config.control.axes),
         parameters.dipole_body_am2,
         state.tick,
         model,

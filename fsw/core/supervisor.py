@@ -31,8 +31,10 @@ def supervise(state: FlightState, config: FlightConfig) -> Monitor | None:
     violated = first_violation(watched)
     can_act = not state.health.sensors.field.fault or open_loop(state.setpoint)
     tripped = trips(violated, state.modes.mode)
+    axes = config.control.axes
+    attitude = state.attitude if axes is None else axes.attitude(state.attitude)
     conditions = modes.judge_conditions(
-        state.attitude, state.setpoint.spin_radps, tripped, can_act, state.modes, config.modes
+        attitude, state.setpoint.spin_radps, tripped, can_act, state.modes, config.modes
     )
     modes.advance(state.modes, conditions, state.tick, config.modes)
     state.violated = 0 if violated is None else int(violated)

@@ -69,6 +69,7 @@ def flight_config(table: FlightTable, source: str = "flight table") -> FlightCon
             event_spacing_ticks=_ticks(table.fdir.event_spacing_s, tick_hz),
             second_sender=_second_sender(table),
             stale_after_ticks=max(1, _ticks(table.modes.stale_after_s, tick_hz)),
+            wheel=driven_wheel(table.wheel, tick_hz),
         )
     except ValueError as error:
         raise TableError(f"{source}: {error}") from None
@@ -105,7 +106,7 @@ def _orbit(orbit: OrbitTable, epoch_unix_s: int) -> Orbit:
 
 
 def _control(table: FlightTable, orbit: Orbit) -> ControlConfig:
-    control, coils, inertia = table.control, table.coils, table.body.inertia
+    control, coils, inertia = table.control, table.coils, table.body.law_inertia
     gains = _gains(control.gains)
     if coils.driver == "continuous":
         mean_dipole_am2 = _full_scale(coils)
@@ -116,14 +117,15 @@ def _control(table: FlightTable, orbit: Orbit) -> ControlConfig:
         gains=gains,
         inertia_kgm2=inertia,
         inertia_inverse=inverse(inertia),
-        wheel_body_nms=table.body.wheel_nms,
+        wheel_body_nms=table.body.law_wheel_nms,
         pulsed=coils.driver == "pulsed",
         tick_s=1.0 / table.time.tick_hz,
         horizon_s=coils.pulse_s,
         mean_dipole_am2=mean_dipole_am2,
         schedules=schedules(table, orbit, gains),
         pulse_model=planned_pulses(table, orbit, gains, _pulses(table)),
-        wheel=driven_wheel(table.wheel, table.time.tick_hz),
+        wheel=driven_wheel(table.wheel, table.time.tick_hz, table.body.law_axes),
+        axes=table.body.law_axes,
     )
     return with_own_law(config, control) if control.own else config
 

@@ -77,11 +77,11 @@ def circle(orbit: Orbit, unix_s: float) -> Circle | None:
 
 def schedules(table: FlightTable, orbit: Orbit, gains: dict[str, Any]) -> dict[str, Schedule]:
     """By law, the schedule for this body and the circle of its orbit."""
-    round_orbit = circle(orbit, table.epoch_unix_s)
+    round_orbit, body = circle(orbit, table.epoch_unix_s), table.body
     if round_orbit is None:
         return {}
     found = {
-        law: _made(make, table.body.inertia, table.body.wheel_nms, round_orbit, _weights(make, gains[law]))
+        law: _made(make, body.law_inertia, body.law_wheel_nms, round_orbit, _weights(make, gains[law]))
         for law, make in SCHEDULERS.items()
     }
     return found | {"pulse_mpc": rounded_schedule(found["pulse_mpc"])}
@@ -108,8 +108,8 @@ def planned_pulses(
     step_s = step_ticks * timing.tick_s
     searched = max(LEAST_SEARCHED, ceil(SEARCHED_S / step_s))
     problem = regulator_problem(
-        table.body.inertia,
-        table.body.wheel_nms,
+        table.body.law_inertia,
+        table.body.law_wheel_nms,
         round_orbit.rate_radps,
         round_orbit.field_t,
         step_s,
@@ -119,9 +119,11 @@ def planned_pulses(
     orbit_s = 2.0 * pi / round_orbit.rate_radps
     steps_s = np.arange(round(gains["pulse_mpc"].horizon_orbits * STEPS)) * orbit_s / STEPS
     pulses_s, after_s = np.arange(searched) * step_s, searched * step_s - 0.5 * timing.pulse_s
+    axes = table.body.law_axes
+    coil_axes = timing.coil_axes if axes is None else axes.coils(timing.coil_axes)
     wanted_s = [*pulses_s, *(pulses_s + 0.5 * step_s), *(after_s + 0.5 * orbit_s / STEPS + steps_s)]
     return PulseModel(
-        *choices(timing.levels_am2, timing.pulse_s, inverse(table.body.inertia), timing.coil_axes),
+        *choices(timing.levels_am2, timing.pulse_s, inverse(table.body.law_inertia), coil_axes),
         step_ticks,
         rest,
         rounded_problem(problem),

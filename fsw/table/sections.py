@@ -8,6 +8,7 @@ from pydantic import Field, Strict, ValidationInfo, field_validator, model_valid
 
 from fsw.core.algebra.vector import Mat3, Vec3
 from fsw.core.laws.interface import MAX_GAIN, MAX_SPIN_RADPS
+from fsw.core.laws.plan.law_axes import LawAxes, law_axes
 from fsw.core.laws.table import LAWS
 from fsw.core.orbit.propagation import sgp4_orbit
 from fsw.core.orbit.tle import plain_line
@@ -19,6 +20,9 @@ from fsw.table.law_names import laws_by_aim
 
 CIRCULAR_KEYS = ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")
 """Keys of a circular orbit; the other kind has ``tle``."""
+
+BodyAxis = Literal["x", "y", "z", "-x", "-y", "-z"]
+"""A body axis or its opposite."""
 
 SetpointGain = Annotated[float, Field(ge=0.0, le=MAX_GAIN)]
 """As the ground may set it in flight."""
@@ -83,10 +87,16 @@ class FieldTable(Section):
 
 
 class BodyTable(Section):
-    """Inertia tensor in body axes, kg m^2: three principal moments or 3 x 3; momentum of a wheel, N m s."""
+    """Inertia tensor in body axes, kg m^2: three principal moments or 3 x 3; momentum of a wheel, N m s.
+
+    ``up`` and ``ahead`` are the body axes, or their opposites, that look up and fly ahead in the nominal
+    attitude; laws, pointing and spin count by these, sensors, coils and estimate by the body axes.
+    """
 
     inertia_kgm2: Triple | Square
     wheel_nms: Triple = (0.0, 0.0, 0.0)
+    up: BodyAxis = "x"
+    ahead: BodyAxis = "y"
 
     @field_validator("inertia_kgm2", mode="before")
     @classmethod
@@ -105,6 +115,28 @@ class BodyTable(Section):
     def _is_an_inertia(self) -> Self:
         check_inertia(self.inertia)
         return self
+
+    @model_validator(mode="after")
+    def _is_across(self) -> Self:
+        _ = self.law_axes
+        return self
+
+    @property
+    def law_axes(self) -> LawAxes | None:
+        """The axes that the laws count by; None: the body axes."""
+        return law_axes(self.up, self.ahead)
+
+    @property
+    def law_inertia(self) -> Mat3:
+        """The tensor in the axes of the laws."""
+        axes = self.law_axes
+        return self.inertia if axes is None else axes.tensor(self.inertia)
+
+    @property
+    def law_wheel_nms(self) -> Vec3:
+        """The wheel's momentum in the axes of the laws."""
+        axes = self.law_axes
+        return self.wheel_nms if axes is None else axes.of_body(self.wheel_nms)
 
     @property
     def inertia(self) -> Mat3:

@@ -212,8 +212,11 @@ class FlightTable(Section):
 
     def meets(self, law: LawEntry) -> bool:
         """Whether this satellite has what a law needs."""
-        axis_body = None if self.wheel is None else unit(self.wheel.axis)
-        return is_met(law.needs, self.coils.driver == "pulsed", self.body.wheel_nms, axis_body)
+        axes = self.body.law_axes
+        axis = None if self.wheel is None else unit(self.wheel.axis)
+        if axis is not None and axes is not None:
+            axis = axes.of_body(axis)
+        return is_met(law.needs, self.coils.driver == "pulsed", self.body.law_wheel_nms, axis)
 
     @property
     def epoch_unix_s(self) -> int:
@@ -225,7 +228,7 @@ class FlightTable(Section):
         """CRC-32 of the table in canonical JSON; of a law of one's own the digest counts, not the path.
 
         A key that earlier tables do not have does not count where it is left out, nor a step that is none,
-        nor the algebra that flies unless another is named.
+        nor the algebra that flies unless another is named, nor body axes that are those of the laws.
         """
         values = self.model_dump(mode="json")
         for key in LATER_BOUNDS:
@@ -236,6 +239,8 @@ class FlightTable(Section):
         for section in ("cells", "wheel"):
             if getattr(self, section) is None:
                 del values[section]
+        if self.body.law_axes is None:
+            del values["body"]["up"], values["body"]["ahead"]
         for section, key in LATER_STEPS:
             if section in values and not values[section][key]:
                 del values[section][key]

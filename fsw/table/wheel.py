@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 
 from fsw.core.algebra.vector import Mat3, dot, inverse, transform, unit
 from fsw.core.laws.interface import Wheel
+from fsw.core.laws.plan.law_axes import LawAxes
 from fsw.input.schema import NotNegative, Section, Triple
 
 STALE_S = 10.0
@@ -63,12 +64,13 @@ def check_wheel_inertia(table: WheelTable, inertia_kgm2: Mat3) -> None:
         )
 
 
-def driven_wheel(table: WheelTable | None, tick_hz: int) -> Wheel | None:
-    """The wheel as laws and actuation use it."""
+def driven_wheel(table: WheelTable | None, tick_hz: int, axes: LawAxes | None = None) -> Wheel | None:
+    """The wheel as actuation and, with their axes, the laws use it."""
     if table is None:
         return None
+    axis_body = unit(table.axis)
     return Wheel(
-        axis_body=unit(table.axis),
+        axis_body=axis_body if axes is None else axes.of_body(axis_body),
         inertia_kgm2=table.inertia_kgm2,
         max_torque_nm=table.max_torque_nm,
         max_momentum_nms=table.max_momentum_nms,

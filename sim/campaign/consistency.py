@@ -9,7 +9,7 @@ from fsw.wire.messages import Mode
 from sim.campaign.flight import Figures
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
-from sim.report.figures.attitude_arrays import angle_rad
+from sim.report.figures.attitude_arrays import angle_rad, law_attitude
 from sim.report.figures.estimate_error import converged_tick, estimate_error, nees, within_3sigma
 from sim.report.figures.spans import spans
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
@@ -33,7 +33,7 @@ def consistency_figures(scenario: Scenario, truth: Histories, estimates: Estimat
     """
     tick_hz, ticks = scenario.time.tick_hz, len(truth["t_s"])
     orbit_ticks = orbit_period_s(scenario) * tick_hz
-    pointing_deg = np.degrees(angle_rad(truth["q_body_from_orbit"]))
+    pointing_deg = np.degrees(angle_rad(law_attitude(truth["q_body_from_orbit"], scenario.body.law_axes)))
     error_deg = np.degrees(angle_rad(estimate_error(truth, estimates)))
     valid = estimates.valid[:ticks]
     in_point = estimates.mode[:ticks] == Mode.POINT

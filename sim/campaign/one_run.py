@@ -26,7 +26,7 @@ from sim.plant.errors import PlantError
 from sim.record import run_dir
 from sim.record.destination import check_folder
 from sim.record.pace import LOCKSTEP
-from sim.report.figures.attitude_arrays import axis1_errors, errors
+from sim.report.figures.attitude_arrays import axis1_errors, errors, law_attitude
 from sim.report.figures.estimate_error import knowledge_errors
 from sim.scenario.schema import flight_table, orbit_period_s
 from sim.statistics.indices import index_histories, profile
@@ -52,7 +52,7 @@ def score(record: RecordedFlight, statistics: StatisticsSection) -> RunScore:
     """The score of a flight; a scenario that points axis 1 alone is judged by that."""
     scenario = record.scenario
     ticks_per_orbit = orbit_period_s(scenario) * scenario.time.tick_hz
-    q = record.truth["q_body_from_orbit"]
+    q = law_attitude(record.truth["q_body_from_orbit"], scenario.body.law_axes)
     error = axis1_errors(q) if flight_table(scenario).modes.axis_only else errors(q)
     knowledge = knowledge_errors(record.truth, record.estimates)
     counted = slice(-max(1, round(statistics.last_orbits * ticks_per_orbit)), None)

@@ -55,7 +55,7 @@ _DERIVED: tuple[tuple[HistoryQuantity, _Derived], ...] = (
         lambda h: h.pointing_deg,
     ),
     (
-        HistoryQuantity("axis1_deg", 1, "degree", "angle of body axis 1 from the vertical"),
+        HistoryQuantity("axis1_deg", 1, "degree", "angle of axis 1, that looks up, from the vertical"),
         lambda h: h.axis1_deg,
     ),
     (
@@ -153,7 +153,7 @@ class HistoryTable:
         return self._notes(result, last_tick + 1)
 
     def _block(self, truth: Histories, estimates: Estimates, last_tick: int) -> Block:
-        flight = FlightHistories(truth, estimates)
+        flight = FlightHistories(truth, estimates, self._scenario.body.law_axes)
         block = {quantity.name: truth[name] for name, quantity in self._truth.items()}
         block |= {quantity.name: derive(flight) for quantity, derive in _DERIVED}
         replayed = np.round(truth["t_s"] * self._scenario.time.tick_hz) <= last_tick

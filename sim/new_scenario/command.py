@@ -150,7 +150,7 @@ def _driver(satellite: NewSatellite) -> str:
 
 
 def _figures(satellite: NewSatellite) -> dict[str, Any]:
-    body, moments, levels = satellite.body, satellite.moments_kgm2, satellite.levels
+    body, moments, levels = satellite.body, satellite.body_moments_kgm2, satellite.levels
     gains, strongest = gains_for(body), levels[2]
     dipole_am2 = ordinary_dipole_am2(body.inertia_kgm2)
     mass = f"{satellite.mass_kg:g} kg, " if satellite.mass_kg else ""
@@ -163,11 +163,12 @@ def _figures(satellite: NewSatellite) -> dict[str, Any]:
         "altitude_km": satellite.altitude_km,
         "inclination_deg": satellite.inclination_deg,
         "mass_kg": satellite.mass_kg,
-        "edges": None if satellite.inertia_kgm2 else satellite.edges_m,
+        "edges": None if satellite.inertia_kgm2 else satellite.size_m,
         "moments": [float(f"{moment:.6g}") for moment in moments],
         "unstable": bool(turned_away(body)),
         "levels": levels,
-        "axes": satellite.axes,
+        "up": satellite.looking[0],
+        "ahead": satellite.looking[1],
         "continuous": satellite.continuous,
         "cells": satellite.cells,
         "backoff": "per_coil" if satellite.per_coil else "shared",

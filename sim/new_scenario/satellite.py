@@ -48,12 +48,11 @@ class NewSatellite:
         altitude_km: of the circular orbit.
         inclination_deg: of the circular orbit.
         mass_kg: with ``size_m`` in place of the inertia.
-        size_m: edges of a homogeneous box; the longest becomes axis 1, the shortest axis 3, unless ``axes``
-            says otherwise.
+        size_m: edges of a homogeneous box along x, y, z; unless ``axes`` says otherwise the longest looks up,
+            and the shortest points along the orbit's normal.
         inertia_kgm2: principal moments; None: from mass and size.
         levels_am2: of the coils; None: as ``sim.sizing`` suggests.
-        axes: which of the user's axes x, y, z become 1 (up), 2 (ahead) and 3 (the orbit's normal); moments
-            and edges are in the user's order then.
+        axes: which of x, y, z look up, ahead and along the orbit's normal; None: x, y, z, or by the edges.
         dipole_am2: the largest of a coil, from which the levels follow; None: as suggested.
         continuous: the coils are driven continuously, without the limits of pulses.
         cells: Sun cells on the six sides in place of a Sun sensor.
@@ -109,39 +108,44 @@ class NewSatellite:
                 f"for coils of {level:g} A m^2 give --dipole-am2 {level:g}"
             )
         try:
-            check_inertia(diagonal(self.moments_kgm2))
+            check_inertia(diagonal(self.body_moments_kgm2))
         except ValueError as error:
             raise HarnessError(f"--inertia-kgm2: {error}") from None
 
     @property
-    def edges_m(self) -> Vec3 | None:
-        """The edges along axis 1, 2, 3."""
-        if self.size_m is None:
-            return None
+    def looking(self) -> tuple[str, str, str]:
+        """The body axes that look up, ahead and along the orbit's normal."""
         if self.axes is not None:
-            return self._in_order(self.size_m)
-        longest, middle, shortest = sorted(self.size_m, reverse=True)
-        return longest, middle, shortest
+            return self.axes
+        if self.inertia_kgm2 is not None or self.size_m is None:
+            return AXES
+        size_m = self.size_m
+        up, ahead, normal = sorted(range(3), key=lambda axis: -size_m[axis])
+        return AXES[up], AXES[ahead], AXES[normal]
 
     @property
-    def moments_kgm2(self) -> Vec3:
-        """The principal moments along the body axes: given, or m/12 (b^2 + c^2) of the box.
+    def body_moments_kgm2(self) -> Vec3:
+        """The principal moments about x, y, z: given, or m/12 (b^2 + c^2) of the box.
 
         Raises:
             HarnessError: neither inertia nor mass and size are given.
         """
         if self.inertia_kgm2 is not None:
-            return self.inertia_kgm2 if self.axes is None else self._in_order(self.inertia_kgm2)
-        if self.mass_kg is None or self.edges_m is None:
+            return self.inertia_kgm2
+        if self.mass_kg is None or self.size_m is None:
             raise HarnessError("give --inertia-kgm2 A B C, or --mass-kg and --size-m A B C")
-        a, b, c = self.edges_m
+        a, b, c = self.size_m
         factor = self.mass_kg / 12.0
         return factor * (b * b + c * c), factor * (a * a + c * c), factor * (a * a + b * b)
 
-    def _in_order(self, of_user: Vec3) -> Vec3:
-        """Values about the user's axes, about axis 1, 2, 3."""
-        assert self.axes is not None
-        up, ahead, normal = (of_user[AXES.index(axis)] for axis in self.axes)
+    @property
+    def moments_kgm2(self) -> Vec3:
+        """Those about the axes that look up, ahead and along the orbit's normal.
+
+        Raises:
+            HarnessError: as for ``body_moments_kgm2``.
+        """
+        up, ahead, normal = (self.body_moments_kgm2[AXES.index(axis)] for axis in self.looking)
         return up, ahead, normal
 
     @property

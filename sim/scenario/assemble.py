@@ -2,6 +2,7 @@
 
 from math import cos, hypot, radians, sin
 
+from fsw.core.algebra.quaternion import conjugate, multiply
 from fsw.input.schema import TableError
 from sim.plant.config import (
     BodyConfig,
@@ -47,7 +48,7 @@ def _config(scenario: Scenario, seed: int) -> PlantConfig:
         orbit=_orbit(scenario),
         field=FieldConfig(scenario.field.model, scenario.field.degree, scenario.field.storm_nt * NT),
         body=_body(scenario),
-        initial=_initial(scenario),
+        initial=initial_config(scenario),
         disturbance=_disturbance(scenario),
         magnetometer=_magnetometer(scenario),
         sun_sensor=_sun_sensor(scenario) if cells is None else _sun_cells(cells),
@@ -147,12 +148,17 @@ def coil_config(scenario: Scenario) -> CoilConfig:
     )
 
 
-def _initial(scenario: Scenario) -> InitialConfig:
+def initial_config(scenario: Scenario) -> InitialConfig:
+    """Attitude and rate at tick 0: the nominal attitude, turned in the body."""
     initial = scenario.initial
     half = 0.5 * radians(initial.angle_deg)
     factor = sin(half) / hypot(*initial.axis)
     x, y, z = initial.axis
-    return InitialConfig((cos(half), factor * x, factor * y, factor * z), _radians(initial.rate_degps))
+    q_body_from_orbit = (cos(half), factor * x, factor * y, factor * z)
+    axes = scenario.body.law_axes
+    if axes is not None:
+        q_body_from_orbit = multiply(conjugate(axes.q_law_from_body), q_body_from_orbit)
+    return InitialConfig(q_body_from_orbit, _radians(initial.rate_degps))
 
 
 def _magnetometer(scenario: Scenario) -> MagnetometerConfig:

@@ -30,7 +30,7 @@ from fsw.input.toml_text import MOST_LEVELS, BoundsError, bounded, parse_toml
 from fsw.table import table as onboard
 from fsw.table.flown_elements import check_tle
 from fsw.table.own_law import named
-from fsw.table.sections import CIRCULAR_KEYS, ControlTable, TimeTable
+from fsw.table.sections import CIRCULAR_KEYS, BodyTable, ControlTable, TimeTable
 from fsw.table.table import FlightTable
 from sim.faults.section import Faults, check_sensors
 from sim.scenario.names import Name
@@ -72,7 +72,7 @@ class TruthField(Section):
 
 
 class InitialState(Section):
-    """Attitude, body from orbit, by rotation about an axis; rate relative to the orbital frame, body axes."""
+    """A turn from the nominal attitude about an axis, and a rate relative to the orbital frame, body axes."""
 
     axis: Triple = (1.0, 1.0, 1.0)
     angle_deg: float = Field(default=0.0, ge=-180.0, le=180.0)
@@ -228,7 +228,7 @@ def _table_of(scenario: Scenario, source: str) -> FlightTable:
         include={
             "knowledge": True,
             "orbit": {"tle", *CIRCULAR_KEYS},
-            "body": {"inertia_kgm2", "wheel_nms"},
+            "body": set(BodyTable.model_fields),
             "coils": {
                 "driver",
                 "max_dipole_am2",

@@ -1,4 +1,4 @@
-"""Whether gravity holds a body in its nominal attitude, body = orbit, and in which one it would.
+"""Whether gravity holds a body in its nominal attitude, and in which one it would.
 
 A body that turns with its orbit rests where its principal axes are those of the orbit. Small turns about
 axis 1 (up), 2 (ahead) and 3 (the orbit's normal) from there are turned back by
@@ -28,6 +28,7 @@ SLIGHT = 0.25
 NEUTRAL = 0.01
 """Part of the largest moment by which two may differ and count as equal: nothing turns the body then."""
 UP, AHEAD, NORMAL = range(3)
+NAMES = ("x", "y", "z")
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +36,8 @@ class Gravity:
     """What gravity does to a body in its nominal attitude, about the axes that matter to what is controlled.
 
     Attributes:
-        moments_kgm2: about the body axes 1, 2, 3.
+        moments_kgm2: about the axes 1, 2, 3 of the laws.
+        names: of the body axes that these are.
         free: the axes, 0 to 2, about which nothing turns it.
         away: those about which gravity turns it away.
         away_nm: the most with which it does, about any of them.
@@ -45,6 +47,7 @@ class Gravity:
     """
 
     moments_kgm2: tuple[float, float, float]
+    names: tuple[str, str, str]
     free: tuple[int, ...]
     away: tuple[int, ...]
     away_nm: float
@@ -63,7 +66,7 @@ class Gravity:
 
     @property
     def held_order(self) -> tuple[int, int, int]:
-        """The body axes that gravity would hold up, ahead and along the normal."""
+        """The axes of the laws, 0 to 2, that gravity would hold up, ahead and along the normal."""
         least, middle, largest = sorted(range(3), key=lambda axis: self.moments_kgm2[axis])
         return least, middle, largest
 
@@ -78,6 +81,7 @@ def gravity_on(scenario: Scenario) -> Gravity:
     away = tuple(axis for axis in turned_away(body) if axis in matter)
     return Gravity(
         moments_of(body),
+        names=names_of(scenario),
         free=tuple(axis for axis in matter if abs(about[axis]) <= neutral_nm),
         away=away,
         away_nm=max((-0.5 * about[axis] for axis in away), default=0.0),
@@ -86,8 +90,15 @@ def gravity_on(scenario: Scenario) -> Gravity:
     )
 
 
+def names_of(scenario: Scenario) -> tuple[str, str, str]:
+    """The body axes that are axes 1, 2, 3 of the laws."""
+    axes = scenario.body.law_axes
+    first, second, third = (0, 1, 2) if axes is None else axes.place
+    return NAMES[first], NAMES[second], NAMES[third]
+
+
 def moments_of(body: Body) -> tuple[float, float, float]:
-    """The moments about the body axes: the diagonal of the tensor."""
+    """The moments about axes 1, 2, 3: the diagonal of the tensor."""
     first, second, third = body.inertia_kgm2
     return first[0], second[1], third[2]
 
@@ -110,7 +121,7 @@ def turned_away(body: Body) -> tuple[int, ...]:
 
 
 def gravity_words(gravity: Gravity) -> str:
-    """What it does in the nominal attitude, and how to number the axes where it does not hold it."""
+    """What it does in the nominal attitude, and which one to choose where it does not hold it."""
     words = gravity_predicate(gravity)
     if gravity.rests_elsewhere:
         return f"{words}: choose body axes along the principal ones"
@@ -137,12 +148,11 @@ def gravity_predicate(gravity: Gravity) -> str:
 
 
 def turn_needed(gravity: Gravity) -> str:
-    """Which attitude gravity holds, and how to write it, as clauses."""
-    up, _, normal = gravity.held_order
-    moments = ", ".join(f"{gravity.moments_kgm2[axis]:.3g}" for axis in gravity.held_order)
+    """Which attitude gravity holds, and how to choose it, as clauses."""
+    up, ahead, normal = (gravity.names[axis] for axis in gravity.held_order)
     return (
-        f"it would hold axis {up + 1}, of the least moment, up and axis {normal + 1}, of the largest, along "
-        f"the orbit's normal; number the axes so that body.inertia_kgm2 = [{moments}]"
+        f"it would hold {up}, of the least moment, up and {normal}, of the largest, along the orbit's "
+        f"normal; for that attitude set body.up = '{up}' and body.ahead = '{ahead}'"
     )
 
 

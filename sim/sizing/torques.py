@@ -3,7 +3,7 @@
 import numpy as np
 
 from fsw.core.orbit.tle import tle_elements
-from sim.design.from_scenario import body_of
+from sim.design.from_scenario import body_of, law_from_body
 from sim.design.theory.feedforward import NODES
 from sim.design.theory.linear import dipole_field, resting_torque
 from sim.plant.config import OrbitConfig
@@ -19,17 +19,18 @@ LIGHT_MPS = 299792458.0
 
 
 def disturbance_torque(scenario: Scenario) -> Array:
-    """Torque at the nodes u = 2 pi k / N of the circular orbit, body axes [N m], (N, 3).
+    """Torque at the nodes u = 2 pi k / N of the circular orbit, in the axes of the laws [N m], (N, 3).
 
     The sum of the constant torque, residual dipole x field of the direct dipole, drag and sunlight on the
     plates, and what the gravity gradient leaves on a body whose principal axes are not the body axes.
     """
     body = body_of(scenario)
     u = 2.0 * np.pi / NODES * np.arange(NODES, dtype=np.float64)
-    residual_am2 = np.asarray(scenario.disturbance.residual_dipole_am2)
+    turn = law_from_body(scenario)
+    residual_am2 = turn @ np.asarray(scenario.disturbance.residual_dipole_am2)
     magnetic = np.cross(residual_am2, dipole_field(u, body) * body.field_t)
-    constant = np.asarray(scenario.disturbance.torque_nm) + resting_torque(body)
-    torque: Array = constant + magnetic + surface_torque(scenario)
+    constant = turn @ np.asarray(scenario.disturbance.torque_nm) + resting_torque(body)
+    torque: Array = constant + magnetic + surface_torque(scenario) @ turn.T
     return torque
 
 
@@ -51,7 +52,8 @@ def surface_torque(scenario: Scenario) -> Array:
     radius_m = np.linalg.norm(r_m, axis=1, keepdims=True)
     ahead_mps = v_mps / np.linalg.norm(v_mps, axis=1, keepdims=True)
     radial = r_m / radius_m
-    axes = np.stack([radial, ahead_mps, np.cross(radial, ahead_mps)], axis=1)  # rows: orbital axes, eci
+    orbital = np.stack([radial, ahead_mps, np.cross(radial, ahead_mps)], axis=1)  # rows: orbital axes, eci
+    axes = law_from_body(scenario).T @ orbital  # rows: body axes
     to_sun_m = sun_m - r_m
     distance_m = np.linalg.norm(to_sun_m, axis=1)
     section = config.disturbance

@@ -17,8 +17,8 @@ class FlownMotion:
     Attributes:
         orbit_s: period of the orbit.
         t_s: time.
-        q_body_from_orbit: attitude.
-        relative_body_radps: rate relative to the orbital frame, body axes.
+        q_body_from_orbit: attitude, of the axes of the laws.
+        relative_body_radps: rate relative to the orbital frame, in these axes.
     """
 
     orbit_s: float
@@ -28,14 +28,14 @@ class FlownMotion:
 
     @cached_property
     def pointing_deg(self) -> Array:
-        """Angle between body and orbital frame."""
+        """Angle from the nominal attitude."""
         cosine = np.clip(np.abs(self.q_body_from_orbit[:, 0]), 0.0, 1.0)
         angle: Array = np.degrees(2.0 * np.arccos(cosine))
         return angle
 
     @cached_property
     def axis1_deg(self) -> Array:
-        """Angle of body axis 1 from the vertical."""
+        """Angle of axis 1 from the vertical."""
         q0, q1, q2, q3 = self.q_body_from_orbit.T
         angle: Array = np.degrees(np.arccos(np.clip(q0 * q0 + q1 * q1 - q2 * q2 - q3 * q3, -1.0, 1.0)))
         return angle

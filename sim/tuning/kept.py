@@ -81,8 +81,9 @@ class KeptGains:
 
 def body_checksum(scenario: Scenario) -> int:
     """Of what gains depend on: body, orbit, start, coils but for their driver, wheel, disturbances, tick."""
+    turned = () if scenario.body.law_axes is None else ("up", "ahead")
     parts: Nested = {
-        "body": scenario.body.model_dump(mode="json", include={"inertia_kgm2", "wheel_nms"}),
+        "body": scenario.body.model_dump(mode="json", include={"inertia_kgm2", "wheel_nms", *turned}),
         "orbit": scenario.orbit.model_dump(mode="json"),
         "initial": scenario.initial.model_dump(mode="json"),
         "coils": scenario.coils.model_dump(

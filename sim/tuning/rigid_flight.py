@@ -10,7 +10,6 @@ the whole of it with the same impulse, and the time from one to the next is a wh
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
-from math import radians, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -25,17 +24,19 @@ from fsw.core.config import FlightConfig
 from fsw.core.estimation.attitude import Attitude
 from fsw.core.gate.measurements import CoilReport, Measurements
 from fsw.core.laws import by_mode
-from fsw.core.laws.interface import ControlConfig, FieldSample, LawInput, Memory
+from fsw.core.laws.interface import FieldSample, LawInput, Memory
 from fsw.core.laws.plan.pulse_model import AXES
 from fsw.core.orbit.earth import MU_M3PS2
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, reference_at
 from fsw.table.config import flight_config
 from fsw.table.schedules import planned_pulses
+from fsw.table.sections import BodyTable
 from fsw.wire.messages import CoilFire, Mode
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
 from sim.plant.dynamics.torques import BodyTorque
 from sim.plant.environment.surroundings import Surroundings
 from sim.plant.rotation import Quaternion
+from sim.scenario.assemble import initial_config
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 from sim.tuning.flown import RigidFlight
 
@@ -142,8 +143,8 @@ def fly(scenario: Scenario, orbits: float, step_s: float | None = None) -> Rigid
 def _fly(
     scenario: Scenario, config: FlightConfig, coils: SteppedCoils, path: Path, step_s: float, orbit_s: float
 ) -> RigidFlight:
-    control = config.control
-    body = RigidBody(control.inertia_kgm2, control.wheel_body_nms)
+    control, table = config.control, flight_table(scenario).body
+    body = RigidBody(table.inertia, table.wheel_nms)
     motion = _first(scenario, path.references[0])
     scheduler, view = pulses.boot(0, coils.timing), CoilView(lockout_ms=(0, 0, 0))
     driver = ActuatorConfig(coils.timing, None)
@@ -157,7 +158,8 @@ def _fly(
             torque_body_nm=disturbing.torque_nm, dipole_body_am2=disturbing.residual_dipole_am2
         )
         before = inputs.sample
-        mode = _mode(mode, inputs.attitude, config)
+        attitude = inputs.attitude if control.axes is None else control.axes.attitude(inputs.attitude)
+        mode = _mode(mode, attitude, config)
         waits = wait_ticks(scheduler, view, REPORTED, tick, coils.timing, NO_FAULTS)
         demand = by_mode.demand(mode, inputs.replace(wait_ticks=waits), memory, control.setpoint, control)
         assert demand is not None
@@ -174,12 +176,12 @@ def _fly(
             elif tick >= scheduler.busy_until:
                 m_am2 = ZERO
         omega = motion.omega_body_radps
-        relative = inputs.attitude.omega_body_orbit_radps
-        rows.append((motion.q_body_from_eci, inputs.attitude.q_body_from_orbit, omega, relative, m_am2))
+        relative = attitude.omega_body_orbit_radps
+        rows.append((motion.q_body_from_eci, attitude.q_body_from_orbit, omega, relative, m_am2))
         dipole_am2 = add(m_am2, disturbing.residual_dipole_am2)
-        acting = BodyTorque(control.inertia_kgm2, dipole_am2, disturbing.torque_nm)
+        acting = BodyTorque(table.inertia, dipole_am2, disturbing.torque_nm)
         motion = body.step(motion, acting, step_s, *path.around[2 * tick : 2 * tick + 3])
-    return _recorded(rows, control, step_s, orbit_s)
+    return _recorded(rows, table, step_s, orbit_s)
 
 
 def law_input(
@@ -225,26 +227,21 @@ def _coils(config: FlightConfig, step_s: float) -> SteppedCoils:
 
 
 def _first(scenario: Scenario, reference: Reference) -> Motion:
-    initial = scenario.initial
-    size = sqrt(sum(part * part for part in initial.axis))
-    half = 0.5 * radians(initial.angle_deg)
-    a, b, c = (sin(half) * part / size for part in initial.axis)
-    q_body_from_orbit = (sqrt(1.0 - a * a - b * b - c * c), a, b, c)
-    normal = rotate(q_body_from_orbit, (0.0, 0.0, reference.orbit_rate_radps))
-    r1, r2, r3 = initial.rate_degps
-    relative = (radians(r1), radians(r2), radians(r3))
-    return Motion(multiply(reference.q_orbit_from_eci, q_body_from_orbit), add(relative, normal))
+    start = initial_config(scenario)
+    normal = rotate(start.q_body_from_orbit, (0.0, 0.0, reference.orbit_rate_radps))
+    q_body_from_eci = multiply(reference.q_orbit_from_eci, start.q_body_from_orbit)
+    return Motion(q_body_from_eci, add(start.omega_body_orbit_radps, normal))
 
 
 def _recorded(
     rows: Sequence[tuple[Quaternion, Quaternion, Vec3, Vec3, Vec3]],
-    control: ControlConfig,
+    body: BodyTable,
     step_s: float,
     orbit_s: float,
 ) -> RigidFlight:
     q_eci, q_orbit, omega, relative, m = (
         np.array(column, dtype=np.float64) for column in zip(*rows, strict=True)
     )
-    momentum = omega @ np.array(control.inertia_kgm2).T + np.array(control.wheel_body_nms)
+    momentum = omega @ np.array(body.inertia).T + np.array(body.wheel_nms)
     t_s = step_s * np.arange(len(rows), dtype=np.float64)
     return RigidFlight(orbit_s, t_s, q_orbit, relative, q_eci, omega, momentum, m)

@@ -25,6 +25,7 @@ from fsw.input.schema import Nested, TableError, merge
 from fsw.table.table import lay_over
 from sim.campaign.flight import record_scenario
 from sim.errors import HarnessError
+from sim.report.figures.attitude_arrays import law_attitude, law_vector
 from sim.scenario.schema import Scenario, load, orbit_period_s
 from sim.tuning.cost import LOST, Cost, cost_of
 from sim.tuning.flown import FlownMotion
@@ -42,9 +43,12 @@ def fly_whole(scenario: Scenario, seed: int, orbits: float) -> FlownMotion:
         TableError: no plant or flight software can have these numbers.
         HarnessError: the flight cannot be flown.
     """
-    truth = record_scenario(scenario, seed, orbits).truth
+    truth, axes = record_scenario(scenario, seed, orbits).truth, scenario.body.law_axes
     return FlownMotion(
-        orbit_period_s(scenario), truth["t_s"], truth["q_body_from_orbit"], truth["omega_body_orbit_radps"]
+        orbit_period_s(scenario),
+        truth["t_s"],
+        law_attitude(truth["q_body_from_orbit"], axes),
+        law_vector(truth["omega_body_orbit_radps"], axes),
     )
 
 

@@ -15,7 +15,7 @@ from sim.record.estimates import EstimateRecorder, Estimates
 from sim.record.run_record import RunRecord
 from sim.record.truth import COLUMNS, OF_WHEEL, Histories, read_truth
 from sim.replay.log_replay import replay
-from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad
+from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad, law_attitude
 from sim.report.figures.histories import FlightHistories
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 from torquer.api.extras import required
@@ -64,12 +64,14 @@ def truth(path: "Path", scenario: Scenario, record: RunRecord) -> "xr.Dataset":
         name.partition("/")[2]: torque for name, torque in histories.items() if name.startswith(TORQUES)
     }
     torques = np.stack(list(sources.values()), axis=1)
-    q_body_from_orbit = histories["q_body_from_orbit"]
-    pointing_deg, axis1_deg = (np.degrees(of(q_body_from_orbit)) for of in (angle_rad, axis1_angle_rad))
+    q_law_from_orbit = law_attitude(histories["q_body_from_orbit"], scenario.body.law_axes)
+    pointing_deg, axis1_deg = (np.degrees(of(q_law_from_orbit)) for of in (angle_rad, axis1_angle_rad))
     variables += [
         _Variable(TORQUES, ("time", "source", "body"), "N m", "torque by source, body axes", torques),
         _Variable("pointing_deg", _TIME, "deg", "angle from the nominal to the true attitude", pointing_deg),
-        _Variable("axis1_deg", _TIME, "deg", "angle of body axis 1 from the local vertical", axis1_deg),
+        _Variable(
+            "axis1_deg", _TIME, "deg", "angle of axis 1, that looks up, from the local vertical", axis1_deg
+        ),
     ]
     return _dataset(variables, histories, scenario, record).assign_coords(source=list(sources))
 

@@ -19,14 +19,15 @@ _OPTIONS = (
     click.option("--altitude-km", type=Number(150.0, 40_000.0), help="Orbit: circular."),
     click.option("--inclination-deg", type=Number(0.0, 180.0), help="Of the circular orbit."),
     click.option("--mass-kg", type=_ABOVE_0, help="Of a homogeneous box, with --size-m."),
-    click.option("--size-m", type=_THREE, metavar="A B C", help="Its edges; the longest points up."),
+    click.option(
+        "--size-m", type=_THREE, metavar="A B C", help="Its edges along x, y, z; the longest looks up."
+    ),
     click.option("--inertia-kgm2", type=_THREE, metavar="A B C", help="Principal moments, kg m^2."),
     click.option(
         "--axes",
         type=(str, str, str),
         metavar="UP AHEAD NORMAL",
-        help="Your axes that look up, ahead and along the orbit's normal, as z x y: moments and edges are "
-        "about x, y, z then.",
+        help="Body axes that look up, ahead and along the orbit's normal, as z x y.",
     ),
     click.option(
         "--levels-am2",

@@ -4,7 +4,9 @@ from fsw.core.algebra.vector import sub
 from fsw.core.estimation.attitude import rate_bounded
 from fsw.core.laws.damping import bdot, rate_damping
 from fsw.core.laws.entry import LawEntry
-from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, OwnLaw, Setpoint
+from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, LawInput, Memory, OwnLaw, Setpoint
+from fsw.core.laws.plan.law_axes import LawAxes
+from fsw.core.laws.plan.pulse_model import Pulse
 from fsw.core.laws.predictive import predictive
 from fsw.core.laws.table import LAWS, open_loop
 from fsw.wire.messages import Mode
@@ -24,10 +26,53 @@ def detumble(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Contr
 def demand(
     mode: Mode, inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig
 ) -> Demand | None:
-    """The demand of the law of this mode; None in SAFE. The residual dipole is subtracted.
+    """The demand of the law of this mode, body axes; None in SAFE. The residual dipole is subtracted.
 
-    In DETUMBLE it is that of ``detumble``, unchanged, unless the law is ``open_loop``.
+    In DETUMBLE it is that of ``detumble``, unchanged, unless the law is ``open_loop``. Inputs are in body
+    axes; the law sees them, and answers, in its own.
     """
+    axes = config.axes
+    if axes is None:
+        return _demand(mode, inputs, memory, setpoint, config)
+    wanted = _demand(mode, law_input(inputs, axes), memory, setpoint, config)
+    return None if wanted is None else demand_of_body(wanted, axes)
+
+
+def law_input(of_body: LawInput, axes: LawAxes) -> LawInput:
+    """What a law receives, in its axes."""
+    a, b, c = axes.place
+    waits = of_body.wait_ticks
+    return LawInput(
+        axes.attitude(of_body.attitude),
+        axes.of_body(of_body.b_body_t),
+        FieldSample(axes.of_body(of_body.sample.b_body_t), of_body.sample.tick),
+        FieldSample(axes.of_body(of_body.before.b_body_t), of_body.before.tick),
+        None if of_body.sun_body is None else axes.of_body(of_body.sun_body),
+        of_body.reference,
+        axes.of_body(of_body.torque_body_nm),
+        axes.of_body(of_body.dipole_body_am2),
+        of_body.tick,
+        of_body.ephemeris,
+        (waits[a], waits[b], waits[c]),
+        of_body.wheel_nms,
+    )
+
+
+def demand_of_body(of_law: Demand, axes: LawAxes) -> Demand:
+    """What a law demands, in body axes; its memory is its own."""
+    impulse, pulse = of_law.impulse_body_nms, of_law.pulse
+    return Demand(
+        axes.to_body(of_law.m_body_am2),
+        None if impulse is None else axes.to_body(impulse),
+        of_law.memory,
+        None if pulse is None else Pulse(axes.place[pulse.coil], axes.sign[pulse.coil] * pulse.level),
+        of_law.wheel_torque_nm,
+    )
+
+
+def _demand(
+    mode: Mode, inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig
+) -> Demand | None:
     match mode:
         case Mode.SAFE:
             return None

@@ -6,6 +6,7 @@ from typing import Any, final
 
 from fsw.core.algebra.vector import ZERO, Mat3, Vec3
 from fsw.core.estimation.attitude import Attitude
+from fsw.core.laws.plan.law_axes import LawAxes
 from fsw.core.laws.plan.pulse_model import NEVER, Pulse, PulseModel
 from fsw.core.laws.plan.riccati import Schedule
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference
@@ -29,7 +30,7 @@ class FieldSample(Value):
 
 @final
 class LawInput(Value):
-    """What a law receives in one tick.
+    """What a law receives in one tick; its body axes are 1 up, 2 ahead, 3 along the orbit's normal.
 
     ``b_body_t`` is the modelled field where the attitude is usable, otherwise the last measured one;
     ``sample`` and ``before`` are the last usable field sample of this tick and of the tick before;
@@ -137,7 +138,7 @@ class OwnLaw:
 
 @dataclass(frozen=True, slots=True)
 class ControlConfig:
-    """Parameters of the laws that the onboard table fixes.
+    """Parameters of the laws that the onboard table fixes, in the axes that the laws count by.
 
     Attributes:
         setpoint: at boot.
@@ -153,6 +154,7 @@ class ControlConfig:
         pulse_model: what pulsed coils can do, for a law that plans pulses; None with a continuous driver.
         own: a law in addition to those of the table.
         wheel: a wheel that can be driven; None: there is none.
+        axes: those axes; None: they are the body axes.
     """
 
     setpoint: Setpoint
@@ -168,6 +170,7 @@ class ControlConfig:
     pulse_model: PulseModel | None = None
     own: OwnLaw | None = None
     wheel: Wheel | None = None
+    axes: LawAxes | None = None
 
 
 @final

@@ -127,6 +127,7 @@ class Lines:
 
     def __init__(self, ticks: int, scenario: Scenario) -> None:
         self.ticks = ticks
+        self._axes = scenario.body.law_axes
         self.dark = Spans()
         self.modes = {mode: Spans() for mode in Mode}
         self.motion = MotionSamples(ticks)
@@ -139,7 +140,7 @@ class Lines:
 
     def take(self, truth: Histories, estimates: Estimates) -> None:
         """The next block, of at least one tick."""
-        flight = FlightHistories(truth, estimates)
+        flight = FlightHistories(truth, estimates, self._axes)
         self.dark.take(flight.dark)
         self.motion.take(truth)
         for mode, ticks in self.modes.items():

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from fsw.core.laws.plan.law_axes import LawAxes
 from sim.value_types import Array
 
 
@@ -15,6 +16,19 @@ def relative(q_from: Array, q_to: Array) -> Array:
     return np.where(scalar < 0.0, -turn, turn)
 
 
+def law_attitude(q_body_from_orbit: Array, axes: LawAxes | None) -> Array:
+    """The attitude of the axes that the laws count by, scalar first, (n, 4); 1 0 0 0 is the nominal one."""
+    if axes is None:
+        return q_body_from_orbit
+    q_orbit_from_body = q_body_from_orbit * (1.0, -1.0, -1.0, -1.0)
+    return relative(q_orbit_from_body, np.tile(axes.q_law_from_body, (len(q_body_from_orbit), 1)))
+
+
+def law_vector(v_body: Array, axes: LawAxes | None) -> Array:
+    """Vectors in the axes that the laws count by, (n, 3)."""
+    return v_body if axes is None else v_body[:, axes.place] * np.array(axes.sign, dtype=np.float64)
+
+
 def angle_rad(turn: Array) -> Array:
     """The angle of each rotation, 0 to pi, (n,)."""
     result: Array = 2.0 * np.arctan2(np.linalg.norm(turn[:, 1:], axis=1), np.abs(turn[:, 0]))
@@ -22,7 +36,7 @@ def angle_rad(turn: Array) -> Array:
 
 
 def axis1_angle_rad(q_body_from_orbit: Array) -> Array:
-    """The angle between body axis 1 and the radius, (n,)."""
+    """The angle between axis 1 and the radius, (n,)."""
     q0, q1, q2, q3 = q_body_from_orbit.T
     sine = 2.0 * np.hypot(q1 * q2 + q0 * q3, q1 * q3 - q0 * q2)
     cosine = q0**2 + q1**2 - q2**2 - q3**2

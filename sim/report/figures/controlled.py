@@ -7,7 +7,7 @@ import numpy as np
 
 from fsw.core.laws.interface import MAX_SPIN_RADPS
 from sim.record.truth import Histories
-from sim.report.figures.attitude_arrays import axis1_errors, errors
+from sim.report.figures.attitude_arrays import axis1_errors, errors, law_attitude, law_vector
 from sim.report.figures.mean import Mean
 from sim.scenario.controlled import Controlled
 from sim.scenario.schema import Scenario
@@ -17,7 +17,7 @@ from sim.value_types import Array, Json
 
 
 def spin_reference_radps(scenario: Scenario, t_s: Array) -> Array:
-    """The spin about body axis 1 that is asked for, rad/s, at times t, (n,).
+    """The spin about axis 1 that is asked for, rad/s, at times t, (n,).
 
     That of ``control.spin_radps``, and of each TC_SPIN of the scenario within the range from its tick on.
     """
@@ -37,18 +37,19 @@ def _spins(scenario: Scenario) -> Iterator[SendSpin]:
 
 
 def error_vectors(what: str, truth: Histories, scenario: Scenario) -> Array:
-    """The error of what is controlled, (n, 3) or (n, 1), deg or deg/s, body axes.
+    """The error of what is controlled, (n, 3) or (n, 1), deg or deg/s, in the axes of the laws.
 
-    ``attitude``: the rotation vector from nominal; ``axis``: that from body axis 1 to the vertical;
+    ``attitude``: the rotation vector from nominal; ``axis``: that from axis 1 to the vertical;
     ``rate``: relative to the orbital frame, less the spin reference; ``spin``: its component about axis 1.
     """
+    axes = scenario.body.law_axes
     if what == "attitude":
-        return np.degrees(errors(truth["q_body_from_orbit"]))
+        return np.degrees(errors(law_attitude(truth["q_body_from_orbit"], axes)))
     if what == "axis":
-        return np.degrees(axis1_errors(truth["q_body_from_orbit"]))
+        return np.degrees(axis1_errors(law_attitude(truth["q_body_from_orbit"], axes)))
     reference_radps = np.zeros((len(truth["t_s"]), 3))
     reference_radps[:, 0] = spin_reference_radps(scenario, truth["t_s"])
-    rate: Array = np.degrees(truth["omega_body_orbit_radps"] - reference_radps)
+    rate: Array = np.degrees(law_vector(truth["omega_body_orbit_radps"], axes) - reference_radps)
     return rate[:, :1] if what == "spin" else rate
 
 

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fsw.core.laws.plan.law_axes import LawAxes
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
-from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad, normal_in_body
+from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad, law_attitude, normal_in_body
 from sim.report.figures.estimate_error import estimate_error
 from sim.value_types import Array
 
@@ -21,6 +22,8 @@ class FlightHistories:
 
     truth: Histories
     estimates: Estimates
+    axes: LawAxes | None = None
+    """Those that the laws count by; None: the body axes."""
 
     @property
     def ticks(self) -> int:
@@ -35,12 +38,12 @@ class FlightHistories:
     @property
     def pointing_deg(self) -> Array:
         """The angle between the nominal and the true attitude."""
-        return np.degrees(angle_rad(self.truth["q_body_from_orbit"]))
+        return np.degrees(angle_rad(law_attitude(self.truth["q_body_from_orbit"], self.axes)))
 
     @property
     def axis1_deg(self) -> Array:
-        """The angle of body axis 1 from the local vertical."""
-        return np.degrees(axis1_angle_rad(self.truth["q_body_from_orbit"]))
+        """The angle of axis 1, that looks up, from the local vertical."""
+        return np.degrees(axis1_angle_rad(law_attitude(self.truth["q_body_from_orbit"], self.axes)))
 
     @property
     def attitude_error_deg(self) -> Array:

@@ -10,7 +10,7 @@ from fsw.wire.messages import Mode
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures import parameters
-from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad
+from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad, law_attitude, law_vector
 from sim.report.figures.controlled import ControlledError, spin_reference_radps
 from sim.report.figures.estimate_error import (
     CONVERGED_DEG,
@@ -134,7 +134,7 @@ class _Convergence:
 
 @dataclass(slots=True)
 class _Spin:
-    """The spin about body axis 1 against its reference, and the tick at which it has settled at that."""
+    """The spin about axis 1 against its reference, and the tick at which it has settled at that."""
 
     settling: Settling
     reference_radps: float = 0.0
@@ -206,14 +206,15 @@ class Performance:
     def take(self, truth: Histories, estimates: Estimates) -> None:
         """The next block of ``BLOCK_TICKS``; the last one may be shorter, but is not empty."""
         first, rows = self.ticks, len(truth["t_s"])
-        q = truth["q_body_from_orbit"]
+        axes = self._scenario.body.law_axes
+        q = law_attitude(truth["q_body_from_orbit"], axes)
         recent = slice(max(0, self._last_orbit_from - first), rows)
         self._pointing.take(np.degrees(angle_rad(q)), recent)
         self._axis1.take(np.degrees(axis1_angle_rad(q)), recent)
         self._tumble.take(np.degrees(magnitudes(truth["omega_body_orbit_radps"])))
         self._convergence.take(truth, estimates, first)
         reference_radps = spin_reference_radps(self._scenario, truth["t_s"])
-        self._spin.take(truth["omega_body_orbit_radps"][:, 0], reference_radps, recent)
+        self._spin.take(law_vector(truth["omega_body_orbit_radps"], axes)[:, 0], reference_radps, recent)
         self._controlled.take(truth, recent)
         self.judgement.take(truth, estimates)
         self._last = truth, estimates

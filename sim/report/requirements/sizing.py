@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.design.from_scenario import body_of
+from sim.design.from_scenario import body_of, law_from_body
 from sim.design.theory.bodies import Body
 from sim.design.theory.feedforward import least_error
 from sim.scenario.schema import Scenario
@@ -78,7 +78,7 @@ def least_error_deg(scenario: Scenario, torque_nm: Vec3) -> float | None:
     None for a body that the gravity gradient leaves free, for which there is no periodic motion.
     """
     try:
-        return degrees(least_error(apart(body_of(scenario)), torque_nm).rms_rad)
+        return degrees(least_error(apart(body_of(scenario)), law_from_body(scenario) @ torque_nm).rms_rad)
     except np.linalg.LinAlgError:
         return None
 
@@ -89,7 +89,7 @@ def pulse_turn_deg(scenario: Scenario, what: str) -> float:
     J is the least moment of inertia about an axis that matters: of axis 1 those of axes 2 and 3.
     """
     body, coils = body_of(scenario), scenario.coils
-    moments = [scenario.body.inertia[axis][axis] for axis in ((1, 2) if what == "axis" else (0, 1, 2))]
+    moments = [scenario.body.law_inertia[axis][axis] for axis in ((1, 2) if what == "axis" else (0, 1, 2))]
     rate_radps = coils.levels_am2[0] * mean_field_t(body) * coils.pulse_s / min(moments)
     return degrees(0.5 * rate_radps / body.rate_radps)
 

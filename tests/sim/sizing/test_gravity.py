@@ -95,5 +95,17 @@ def test_it_is_said_with_the_order_that_would_be_held():
     found = gravity_on(load("cubesat3u", {"body": {"inertia_kgm2": [0.041, 0.008, 0.04]}}))
     words = gravity_words(found)
     assert "turns the body over about axes 2 and 3" in words
-    assert "axis 2, of the least moment, up and axis 1, of the largest" in words
-    assert "[0.008, 0.04, 0.041]" in words
+    assert "y, of the least moment, up and x, of the largest" in words
+    assert "set body.up = 'y' and body.ahead = 'z'" in words
+
+
+@pytest.mark.parametrize("moments", [*permutations(MOMENTS)])
+def test_the_attitude_that_is_advised_is_held(moments):
+    body = {"inertia_kgm2": list(moments), "up": "-z", "ahead": "y"}
+    found = gravity_on(load("cubesat6u", {"body": body}))
+    if not found.away:
+        assert [moments[axis] for axis in (2, 1, 0)] == sorted(MOMENTS)
+        return
+    up, ahead, _ = (found.names[axis] for axis in found.held_order)
+    assert f"body.up = '{up}' and body.ahead = '{ahead}'" in gravity_words(found)
+    assert gravity_on(load("cubesat6u", {"body": body | {"up": up, "ahead": ahead}})).away == ()

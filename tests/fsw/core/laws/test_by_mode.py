@@ -11,6 +11,7 @@ from fsw.core.laws import by_mode
 from fsw.core.laws.damping import bdot, bdot_dipole, rate_damping, rate_damping_dipole
 from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, LawInput, OwnLaw, Setpoint
 from fsw.core.laws.pd import attitude_error, far_error, pd_dipole
+from fsw.core.laws.plan.law_axes import law_axes
 from fsw.core.laws.plan.pulse_model import NO_PULSE, Pulse
 from fsw.core.laws.predictive import predictive
 from fsw.core.laws.table import LAWS
@@ -275,3 +276,53 @@ class TestOwnLaw:
         assert run(Mode.DETUMBLE, mine, config=self.CONFIG) == BY_PREDICTION
         assert run(Mode.SAFE, mine, config=self.CONFIG) is None
         assert run(Mode.POINT, PD, config=self.CONFIG) == BY_PD
+
+
+class TestAxesOfTheLaws:
+    """A law sees and answers in its own axes; what comes of it is in those of the body."""
+
+    AXES = law_axes("-z", "x")
+    """Law axes 1, 2, 3 are body axes -z, x and -y."""
+
+    def own(self, demanded):
+        seen = []
+
+        def law(inputs, memory, setpoint, config):
+            seen.append(inputs)
+            return demanded
+
+        config = replace(CONFIG, own=OwnLaw("mine", law, law), axes=self.AXES)
+        given = inputs().replace(dipole_body_am2=(0.1, 0.2, 0.3), wait_ticks=(7, 8, 9))
+        found = by_mode.demand(Mode.POINT, given, (), replace(PD, law="mine"), config)
+        return seen[0], found
+
+    def test_what_the_law_sees_is_turned(self):
+        seen, _ = self.own(Demand())
+        assert seen.b_body_t == (-B_BODY_T[2], B_BODY_T[0], -B_BODY_T[1])
+        assert seen.sample.b_body_t == (-3.2e-5, 1.6e-5, 2.4e-5)
+        assert (seen.sample.tick, seen.before.tick) == (44, 40)
+        assert seen.sun_body == (-0.8, 0.6, -0.0)
+        assert seen.torque_body_nm == (-3e-7, 1e-7, 2e-7)
+        assert seen.dipole_body_am2 == (-0.3, 0.1, -0.2)
+        assert seen.wait_ticks == (9, 7, 8)
+        assert seen.attitude.omega_body_orbit_radps == (-0.003, 0.001, 0.002)
+        assert seen.reference is REFERENCE
+
+    def test_a_dipole_is_turned_back_less_the_residual_one(self):
+        _, found = self.own(Demand((1.0, 2.0, 3.0), memory=(4.0,)))
+        assert found.m_body_am2 == pytest.approx((2.0 - 0.1, -3.0 - 0.2, -1.0 - 0.3))
+        assert found.memory == (4.0,)
+
+    def test_an_impulse_is_turned_back(self):
+        _, found = self.own(Demand(impulse_body_nms=(1.0, 2.0, 3.0)))
+        assert found.impulse_body_nms == (2.0, -3.0, -1.0)
+
+    @pytest.mark.parametrize(
+        ("asked", "fired"), [((0, 2), (2, -2)), ((1, -3), (0, -3)), ((2, 1), (1, -1)), ((0, 0), (2, 0))]
+    )
+    def test_a_pulse_is_that_of_the_coil_along_the_axis(self, asked, fired):
+        _, found = self.own(Demand(pulse=Pulse(*asked)))
+        assert found.pulse == Pulse(*fired)
+
+    def test_safe_asks_for_nothing(self):
+        assert run(Mode.SAFE, config=replace(CONFIG, axes=self.AXES)) is None
