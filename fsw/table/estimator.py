@@ -9,7 +9,7 @@ from fsw.core.estimation.cells.cell_set import CellSet
 from fsw.core.estimation.changes import EDGE_S, NO_CHANGES, Changes
 from fsw.core.estimation.estimator import EstimatorConfig
 from fsw.core.estimation.kalman import Algebra
-from fsw.core.estimation.mekf_config import mekf_config
+from fsw.core.estimation.mekf_config import MekfConfig, mekf_config
 from fsw.core.estimation.orbital_attitude import MOST_AGED_TURN_RAD, MOST_TURN_RAD
 from fsw.core.estimation.start.first import StartLimits
 from fsw.core.fdir.sensors.plausibility import PlausibilityConfig
@@ -57,26 +57,7 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
     cells = _cells(table, known)
     limits = plausibility_config(table)
     return EstimatorConfig(
-        mekf=mekf_config(
-            table.body.inertia,
-            tick_s,
-            priors(known, table.body.inertia),
-            wheel_body_nms=table.body.wheel_nms,
-            driven_wheel=table.wheel is not None,
-            magnetometer_sigma_t=field_noise_nt(tuning) * NT,
-            sun_sigma_rad=_sun_sigma_rad(table),
-            attitude_sigma_rad=START_SIGMA_RAD
-            if cells is None
-            else max(START_SIGMA_RAD, CELLS_START * cells.model_sigma),
-            rate_sigma_radps=radians(tuning.rate_sigma_degps),
-            torque_noise_nm_rts=max(
-                TORQUE_NOISE_RTS * known.torque_nm, LEAST_NOISE_RTS * mean_moment(table.body.inertia)
-            ),
-            dipole_sigma=DRIVE_SIGMA,
-            gate_nis=GATE_NIS,
-            cells=cells,
-            algebra=Algebra(tuning.algebra),
-        ),
+        mekf=filter_config(table, tick_s, cells),
         perfect=table.knowledge == "perfect",
         start=StartLimits(
             max_field_error_t=limits.field_t + limits.field_part * LARGEST_FIELD_T,
@@ -89,12 +70,42 @@ def estimator_config(table: FlightTable) -> EstimatorConfig:
         usable_sigma_rad=radians(tuning.usable_sigma_deg),
         fastest_valid_radps=(MOST_AGED_TURN_RAD if known.latency_s > 0.0 else MOST_TURN_RAD) / tick_s,
         blank_ticks=ceil(known.latency_s * table.time.tick_hz - 1e-9),
-        changes=_changes(table, known),
+        changes=changes_of(table),
     )
 
 
-def _changes(table: FlightTable, known: Uncertainty) -> Changes:
+def filter_config(
+    table: FlightTable, step_s: float, cells: CellSet | None = None, samples: float = 1.0
+) -> MekfConfig:
+    """Prepare the filter, for steps of this length that each have the mean of so many samples.
+
+    Without ``cells`` a table with Sun cells has the Sun's direction that they would give.
+    """
+    tuning, known, inertia = table.estimator, table_bounds(table), table.body.inertia
+    averaged = sqrt(1.0 / samples)
+    return mekf_config(
+        inertia,
+        step_s,
+        priors(known, inertia),
+        wheel_body_nms=table.body.wheel_nms,
+        driven_wheel=table.wheel is not None,
+        magnetometer_sigma_t=averaged * field_noise_nt(tuning) * NT,
+        sun_sigma_rad=averaged * _sun_sigma_rad(table),
+        attitude_sigma_rad=START_SIGMA_RAD
+        if cells is None
+        else max(START_SIGMA_RAD, CELLS_START * cells.model_sigma),
+        rate_sigma_radps=radians(tuning.rate_sigma_degps),
+        torque_noise_nm_rts=max(TORQUE_NOISE_RTS * known.torque_nm, LEAST_NOISE_RTS * mean_moment(inertia)),
+        dipole_sigma=DRIVE_SIGMA,
+        gate_nis=GATE_NIS,
+        cells=cells,
+        algebra=Algebra(tuning.algebra),
+    )
+
+
+def changes_of(table: FlightTable) -> Changes:
     """What changes in orbit, from its bounds."""
+    known = table_bounds(table)
     steps = (known.mag_shadow_t, known.shadow_dipole_am2, known.shadow_impulse_nms)
     if not any((*steps, known.storm_t, known.remanence_part)):
         return NO_CHANGES

@@ -18,7 +18,7 @@ from sim.record.destination import check_file
 from sim.scenario.names import ALLOWED, is_name
 from sim.scenario.schema import Scenario, scenario_of, shipped_names
 from sim.sizing.command import doubt_of, points
-from sim.sizing.expectation import expect
+from sim.sizing.expectation import expect, torque_balance
 from sim.sizing.gravity import gravity_on, turned_away
 from sim.sizing.levels import levels_against, two_digits
 from sim.sizing.scenario_warnings import scenario_warnings
@@ -105,7 +105,7 @@ def scenario_text(satellite: NewSatellite, file: str) -> str:
     if satellite.levels_am2 is not None or satellite.dipole_am2 is not None:
         return text
     scenario = scenario_made(text)
-    levels = levels_against(scenario, expect(scenario))
+    levels = levels_against(scenario, torque_balance(scenario).load)
     return _rendered(replace(satellite, levels_am2=levels), file)
 
 

@@ -24,6 +24,8 @@ SURE_DEG = 3.0
 """Floor up to which flights agree with the figure."""
 STEADY_DEG = 0.6
 """Turn between two pulses up to which they do: of four kinds of cubesat, and most of a heavier one."""
+LOST = 2.0
+"""Times the standard deviation with which the control relies on an estimate: beyond it, none points."""
 MOST_SPREAD = 20.0
 """Ratio of the moments of inertia up to which the least level is judged by the lightest axis."""
 
@@ -47,7 +49,7 @@ def size(scenario: Scenario) -> int:
 def sized(scenario: Scenario) -> Sized:
     """What is expected and what levels would do."""
     expectation = expect(scenario)
-    levels, gravity = levels_against(scenario, expectation), gravity_on(scenario)
+    levels, gravity = levels_against(scenario, expectation.load), gravity_on(scenario)
     return Sized(
         as_text(scenario, expectation, levels, gravity),
         as_json(scenario, expectation, levels, gravity),
@@ -83,22 +85,33 @@ def as_json(scenario: Scenario, expectation: Expectation, levels: Levels, gravit
 def points(expectation: Expectation, gravity: Gravity) -> bool:
     """Whether there is a pointing error to expect.
 
-    Gravity does not turn the body over, and the disturbance is balanced, by small angles.
+    Gravity does not turn the body over, the attitude is known, the disturbance is balanced by small angles.
     """
     held = not (gravity.falls_over or gravity.rests_elsewhere)
-    return held and expectation.load <= 1.0 and expectation.floor_deg <= SMALL_DEG
+    known = expectation.shadow_part <= LOST
+    return held and known and expectation.load <= 1.0 and expectation.floor_deg <= SMALL_DEG
 
 
 def doubt_of(expectation: Expectation) -> str:
     """Why flights may have several times the expected error; empty where they agree with it."""
     if expectation.floor_deg > SURE_DEG:
         return "so large an error is a lower bound: flights had it or several times as much"
+    if expectation.shadow_part > 1.0:
+        return f"{shadow_words(expectation)}: flights then lost it for minutes, and took ten orbits to settle"
     if expectation.ripple_deg > STEADY_DEG:
         return (
             f"the disturbance turns it by {expectation.ripple_deg:.2g} deg between two pulses: flights of "
             "such bodies had the expected error or several times as much, and took up to ten orbits to settle"
         )
     return ""
+
+
+def shadow_words(expectation: Expectation) -> str:
+    """How uncertain the estimate becomes, and by what."""
+    return (
+        f"in the Earth's shadow the estimate becomes {expectation.shadow_part:.1f} times as uncertain as the "
+        "control can use, by the bounds of [flight.uncertainty], ordinary ones where none is given"
+    )
 
 
 def as_text(scenario: Scenario, expectation: Expectation, levels: Levels, gravity: Gravity) -> str:
@@ -172,6 +185,8 @@ def _pointing(expectation: Expectation, gravity: Gravity) -> str:
         return f"  pointing   none to expect: it does not rest in this attitude ({parts} deg)"
     if gravity.falls_over:
         return f"  pointing   none to rely on: gravity turns it over ({parts} deg where the coils hold it)"
+    if expectation.shadow_part > LOST:
+        return f"  pointing   none to rely on: {shadow_words(expectation)} ({parts} deg)"
     if not points(expectation, gravity):
         return f"  pointing   none to expect: the disturbance is too strong ({parts} deg)"
     return f"  pointing   {expectation.pointing_deg:.2f} deg RMS once settled ({parts})"

@@ -7,8 +7,7 @@ Four parts that do not depend on each other add up by their squares:
 - the quantum: by how much the least level turns the body from one pulse to the next, about the axis that it
   turns most, q = m_1 B T_p (T_p + T_b) / J_min.
 - the ripple: by how much the disturbance d turns that axis in the same time, r = d (T_p + T_b)^2 / J_min.
-- the knowledge: the Sun sensor's noise over ``AVERAGED`` samples, and its misalignment within its bound a,
-  a ball: s^2 / n + 3 a^2 / 5.
+- the knowledge: the error of the estimate, by the covariance of the filter (``knowledge``).
 
 The load is the part of the coils' time that balancing takes: the mean over an orbit of |m_1| + |m_2| + |m_3|
 of the balancing dipole, over what one coil at a time gives, m_3 T_p / (T_p + T_b). Where each coil has a
@@ -26,20 +25,18 @@ sqrt(2/3), since B^2 = B_0^2 (1 + 3 sin^2 i sin^2 u).
 
 from dataclasses import dataclass, replace
 from math import degrees, hypot, inf, isnan, radians, sin, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
 from sim.design.from_scenario import body_of
 from sim.design.theory.bodies import Body
 from sim.design.theory.feedforward import least_error
-from sim.scenario.schema import Scenario, flight_table
+from sim.scenario.schema import Scenario
+from sim.sizing.knowledge import knowledge_of
 from sim.sizing.torques import disturbance_torque
 
 SPREAD = 1e-3
-AVERAGED = 30
-"""Samples over which the filter averages, in effect."""
-SUN_MISALIGNMENT_DEG = 0.5
-"""Its bound where the onboard table has none, as in ``fsw/table/uncertainty.py``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +50,8 @@ class Expectation:
         quantum_deg: step of the least level.
         ripple_deg: turn by the disturbance between two pulses.
         knowledge_deg: error of the estimate.
+        shadow_part: standard deviation of the estimate where it is least certain, mostly in the shadow, over
+            the largest with which the control relies on it.
         load: part of the coils' time that balancing the disturbance takes; above 1 it cannot be balanced.
     """
 
@@ -62,6 +61,7 @@ class Expectation:
     quantum_deg: float
     ripple_deg: float
     knowledge_deg: float
+    shadow_part: float
     load: float
 
     @property
@@ -70,33 +70,54 @@ class Expectation:
         return hypot(self.floor_deg, self.quantum_deg, self.ripple_deg, self.knowledge_deg)
 
 
+class TorqueBalance(NamedTuple):
+    """What balancing the disturbances takes, and leaves; as in ``Expectation``."""
+
+    disturbance_nm: float
+    floor_deg: float
+    load: float
+
+
 def expect(scenario: Scenario) -> Expectation:
-    """What to expect of a satellite at body = orbit; what overflows is infinite."""
-    with np.errstate(all="ignore"):
-        return _expect(scenario)
+    """What to expect of a satellite in its nominal attitude; what overflows is infinite.
 
-
-def _expect(scenario: Scenario) -> Expectation:
-    body, coils, torque_nm = apart(body_of(scenario)), scenario.coils, disturbance_torque(scenario)
-    response = least_error(body, torque_nm)
-    field_t = field_across(body)
+    Raises:
+        TableError: the onboard models have no orbit or field at the epoch.
+    """
+    body, coils, balance = apart(body_of(scenario)), scenario.coils, torque_balance(scenario)
+    field_t, knowledge = field_across(body), knowledge_of(scenario)
     pulsed = coils.driver == "pulsed"
     cycle_s = coils.pulse_s + coils.backoff_s if pulsed else 1.0 / scenario.time.tick_hz
-    least_kgm2 = float(np.linalg.eigvalsh(np.asarray(body.inertia_kgm2))[0])
-    quantum_rad = coils.levels_am2[0] * field_t * coils.pulse_s * cycle_s / least_kgm2 if pulsed else 0.0
-    by_coil_am2 = np.abs(response.dipole_am2).mean(axis=0)
-    one_at_a_time = pulsed and coils.shared
-    balancing_am2 = float(by_coil_am2.sum() if one_at_a_time else by_coil_am2.max())
-    disturbance_nm = float(np.sqrt(np.mean(np.sum(torque_nm**2, axis=1))))
+    with np.errstate(all="ignore"):
+        least_kgm2 = float(np.linalg.eigvalsh(np.asarray(body.inertia_kgm2))[0])
+        quantum_rad = coils.levels_am2[0] * field_t * coils.pulse_s * cycle_s / least_kgm2 if pulsed else 0.0
+        ripple_rad = balance.disturbance_nm * cycle_s**2 / least_kgm2
     return Expectation(
         field_t=field_t,
-        disturbance_nm=_or_inf(disturbance_nm),
-        floor_deg=_or_inf(degrees(response.rms_rad)),
+        disturbance_nm=balance.disturbance_nm,
+        floor_deg=balance.floor_deg,
         quantum_deg=_or_inf(degrees(quantum_rad)),
-        ripple_deg=_or_inf(degrees(disturbance_nm * cycle_s**2 / least_kgm2)),
-        knowledge_deg=_knowledge_deg(scenario),
-        load=_or_inf(balancing_am2 / (coils.largest_am2 * coils.on_part)),
+        ripple_deg=_or_inf(degrees(ripple_rad)),
+        knowledge_deg=knowledge.rms_deg,
+        shadow_part=knowledge.most_deg / knowledge.usable_deg,
+        load=balance.load,
     )
+
+
+def torque_balance(scenario: Scenario) -> TorqueBalance:
+    """What balancing the disturbances takes in the nominal attitude; what overflows is infinite."""
+    coils = scenario.coils
+    with np.errstate(all="ignore"):
+        torque_nm = disturbance_torque(scenario)
+        response = least_error(apart(body_of(scenario)), torque_nm)
+        by_coil_am2 = np.abs(response.dipole_am2).mean(axis=0)
+        one_at_a_time = coils.driver == "pulsed" and coils.shared
+        balancing_am2 = float(by_coil_am2.sum() if one_at_a_time else by_coil_am2.max())
+        return TorqueBalance(
+            _or_inf(float(np.sqrt(np.mean(np.sum(torque_nm**2, axis=1))))),
+            _or_inf(degrees(response.rms_rad)),
+            _or_inf(balancing_am2 / (coils.largest_am2 * coils.on_part)),
+        )
 
 
 def _or_inf(figure: float) -> float:
@@ -116,11 +137,3 @@ def field_across(body: Body) -> float:
     """B, the root mean square of the field across a coil's axis [T]."""
     sine = sin(radians(body.inclination_deg))
     return body.field_t * sqrt((1.0 + 1.5 * sine * sine) * 2.0 / 3.0)
-
-
-def _knowledge_deg(scenario: Scenario) -> float:
-    if scenario.knowledge == "perfect":
-        return 0.0
-    given = flight_table(scenario).uncertainty.sun_misalignment_deg
-    bound_deg = SUN_MISALIGNMENT_DEG if given is None else given
-    return hypot(scenario.sensors.sun.noise_deg / sqrt(AVERAGED), bound_deg * sqrt(0.6))

@@ -16,7 +16,7 @@ import numpy as np
 from sim.design.from_scenario import body_of
 from sim.design.theory.bodies import Body
 from sim.scenario.schema import Scenario
-from sim.sizing.expectation import Expectation, field_across
+from sim.sizing.expectation import field_across
 
 Levels = tuple[float, float, float]
 
@@ -35,10 +35,10 @@ def levels_for(body: Body, pulse_s: float) -> Levels:
     return _rounded(float(moments[0]) * scale / FINE, float(moments[-1]) * scale / COARSE)
 
 
-def levels_against(scenario: Scenario, expectation: Expectation) -> Levels:
-    """The levels for the satellite and the disturbances of a scenario, A m^2, to two digits."""
+def levels_against(scenario: Scenario, load: float) -> Levels:
+    """The levels for a satellite whose coils now take this load, A m^2, to two digits."""
     low, _, high = levels_for(body_of(scenario), scenario.coils.pulse_s)
-    return _rounded(low, max(high, scenario.coils.levels_am2[2] * expectation.load / MOST_LOAD))
+    return _rounded(low, max(high, scenario.coils.levels_am2[2] * load / MOST_LOAD))
 
 
 def _rounded(low_am2: float, high_am2: float) -> Levels:

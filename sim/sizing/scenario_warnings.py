@@ -22,7 +22,7 @@ from sim.scenario.residual_errors import coil_errors, magnetometer_errors, readi
 from sim.scenario.schema import Scenario, flight_table
 from sim.scenario.sections import ScenarioCoils, ScenarioOrbit, SunSensorSection
 from sim.scenario.telecommands import unsent_telecommands
-from sim.sizing.expectation import expect, field_across
+from sim.sizing.expectation import field_across, torque_balance
 from sim.sizing.gravity import gravity_on, gravity_words
 from sim.sizing.levels import TOO_WEAK, levels_against, levels_for
 from sim.sizing.torques import surface_torque
@@ -161,12 +161,12 @@ def _coils(scenario: Scenario) -> Iterator[str]:
 def _load(scenario: Scenario) -> Iterator[str]:
     if scenario.coils.driver != "pulsed" or gravity_on(scenario).rests_elsewhere:
         return
-    expectation = expect(scenario)
-    if expectation.load > TOO_WEAK:
-        high = levels_against(scenario, expectation)[2]
+    balance = torque_balance(scenario)
+    if balance.load > TOO_WEAK:
+        high = levels_against(scenario, balance.load)[2]
         yield (
-            f"balancing the disturbance of {expectation.disturbance_nm:.2g} N m takes "
-            f"{expectation.load:.0%} of what coils.levels_am2 can give in pulses: too weak to point with; "
+            f"balancing the disturbance of {balance.disturbance_nm:.2g} N m takes "
+            f"{balance.load:.0%} of what coils.levels_am2 can give in pulses: too weak to point with; "
             f"a strongest level of {high:g} A m^2 would do"
         )
 

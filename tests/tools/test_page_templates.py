@@ -1,4 +1,4 @@
-"""A page that a command writes says what its template says: who edits the page alone loses it with the next run."""
+"""A page that a command writes says what its template says, or the next run loses it."""
 
 from pathlib import Path
 

@@ -17,6 +17,7 @@ EXPECTED = Expectation(
     quantum_deg=0.3,
     ripple_deg=0.0,
     knowledge_deg=0.0,
+    shadow_part=0.5,
     load=0.1,
 )
 ROW = Row("levels 1, 2, 3", "microsat", "mpc", EXPECTED, (0.6, 0.3, 0.45))

@@ -147,6 +147,8 @@ OVER_DEG = 20.0
 """Error from which a body that gravity does not hold has fallen over."""
 HOPELESS = 0.25
 """Part of what gravity takes below which the highest level is too weak, however short the flight."""
+UNSURE = 0.02
+"""Part of the shadow from which an estimate that the control cannot use counts."""
 LATE = 0.4
 """Fraction of a flight after which it is late for what must come first: attitude, low rate."""
 
@@ -219,6 +221,15 @@ def _tumbling(missed: Missed, evidence: FlightEvidence) -> str:
     return (
         f"tumbling: {number(evidence.rate_degps)} deg/s at the start, {last}; "
         f"ACQUIRE begins under {modes.slow_degps:g} deg/s"
+    )
+
+
+def _shadow(missed: Missed, evidence: FlightEvidence) -> str:
+    if evidence.unsure_dark < UNSURE:
+        return ""
+    return (
+        f"for {part(evidence.unsure_dark)} of its time in the Earth's shadow the estimate was less certain "
+        "than the control can use, by the bounds of [flight.uncertainty]: it then damps rates alone"
     )
 
 
@@ -378,7 +389,7 @@ POINTING = frozenset(("ape", "mpe", "rpe", "settling", "rate"))
 SETTLING = frozenset(("settling",))
 KNOWING = POINTING | {"ake"}
 ALL = KNOWING | {"duty", "energy"}
-BEFORE_POINTING = frozenset(("safe", "dark", "tumbling", "estimate"))
+BEFORE_POINTING = frozenset(("safe", "dark", "tumbling", "shadow", "estimate"))
 CANNOT_POINT = frozenset(("isolated", "gravity", "unstable", "disturbance", "any_law"))
 POINT_IS_LOST = BEFORE_POINTING | CANNOT_POINT | {"coarse", "weak", "not_settled"}
 
@@ -387,7 +398,8 @@ CAUSES: Sequence[Diagnosis] = (
     Diagnosis("safe", KNOWING, _safe, frozenset(("isolated",))),
     Diagnosis("dark", KNOWING, _dark),
     Diagnosis("tumbling", KNOWING, _tumbling),
-    Diagnosis("estimate", KNOWING, _estimate, frozenset(("isolated", "safe", "dark", "tumbling"))),
+    Diagnosis("shadow", KNOWING, _shadow, frozenset(("isolated", "safe", "dark", "tumbling"))),
+    Diagnosis("estimate", KNOWING, _estimate, frozenset(("isolated", "safe", "dark", "tumbling", "shadow"))),
     Diagnosis("mismatch", ALL, _mismatch),
     Diagnosis("gravity", POINTING, _gravity, BEFORE_POINTING | {"isolated"}),
     Diagnosis("any_law", POINTING, _any_law, frozenset(("gravity",))),
@@ -395,10 +407,10 @@ CAUSES: Sequence[Diagnosis] = (
     Diagnosis("unstable", ALL - {"ake"}, _unstable, frozenset(("gravity",))),
     Diagnosis("coarse", POINTING, _coarse, BEFORE_POINTING | CANNOT_POINT),
     Diagnosis("weak", POINTING, _weak, BEFORE_POINTING | CANNOT_POINT),
-    Diagnosis("not_settled", POINTING, _not_settled, CANNOT_POINT | {"safe", "estimate", "coarse"}),
+    Diagnosis("not_settled", POINTING, _not_settled, CANNOT_POINT | {"safe", "shadow", "estimate", "coarse"}),
     Diagnosis("short", POINTING, _short, POINT_IS_LOST),
     Diagnosis("never_in_point", POINTING, _never_in_point, POINT_IS_LOST | {"short"}),
-    Diagnosis("fell_back", SETTLING, fell_back, CANNOT_POINT | {"safe", "tumbling", "estimate"}),
+    Diagnosis("fell_back", SETTLING, fell_back, CANNOT_POINT | {"safe", "tumbling", "shadow", "estimate"}),
     Diagnosis("left_again", SETTLING, left_again, POINT_IS_LOST | {"fell_back"}),
     Diagnosis("slow", SETTLING, slow, POINT_IS_LOST | {"fell_back", "left_again"}),
     Diagnosis(

@@ -66,6 +66,8 @@ class FlightEvidence:
         course: by half orbit, RMS of the error of what is controlled, from the start.
         pulses: start in orbits and size of the level of each pulse of the flight.
         fell_back: since when and for how long the controller was in SAFE or DETUMBLE after a better mode.
+        unsure_dark: part of the ticks in the Earth's shadow, after the first valid one, in which the filter
+            is less certain than the control can use.
     """
 
     scenario: Scenario
@@ -88,6 +90,7 @@ class FlightEvidence:
     course: tuple[float, ...] = ()
     pulses: tuple[tuple[float, int], ...] = ()
     fell_back: tuple[tuple[Mode, float, float], ...] = ()
+    unsure_dark: float = 0.0
 
 
 class EvidenceGatherer:
@@ -98,7 +101,10 @@ class EvidenceGatherer:
         self._orbit = orbit_period_s(scenario) * scenario.time.tick_hz
         self._last_from = max(0, ticks - round(self._orbit))
         self._halves = [Mean() for _ in range(min(HALF_ORBITS, int(2.0 * ticks / self._orbit)))]
-        self._slow_degps = flight_table(scenario).modes.slow_degps
+        table = flight_table(scenario)
+        self._slow_degps = table.modes.slow_degps
+        self._usable_rad = np.radians(table.estimator.usable_sigma_deg)
+        self._dark = self._unsure_dark = 0
         self._taken = 0
         self._estimate, self._rate, self._torque = Mean(), Mean(), np.zeros(3)
         self._valid = self._inside = self._saturated = 0
@@ -124,6 +130,7 @@ class EvidenceGatherer:
         self._note("point", first, estimates.mode[:rows] == Mode.POINT)
         self._torque += _disturbance(self._scenario, truth)
         self._saturated += int(_saturated(self._scenario, truth)[recent].sum())
+        self._take_shadow(first, truth, estimates)
         if recent.start < rows:
             self._take_estimate(truth, estimates, recent)
 
@@ -155,6 +162,7 @@ class EvidenceGatherer:
             course=tuple(half.rms for half in self._course),
             pulses=tuple((float(pulse.start_s) / orbit_s, abs(pulse.level)) for pulse in audit.pulses),
             fell_back=tuple(self._fell_back()),
+            unsure_dark=self._unsure_dark / self._dark if self._dark else 0.0,
         )
 
     def _take_trend(self, first: int, error: Array) -> None:
@@ -194,6 +202,16 @@ class EvidenceGatherer:
         fast = np.flatnonzero(rate_degps >= self._slow_degps)
         if len(fast):
             self._slow_from = first + int(fast[-1]) + 1
+
+    def _take_shadow(self, first: int, truth: Histories, estimates: Estimates) -> None:
+        if self._scenario.knowledge != "filter" or "valid" not in self._first:
+            return
+        rows = len(truth["t_s"])
+        dark = (truth["lit"] < 0.5) & (first + np.arange(rows) >= self._first["valid"])
+        variances = np.diagonal(estimates.covariance[:rows, :3, :3], axis1=1, axis2=2)
+        certain = np.max(variances, axis=1) <= self._usable_rad**2
+        self._dark += int(dark.sum())
+        self._unsure_dark += int((dark & ~certain).sum())
 
     def _take_estimate(self, truth: Histories, estimates: Estimates, recent: slice) -> None:
         valid = estimates.valid[: len(truth["t_s"])].copy()

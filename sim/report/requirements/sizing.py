@@ -1,6 +1,6 @@
 """What the coils of a scenario can give on average, what its disturbances take, and what its levels cause."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import degrees, radians, sin, sqrt
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ from sim.design.from_scenario import body_of, law_from_body
 from sim.design.theory.bodies import Body
 from sim.design.theory.feedforward import least_error
 from sim.scenario.schema import Scenario
-from sim.sizing.expectation import apart, expect
+from sim.sizing.expectation import apart, torque_balance
 from sim.sizing.levels import MOST_LOAD, levels_against, two_digits
 from sim.value_types import Vec3
 
@@ -67,9 +67,8 @@ def balance(scenario: Scenario, torque_nm: Vec3, what: str) -> Balance:
     load, of_dipole = dipole.needed / dipole.given, dipole.residual > dipole.torque
     if what != "attitude":
         return Balance(load, two_digits(scenario.coils.largest_am2 * load / MOST_LOAD), of_dipole)
-    expected = expect(scenario)
-    load = max(load, expected.load)
-    return Balance(load, levels_against(scenario, replace(expected, load=load))[2], of_dipole)
+    load = max(load, torque_balance(scenario).load)
+    return Balance(load, levels_against(scenario, load)[2], of_dipole)
 
 
 def least_error_deg(scenario: Scenario, torque_nm: Vec3) -> float | None:

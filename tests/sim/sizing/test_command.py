@@ -113,5 +113,5 @@ def test_products_of_inertia_are_said_with_their_sign():
     inertia = [[1.02, 0.1, 0.0], [0.1, 1.85, 0.0], [0.0, 0.0, 1.95]]
     scenario = load("microsat", {"body": {"inertia_kgm2": inertia}})
     expectation = expect(scenario)
-    text = as_text(scenario, expectation, levels_against(scenario, expectation), gravity_on(scenario))
+    text = as_text(scenario, expectation, levels_against(scenario, expectation.load), gravity_on(scenario))
     assert "axes turned by 6.8 deg from the body axes, with products of inertia as J_xy = - integral" in text

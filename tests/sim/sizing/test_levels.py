@@ -4,7 +4,7 @@ import pytest
 
 from sim.design.from_scenario import body_of
 from sim.scenario.schema import load, parse_settings
-from sim.sizing.expectation import expect, field_across
+from sim.sizing.expectation import expect, field_across, torque_balance
 from sim.sizing.levels import COARSE, FINE, levels_against, levels_for, two_digits
 
 
@@ -25,7 +25,7 @@ def test_a_pulse_changes_the_rate_by_the_stated_part_of_the_orbital_rate():
 
 def test_a_strong_disturbance_asks_for_a_stronger_level():
     disturbed = load("cubesat3u", parse_settings(("disturbance.torque_nm=[2e-8,2e-8,2e-8]",)))
-    high = levels_against(disturbed, expect(disturbed))[2]
+    high = levels_against(disturbed, torque_balance(disturbed).load)[2]
     stronger = load(
         "cubesat3u",
         parse_settings(("disturbance.torque_nm=[2e-8,2e-8,2e-8]", f"coils.levels_am2=[0.003,0.05,{high}]")),

@@ -77,6 +77,7 @@ FOUND = {
     "safe": replace(sound(), in_mode={Mode.SAFE: 0.7, Mode.POINT: 0.3}),
     "dark": replace(sound(), orbits=0.5, lit_from=0.3, first_valid=0.32, trend=(30.0,)),
     "tumbling": replace(sound(), rate_degps=5.2, slow_from=None, rate_last_degps=4.7),
+    "shadow": replace(sound(), unsure_dark=0.2),
     "estimate": replace(sound(), estimate_deg=7.0, within_3sigma=0.12),
     "mismatch": sound("flight.body.inertia_kgm2=[1.95,1.85,1.02]"),
     "any_law": replace(sound(), torque_nm=(3e-7, 3e-7, 3e-7), trend=(4.6, 4.5, 4.6, 4.4, 4.5, 4.6)),
@@ -161,7 +162,7 @@ def test_what_balancing_takes_is_what_size_and_the_warning_say(dipole_am2):
     expected = expect(scenario)
     found = balance(scenario, scenario.disturbance.torque_nm, "attitude")
     assert found.load == pytest.approx(expected.load)
-    assert found.level_am2 == levels_against(scenario, expected)[2]
+    assert found.level_am2 == levels_against(scenario, expected.load)[2]
     assert found.of_dipole
 
 
