@@ -181,15 +181,20 @@ def _pointing(expectation: Expectation, gravity: Gravity) -> str:
         f"{expectation.ripple_deg:.2f} between pulses, "
         f"{expectation.knowledge_deg:.2f} estimate"
     )
-    if gravity.rests_elsewhere:
-        return f"  pointing   none to expect: it does not rest in this attitude ({parts} deg)"
-    if gravity.falls_over:
-        return f"  pointing   none to rely on: gravity turns it over ({parts} deg where the coils hold it)"
-    if expectation.shadow_part > LOST:
-        return f"  pointing   none to rely on: {shadow_words(expectation)} ({parts} deg)"
     if not points(expectation, gravity):
-        return f"  pointing   none to expect: the disturbance is too strong ({parts} deg)"
+        return f"  pointing   none to rely on: {why_not(expectation, gravity)} ({parts} deg where it holds)"
     return f"  pointing   {expectation.pointing_deg:.2f} deg RMS once settled ({parts})"
+
+
+def why_not(expectation: Expectation, gravity: Gravity) -> str:
+    """Why there is no pointing error to expect, as a clause."""
+    if gravity.rests_elsewhere:
+        return "it does not rest in this attitude"
+    if gravity.falls_over:
+        return "gravity turns it over"
+    if expectation.shadow_part > LOST:
+        return shadow_words(expectation)
+    return "the disturbance is too strong"
 
 
 def _levels(levels_am2: Levels) -> str:

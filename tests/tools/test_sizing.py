@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 import sizing
-from sizing import SATELLITES, Row, faults, main, orders_of, page
+from sizing import CUBESATS, SATELLITES, Cubesat, Row, faults, main, orders_of, page
 
 from sim.scenario.schema import load
 from sim.sizing.command import SURE_DEG
@@ -21,34 +21,61 @@ EXPECTED = Expectation(
     load=0.1,
 )
 ROW = Row("levels 1, 2, 3", "microsat", "mpc", EXPECTED, (0.6, 0.3, 0.45))
+CUBESAT = Cubesat("one-u", "pulsed", 2.0, (), (2.5, 1.5, 3.0), ((), (), ()))
 TOO_STRONG = ROW._replace(expected=replace(EXPECTED, floor_deg=SURE_DEG + 0.1), flown_deg=(90.0,))
 
 
 def test_a_row_has_the_parts_and_the_spread_of_the_flights():
-    text = page([ROW])
+    text = page([ROW], [CUBESAT])
     assert "| `microsat`, levels 1, 2, 3 | `mpc` | 0.40 | 0.30 | 0.00 | 0.00 | 0.10 | 0.50 " in text
     assert "| 0.50 | 0.45 (0.30 to 0.60) |" in text
     assert "10 orbits each with 3 seeds" in text
 
 
 def test_what_is_said_of_flights_is_of_small_floors_alone():
-    text = page([ROW, TOO_STRONG])
+    text = page([ROW, TOO_STRONG], [CUBESAT])
     assert "Up to a floor of 3 deg flights have 0.60 to 1.20 times the figure" in text
 
 
 @pytest.mark.parametrize(("flown_deg", "fails"), [(0.26, False), (0.24, True), (0.99, False), (1.01, True)])
 def test_flights_further_off_than_a_factor_of_two_fail(flown_deg, fails):
-    assert bool(faults([ROW._replace(flown_deg=(0.5, flown_deg, flown_deg))])) is fails
+    assert bool(faults([ROW._replace(flown_deg=(0.5, flown_deg, flown_deg))], [])) is fails
 
 
 def test_a_figure_that_is_a_lower_bound_cannot_fail():
-    assert faults([TOO_STRONG, ROW._replace(expected=replace(EXPECTED, load=1.1), flown_deg=(90.0,))]) == []
+    overloaded = ROW._replace(expected=replace(EXPECTED, load=1.1), flown_deg=(90.0,))
+    assert faults([TOO_STRONG, overloaded], []) == []
 
 
 @pytest.mark.parametrize(("what", "name", "keys"), SATELLITES)
 def test_each_satellite_can_be_flown(what, name, keys):
     assert load(name, keys).coils.driver == "pulsed"
     assert [order.seed for order in orders_of(name, keys, 2)] == [1, 2]
+
+
+@pytest.mark.parametrize(
+    ("changed", "as_said"),
+    [
+        ({}, True),
+        ({"flown_deg": (4.1, 4.1, 4.1)}, False),
+        ({"flown_deg": (0.9, 0.9, 0.9)}, False),
+        ({"flown_deg": (9.0, 9.0, 9.0), "warnings": ("the shadow",), "causes": (("shadow",),)}, True),
+        ({"flown_deg": (9.0, 9.0, 9.0), "warnings": ("the shadow",), "causes": (("unknown",),)}, False),
+        ({"flown_deg": (9.0, 9.0, 9.0), "causes": (("shadow",),)}, False),
+        ({"expected_deg": None, "warnings": ("gravity",), "causes": (("gravity",),)}, True),
+        ({"expected_deg": None}, False),
+    ],
+)
+def test_a_cubesat_flies_as_was_said_or_was_warned_of_and_explained(changed, as_said):
+    one = CUBESAT._replace(**changed)
+    assert one.as_said is as_said
+    assert (faults([], [one]) == []) is as_said
+
+
+def test_the_cubesats_are_of_all_kinds():
+    assert {bool(one.cells) for one in CUBESATS} == {one.continuous for one in CUBESATS} == {True, False}
+    assert {one.looking[0] for one in CUBESATS} == {"x", "y", "z"}
+    assert len(CUBESATS) >= 10
 
 
 def test_a_page_that_cannot_be_written_is_told_before_anything_flies(tmp_path, monkeypatch, capsys):

@@ -50,7 +50,7 @@ def test_a_sound_satellite(capsys):
 @pytest.mark.parametrize(
     ("settings", "code", "words"),
     [
-        (["disturbance.torque_nm=[1e-7,0,0]"], 1, "none to expect: the disturbance is too strong"),
+        (["disturbance.torque_nm=[1e-7,0,0]"], 1, "none to rely on: the disturbance is too strong"),
         (["disturbance.torque_nm=[6e-9,6e-9,6e-9]"], 0, "so large an error is a lower bound"),
         (["disturbance.torque_nm=[6e-9,6e-9,6e-9]"], 0, "they hardly turn and damp as well"),
         (["body.inertia_kgm2=[0.001,0.033,0.0335]"], 0, "judge it by axis 1 alone"),
