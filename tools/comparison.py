@@ -88,7 +88,7 @@ class Compared(NamedTuple):
 def fly(name: str, workers: int) -> Record:
     """Compare the laws on a satellite, with the gains that ship: what the command writes."""
     with TemporaryDirectory() as folder:
-        compare(name, (), None, "both", None, 1, workers, Path(folder))
+        compare(name, {}, None, "both", None, 1, workers, Path(folder))
         record: Record = json.loads(Path(folder, COMPARED).read_text())
         return record
 

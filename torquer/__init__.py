@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from torquer.api.audit import Audit, check
     from torquer.api.campaign import CampaignRuns, campaign
+    from torquer.api.compare import Comparison, compare
     from torquer.api.design import Design, design
     from torquer.api.errors import Error, InputError
     from torquer.api.flight import fly, report
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 _MODULES = {
     "Audit": "audit",
     "CampaignRuns": "campaign",
+    "Comparison": "compare",
     "Design": "design",
     "Error": "errors",
     "InputError": "errors",
@@ -31,6 +33,7 @@ _MODULES = {
     "Sizing": "satellites",
     "campaign": "campaign",
     "check": "audit",
+    "compare": "compare",
     "design": "design",
     "fly": "flight",
     "load": "run",
@@ -45,6 +48,7 @@ _MODULES = {
 __all__ = [
     "Audit",
     "CampaignRuns",
+    "Comparison",
     "Design",
     "Error",
     "InputError",
@@ -53,6 +57,7 @@ __all__ = [
     "Sizing",
     "campaign",
     "check",
+    "compare",
     "design",
     "fly",
     "load",

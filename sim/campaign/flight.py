@@ -54,7 +54,7 @@ class Order:
     """A flight to be run.
 
     Attributes:
-        scenario: name or path.
+        scenario: name or path, or the scenario.
         overrides: laid over the scenario, nested as in its file.
         seed: of the plant's random streams.
         orbits: None: as the scenario says.
@@ -62,7 +62,7 @@ class Order:
         name: what it is called; empty: by scenario, seed and overrides.
     """
 
-    scenario: str
+    scenario: str | Scenario
     overrides: Nested = field(default_factory=dict)
     seed: int = 1
     orbits: float | None = None

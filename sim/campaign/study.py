@@ -1,14 +1,14 @@
 """Studies of flights: a set of orders, and figures of their results."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import inf, isnan, nan
 from statistics import fmean, median
 
-from fsw.input.schema import Nested
 from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Spread, Study, Threshold
 from sim.campaign.flight import FlightResult, Order, fly_order
+from sim.scenario.settings import flat
 
 Pick = Callable[[FlightResult], float]
 
@@ -123,8 +123,9 @@ def describe_order(order: Order) -> str:
     """A text that identifies a flight."""
     if order.name:
         return order.name
-    words = [f"{key}={_text(value)}" for key, value in _flat(order.overrides)]
-    return ", ".join([order.scenario, f"seed {order.seed}", *words])
+    words = [f"{key}={_text(value)}" for key, value in flat(order.overrides)]
+    name = order.scenario if isinstance(order.scenario, str) else order.scenario.name
+    return ", ".join([name, f"seed {order.seed}", *words])
 
 
 _COMBINATIONS: dict[str, Callable[[list[float]], float]] = {"median": median, "mean": fmean}
@@ -173,14 +174,6 @@ def spread_of(claim: Claim, values: Sequence[float]) -> Spread:
     numbers = sorted(inf if isnan(value) else value for value in values)
     meet = sum(map(claim.meets, values))
     return Spread(len(values), meet, numbers[0], median(numbers), numbers[-1])
-
-
-def _flat(values: Nested, prefix: str = "") -> Iterator[tuple[str, object]]:
-    for key, value in values.items():
-        if isinstance(value, dict):
-            yield from _flat(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", value
 
 
 def _text(value: object) -> str:

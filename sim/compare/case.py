@@ -91,7 +91,7 @@ def chosen_laws(scenario: Scenario, text: str | None) -> tuple[str, ...]:
 
 
 def cases(
-    name_or_path: str,
+    source: str | Scenario,
     settings: Nested,
     laws: tuple[str, ...],
     drivers: tuple[Driver, ...],
@@ -106,9 +106,9 @@ def cases(
     Raises:
         TableError: the scenario is not valid, or not with one of the drivers, or a law has not what it needs.
     """
-    scenario = load(name_or_path, settings)
+    scenario = load(source, settings)
     known = candidates(scenario)
-    check_suited(laws, name_or_path, settings)
+    check_suited(laws, source, settings)
     all_cases = []
     for driver in drivers:
         coils = coils_of(scenario, driver.value)
@@ -118,8 +118,8 @@ def cases(
             values = merge(merge({"control": found or {}}, settings), coils)
             overrides = lay_over(values, {"control": {"law": known.references[law]}})
             if law == suited[0]:
-                load(name_or_path, overrides)
-            order = Order(name_or_path, overrides, seed, orbits)
+                load(source, overrides)
+            order = Order(source, overrides, seed, orbits)
             tuned = (
                 bool(found) and merge(values, {"control": found or {}}) == values
             )  # no setting lies over them

@@ -1,14 +1,16 @@
-"""``torquer compare``: flies the laws side by side; prints, writes and draws how they did."""
+"""``torquer compare``: flies the laws side by side; writes and draws how they did."""
 
 import os
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Any
 
+from fsw.input.schema import Nested
 from sim.campaign.claim import Study
 from sim.campaign.runner import StudyResult, run
 from sim.campaign.study_cache import with_cache
@@ -16,7 +18,7 @@ from sim.compare.case import Driver, cases, chosen_laws
 from sim.compare.picture import axis_label, colour_of, laws_of, picture, with_unit
 from sim.compare.score import WINDOW_ORBITS, Result, Score, fly_case
 from sim.compare.table import as_csv, as_json, as_table, as_text, error_text, ranked
-from sim.console import answer, counted, fail, plain, say
+from sim.console import counted, plain
 from sim.drawing.canvas import style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import PageHeader, PageSection, Table, Tile, sections_page
@@ -29,10 +31,12 @@ from sim.record.run_dir import RUN, write_json
 from sim.record.whole_file import replace_text
 from sim.report.summary_text import last_orbit
 from sim.scenario.controlled import SETTLED_DEG, Controlled, controlled
-from sim.scenario.schema import Scenario, flight_table, load, orbit_period_s, parse_settings, shipped_names
+from sim.scenario.schema import Scenario, flight_table, load, orbit_period_s, shipped_names
+from sim.scenario.settings import settings_texts
 from sim.tuning.applicable import aims_of
 from sim.tuning.cost import BY_RATE
 from sim.tuning.kept import KeptGains, body_checksum, gains_text, read_gains, shipped_gains
+from sim.value_types import Json
 
 # --- compare.html: the laws side by side, by their table and over time
 
@@ -179,9 +183,60 @@ BEST, SCENARIO = "best", "scenario"
 JSON, CSV, PICTURE, PAGE = "compare.json", "compare.csv", "compare.png", "compare.html"
 
 
+@dataclass(frozen=True, slots=True)
+class ComparedLaws:
+    """Control laws that were flown side by side.
+
+    Attributes:
+        folder: it holds the files.
+        scenario: on which they were flown.
+        scores: the lines of the table, best first.
+        by: what they are judged by.
+        description: scenario, seed, settings and length of the flights, as in ``compare.json``.
+        asked: the laws that were named, and the scenario's own.
+        drawn: whether any was flown, so that there is a picture.
+    """
+
+    folder: Path
+    scenario: Scenario
+    scores: Sequence[Score]
+    by: Controlled
+    description: dict[str, Any]
+    asked: frozenset[str]
+    drawn: bool
+
+    @property
+    def files(self) -> list[Path]:
+        """What was written."""
+        names = (JSON, CSV, *([PICTURE] if self.drawn else []), PAGE)
+        return [self.folder / name for name in names]
+
+    @property
+    def complaints(self) -> list[str]:
+        """Why it is no success: limits that were broken, laws that were asked for and could not be flown.
+
+        How well a law does is no failure.
+        """
+        broken = [f"{score.law} ({score.driver})" for score in self.scores if score.limits_ok is False]
+        failed = [score for score in self.scores if score.failure and score.law in self.asked]
+        if not failed and all(score.failure for score in self.scores):
+            failed = list(self.scores)
+        sentences = [f"the limits are broken by {', '.join(broken)}"] if broken else []
+        return sentences + [f"{each.law} ({each.driver}) was not flown: {each.failure}" for each in failed]
+
+    @property
+    def values(self) -> Json:
+        """All scores and the description, as in ``compare.json``."""
+        return as_json(self.scores, self.description)
+
+    def __str__(self) -> str:
+        heading = _heading(self.scenario, self.description["seed"], self.description["ticks"], self.by)
+        return f"{heading}\n{as_text(self.scores, self.by)}"
+
+
 def compare(
-    name: str,
-    settings: tuple[str, ...],
+    source: str | Scenario,
+    settings: Nested,
     laws: str | None,
     driver: str,
     orbits: float | None,
@@ -189,12 +244,12 @@ def compare(
     workers: int | None,
     out: Path | None,
     gains: str = BEST,
-) -> int:
-    """Fly every law by every driver and compare.
+) -> ComparedLaws:
+    """Fly every law by every driver and write how they compare.
 
     Args:
-        name: of the scenario, or its path.
-        settings: ``KEY=VALUE``, laid over the scenario.
+        source: the scenario, its name or its path.
+        settings: laid over the scenario.
         laws: the text for ``chosen_laws``.
         driver: one of ``Driver``, or ``both``.
         orbits: None: as the scenario says.
@@ -204,21 +259,16 @@ def compare(
         gains: ``best``: those of ``torquer design --laws`` that ship for this body, where there are some;
             ``scenario``: the scenario's own; else the path of a file of that command.
 
-    Returns:
-        The exit code: 1 if a flight broke the limits, or a law that was named, one's own, or every law could
-        not be flown; how well a law does is no failure.
-
     Raises:
         TableError: there is no such scenario, or it is not valid.
         HarnessError: there is no such law, or the folder cannot be used.
     """
-    values = parse_settings(settings)
-    scenario = load(name, values)
+    scenario = load(source, settings)
     by = yardstick(scenario)
     chosen = chosen_laws(scenario, laws)
     drivers = tuple(Driver) if driver == "both" else (Driver(driver),)
     kept = _kept(gains, scenario)
-    chosen_cases = cases(name, values, chosen, drivers, seed, orbits, kept)
+    chosen_cases = cases(source, settings, chosen, drivers, seed, orbits, kept)
     ticks = ticks_of(scenario, orbits, MOST_IN_MEMORY)
     folder = _new_folder(out or _default_folder(scenario))
     studies = [
@@ -230,13 +280,13 @@ def compare(
     description = {
         "scenario": scenario.name,
         "seed": seed,
-        "settings": list(settings),
+        "settings": settings_texts(settings),
         "ticks": ticks,
         "sim_seconds": ticks / scenario.time.tick_hz,
         "judged": by._asdict(),
         "gains": gains if kept is not None else SCENARIO,
     }
-    if name in shipped_names() and not settings:  # else a file of the user's may be part of it
+    if source in shipped_names() and not settings:  # else a file of the user's may be part of it
         studies = with_cache(studies)
     results: list[Result] = []
     bar = sys.stderr.isatty()  # else each flight's line is the progress
@@ -253,22 +303,10 @@ def compare(
         scores = ranked((result.score for result in results), by)
         description["complete"] = len(results) == len(studies)
         _write(folder, scenario, scores, description, results, by, kept)
-    say(_heading(scenario, seed, ticks, by))
-    say(as_text(scores, by))
-    names = (JSON, CSV, *([PICTURE] if any(result.history for result in results) else []), PAGE)
-    say(f"files: {folder / JSON}, {', '.join(names[1:])}")
-    answer({**as_json(scores, description), "files": [folder / name for name in names]})
-    broken = [f"{score.law} ({score.driver})" for score in scores if score.limits_ok is False]
-    if broken:
-        fail(f"the limits are broken by {', '.join(broken)}")
     asked = {scenario.control.law_name} if scenario.control.own else set()
     asked |= {word.strip() for word in (laws or "").split(",")}
-    failed = [score for score in scores if score.failure and score.law in asked]
-    if not failed and all(score.failure for score in scores):
-        failed = scores
-    for score in failed:
-        fail(f"{score.law} ({score.driver}) was not flown: {score.failure}")
-    return int(bool(broken or failed))
+    drawn = any(result.history for result in results)
+    return ComparedLaws(folder, scenario, scores, by, description, frozenset(asked), drawn)
 
 
 def _kept(gains: str, scenario: Scenario) -> KeptGains | None:

@@ -164,13 +164,18 @@ def shipped() -> list[Scenario]:
     return [load(name) for name in shipped_names()]
 
 
-def load(name_or_path: str, overrides: Nested | None = None) -> Scenario:
-    """A shipped scenario by its name, or a scenario file by its path, with overrides laid over it.
+def load(scenario: str | Scenario, overrides: Nested | None = None) -> Scenario:
+    """A shipped scenario by its name, a file by its path, or a scenario, with overrides laid over it.
 
     Raises:
         TableError: not found, not TOML, or a key that is unknown, missing, of the wrong type or out of range.
     """
-    values, source = _read(name_or_path)
+    if isinstance(scenario, Scenario):
+        if not overrides:
+            return scenario
+        values, source = scenario.model_dump(mode="json", exclude_none=True), scenario.name
+    else:
+        values, source = _read(scenario)
     return scenario_of(values, source, with_digests(named(overrides or {}, Path()), Path()))
 
 

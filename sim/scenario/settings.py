@@ -1,6 +1,7 @@
 """Settings of a program, laid over a scenario: keys with dots, values of Python and numpy."""
 
-from collections.abc import Mapping
+import json
+from collections.abc import Iterator, Mapping
 from functools import reduce
 from pathlib import PurePath
 
@@ -23,6 +24,23 @@ def nested(settings: Mapping[str, object] | None) -> Nested:
     if not isinstance(settings, Mapping):
         raise TableError(f"set = {settings!r:.80}: give a dictionary such as {{'time.tick_hz': 10}}")
     return reduce(merge, (_section(key, value) for key, value in settings.items()), {})
+
+
+def settings_texts(settings: Nested) -> list[str]:
+    """Settings as ``KEY=VALUE``, as ``--set`` takes them."""
+    return [
+        f"{key}={value if isinstance(value, str) else json.dumps(value, default=str)}"
+        for key, value in flat(settings)
+    ]
+
+
+def flat(settings: Nested, prefix: str = "") -> Iterator[tuple[str, object]]:
+    """Each value under its whole key, ``time.tick_hz``."""
+    for key, value in settings.items():
+        if isinstance(value, dict):
+            yield from flat(value, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", value
 
 
 def plain(value: object, levels: int = MOST_LEVELS) -> object:

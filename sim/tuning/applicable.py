@@ -42,16 +42,16 @@ def is_suited(law: str, scenario: Scenario, driver: str = "pulsed") -> bool:
     return is_met(LAWS[law].needs, driver == "pulsed", table.body.wheel_nms, axis_body)
 
 
-def check_suited(laws: Sequence[str], name: str, over: Nested) -> None:
+def check_suited(laws: Sequence[str], source: str | Scenario, over: Nested) -> None:
     """Refuse a law that has not what it needs on a scenario, whatever drives its coils.
 
     Raises:
         TableError: there is one; the sentence says what it needs.
     """
-    scenario = load(name, over)
+    scenario = load(source, over)
     for law in laws:
         if not is_suited(law, scenario):
-            load(name, lay_over(over, {"control": {"law": law}}))
+            load(source, lay_over(over, {"control": {"law": law}}))
 
 
 def coils_of(scenario: Scenario, driver: str) -> Nested:

@@ -4,11 +4,9 @@ from collections.abc import Mapping
 from os import PathLike, fspath
 from pathlib import Path
 
-from fsw.input.schema import Model, TableError, merge, validated
-from fsw.table.own_law import named
-from sim.scenario.schema import Scenario, load, scenario_of
+from fsw.input.schema import Model, Nested, TableError, merge, validated
+from sim.scenario.schema import Scenario, load
 from sim.scenario.settings import nested, plain
-from sim.scenario.written import values_of
 
 ScenarioLike = str | PathLike[str] | Scenario
 """The name of a shipped scenario, the path of a file, or a scenario."""
@@ -24,13 +22,26 @@ def chosen_scenario(
     Raises:
         TableError: there is none, or a key is unknown or out of range.
     """
+    return load(scenario_source(scenario), laid_over(settings, law))
+
+
+def laid_over(settings: Settings | None, law: str | PathLike[str] | None = None) -> Nested:
+    """Settings as sections, over a law of one's own.
+
+    Raises:
+        TableError: they are no settings, or the law is no path.
+    """
     given = {} if law is None else {"control": {"law": path_text(law, "law")}}
-    over = named(merge(given, nested(settings)), Path())
-    if isinstance(scenario, Scenario) and not over:
-        return scenario
-    if isinstance(scenario, Scenario):
-        return scenario_of(values_of(scenario), scenario.name, over)
-    return load(path_text(scenario, "scenario"), over)
+    return merge(given, nested(settings))
+
+
+def scenario_source(scenario: ScenarioLike) -> str | Scenario:
+    """A scenario, or the name or path of one.
+
+    Raises:
+        TableError: it is none of these.
+    """
+    return scenario if isinstance(scenario, Scenario) else path_text(scenario, "scenario")
 
 
 def path_text(path: object, name: str) -> str:

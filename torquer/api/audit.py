@@ -11,10 +11,11 @@ from sim.progress import shown
 from sim.record.signature import PublicKey, public_key
 from torquer.api.arguments import optional_path, path_text
 from torquer.api.errors import one_sentence
+from torquer.api.printed import Printed
 
 
 @dataclass(frozen=True)
-class Audit:
+class Audit(Printed):
     """The audit of a log; ``print`` shows what the command prints.
 
     Attributes:

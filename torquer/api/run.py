@@ -20,6 +20,7 @@ from torquer.api.arguments import path_text
 from torquer.api.audit import Audit, check
 from torquer.api.errors import one_sentence
 from torquer.api.laws import LawLike, checked_law, law_given
+from torquer.api.printed import Printed
 from torquer.api.replay import replay
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ OF_EVERY_FLIGHT = {"scenario", "seed", "sim_seconds", "limits_ok"}
 
 
 @dataclass(frozen=True)
-class Run:
+class Run(Printed):
     """The directory of a flight. What takes time is computed when it is first asked for, and kept.
 
     Attributes:

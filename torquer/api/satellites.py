@@ -15,6 +15,7 @@ from sim.sizing.command import Sized, sized
 from sim.value_types import Json
 from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
 from torquer.api.errors import one_sentence
+from torquer.api.printed import Printed
 
 _Triple = Annotated[tuple[float, float, float], Strict(False)]
 
@@ -38,7 +39,7 @@ class _GivenSatellite(Section):
 
 
 @dataclass(frozen=True)
-class Sizing:
+class Sizing(Printed):
     """What to expect of a satellite; ``print`` shows what the command prints.
 
     Attributes:

@@ -61,9 +61,29 @@ def compare(
     settings: tuple[str, ...],
 ) -> int:
     """Fly every applicable control law on SCENARIO, all else the same: table and picture."""
+    from sim.console import answer, fail, say
     from sim.flight.record_flight import ticks_of
+    from sim.scenario.schema import parse_settings
 
     load_scenario(scenario, settings, lambda chosen: ticks_of(chosen, orbits))
-    from sim.compare import command  # loaded once the scenario is known to be sound: it takes a second
+    from torquer.api.compare import compare  # once the scenario is known to be sound: it takes a second
 
-    return command.compare(scenario, settings, laws, driver, orbits, seed, workers, out, gains)
+    compared = compare(
+        scenario,
+        laws=laws,
+        driver=driver,
+        gains=gains,
+        orbits=orbits,
+        seed=seed,
+        set=parse_settings(settings),
+        workers=workers,
+        out=out,
+        progress=True,
+    )
+    say(str(compared))
+    first, *others = compared.found.files
+    say(f"files: {first}, {', '.join(file.name for file in others)}")
+    answer({**compared.values, "files": compared.found.files})
+    for sentence in compared.failures:
+        fail(sentence)
+    return int(not compared.ok)
