@@ -15,11 +15,13 @@ if TYPE_CHECKING:
     from torquer.api.compare import Comparison, compare
     from torquer.api.design import Design, design
     from torquer.api.errors import Error, InputError
+    from torquer.api.export import Export, export
     from torquer.api.flight import fly, report
     from torquer.api.replay import replay
     from torquer.api.run import Run, load
     from torquer.api.satellites import NewScenario, Sizing, new, size
     from torquer.api.scenarios import scenarios
+    from torquer.api.validate import Validation, validate
 
 _MODULES = {
     "Audit": "audit",
@@ -27,14 +29,17 @@ _MODULES = {
     "Comparison": "compare",
     "Design": "design",
     "Error": "errors",
+    "Export": "export",
     "InputError": "errors",
     "NewScenario": "satellites",
     "Run": "run",
     "Sizing": "satellites",
+    "Validation": "validate",
     "campaign": "campaign",
     "check": "audit",
     "compare": "compare",
     "design": "design",
+    "export": "export",
     "fly": "flight",
     "load": "run",
     "new": "satellites",
@@ -42,6 +47,7 @@ _MODULES = {
     "report": "flight",
     "scenarios": "scenarios",
     "size": "satellites",
+    "validate": "validate",
 }
 """Modules of ``torquer.api`` by what they hold."""
 
@@ -51,14 +57,17 @@ __all__ = [
     "Comparison",
     "Design",
     "Error",
+    "Export",
     "InputError",
     "NewScenario",
     "Run",
     "Sizing",
+    "Validation",
     "campaign",
     "check",
     "compare",
     "design",
+    "export",
     "fly",
     "load",
     "new",
@@ -66,6 +75,7 @@ __all__ = [
     "report",
     "scenarios",
     "size",
+    "validate",
 ]
 
 

@@ -2,6 +2,7 @@
 
 import csv
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import isnan
 from pathlib import Path
 from typing import NamedTuple
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fsw.bus.can_message import message_of
-from sim.console import counted, say
+from sim.console import counted
 from sim.errors import HarnessError, needing
 from sim.export import mcap
 from sim.export.destination import whole_file
@@ -171,8 +172,25 @@ FORMATS = {
 }
 
 
-def export(run_or_log: Path, name: str | None, out: Path, force: bool, law: str | None = None) -> int:
-    """Write the file; say what of the flight is missing in it.
+@dataclass(frozen=True, slots=True)
+class ExportedFile:
+    """A file that was written.
+
+    Attributes:
+        path: it.
+        notes: what of the flight is missing in it, and what of the run is not as its ``run.json`` says.
+        ok: whether each file of the run is that of its ``run.json``.
+    """
+
+    path: Path
+    notes: tuple[str, ...]
+    ok: bool
+
+
+def export(
+    run_or_log: Path, name: str | None, out: Path, force: bool, law: str | None = None
+) -> ExportedFile:
+    """Write the file.
 
     Args:
         run_or_log: a run directory, or a candump log alone.
@@ -180,9 +198,6 @@ def export(run_or_log: Path, name: str | None, out: Path, force: bool, law: str 
         out: the file.
         force: replace one that is there.
         law: the law of its own that the run flew, named again: the histories need it.
-
-    Returns:
-        The exit code: 1 if a file of the run is not that of its run.json, else 0.
 
     Raises:
         HarnessError: there is no such run or format, or the file cannot be written.
@@ -195,10 +210,8 @@ def export(run_or_log: Path, name: str | None, out: Path, force: bool, law: str 
     total = LogPass(source.log).duration_us() if chosen.of_log else _ticks(source)
     with whole_file(out, force) as path, progress(f"exporting {out.name}", total) as watch:
         notes = chosen.write(source, path, watch)
-    say(f"exported: {out}")
-    for line in (*source.binding.lines, *(f"note: {note}" for note in notes)):
-        say(line)
-    return int(not source.binding.holds)
+    lines = (*source.binding.lines, *(f"note: {note}" for note in notes))
+    return ExportedFile(out, lines, source.binding.holds)
 
 
 def _by_suffix(out: Path) -> str:

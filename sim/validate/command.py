@@ -3,14 +3,15 @@
 import os
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from sim.campaign.claim import ClaimOutcome, ClaimVerdict, Study
 from sim.campaign.runner import StudyResult, run
 from sim.campaign.study import FlightStudy
 from sim.campaign.study_cache import with_cache
-from sim.console import answer, counted, say, warn
+from sim.console import counted
 from sim.errors import HarnessError
 from sim.junit import prepare_junit, write_junit
 from sim.progress import note, progress
@@ -18,12 +19,45 @@ from sim.result_files import Files, check_results
 from sim.validate.flight_data import claims
 from sim.validate.guard import claims_of, guarded
 from sim.validate.outcomes import ResultFiles, read_record
-from sim.validate.page import as_json, line, loose, suites, tally
+from sim.validate.page import loose, suites, tally
 from sim.validate.reference import reference
 from sim.validate.registry import all_studies, choose_studies, find_repository
 
 PAGE = "validation.md"
 DATA_SUFFIXES = (".csv", ".txt")
+
+Tell = Callable[[ClaimOutcome], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Validated:
+    """Claims that were checked.
+
+    Attributes:
+        outcomes: of all claims.
+        page: the page; None: not written.
+        figures: the outcomes beside it; None: not written.
+        doubts: what of the outcomes is to be looked at, a sentence each.
+        not_claimed: what recorded passes cannot show; empty where there are none.
+        wall_s: how long it took.
+    """
+
+    outcomes: tuple[ClaimOutcome, ...]
+    page: Path | None
+    figures: Path | None
+    doubts: tuple[str, ...]
+    not_claimed: str
+    wall_s: float
+
+    @property
+    def ok(self) -> bool:
+        """No claim fails; some may not be judged."""
+        return all(outcome.verdict is not ClaimVerdict.FAIL for outcome in self.outcomes)
+
+    @property
+    def tally(self) -> str:
+        """How many hold, and how long it took."""
+        return f"{tally(self.outcomes)}; {self.wall_s:.0f} s"
 
 
 def validate(
@@ -36,8 +70,9 @@ def validate(
     junit: Path | None = None,
     flight_data: Path | None = None,
     record: bool = False,
-) -> int:
-    """Run the studies, print each outcome, write the page.
+    tell: Tell = lambda outcome: None,
+) -> Validated:
+    """Run the studies, tell each outcome, write the page.
 
     A study whose computation breaks off fails in all its claims, and the others go on. Without ``out`` only
     a complete validation, or one that is recorded, writes its page, and the outcomes beside it as
@@ -55,9 +90,7 @@ def validate(
         flight_data: run only the claims on the recorded passes in this folder.
         record: put the outcomes of each study that is done among those of ``validation.json``, and write the
             page of all.
-
-    Returns:
-        The exit code: 1 if a claim fails, else 0, also where some are not judged, which is said.
+        tell: called with each outcome once it is known; at the end, where a bar shows how far it is.
 
     Raises:
         HarnessError: reference data are malformed or missing, an id is unknown, or a file cannot be written.
@@ -74,11 +107,11 @@ def validate(
     prepare_junit(junit)
     passed = (HarnessError,) if folder is not None or flight_data is not None else ()  # the user's own files
     studies = [guarded(study, passed) for study in with_cache(chosen)]
-    bar = sys.stderr.isatty()  # then the outcomes are printed after the progress bar
+    bar = sys.stderr.isatty()  # then the outcomes are told after the progress bar
 
     def report(study: StudyResult) -> None:
         if not bar:
-            _print(study)
+            _tell_each(study, tell)
         results.take(study, time.monotonic() - began)
 
     if whole and any(study.has_flights for study in studies):
@@ -87,25 +120,31 @@ def validate(
         finished = run(studies, workers or os.cpu_count() or 1, watch, report)
     if bar:
         for study in finished:
-            _print(study)
-    outcomes = [outcome for study in finished for outcome in study.outcomes]
+            _tell_each(study, tell)
+    outcomes = tuple(outcome for study in finished for outcome in study.outcomes)
     if all(outcome.verdict is ClaimVerdict.ABSENT for outcome in outcomes):
         raise HarnessError(f"nothing was checked: {_why_absent(outcomes, folder, satellites)}")
     wall_s = time.monotonic() - began
     results.finish(finished, wall_s)
     write_junit(junit, "torquer validate", suites(finished))
+    not_claimed = "" if flight_data is None else claims.NOT_CLAIMED
+    doubts = tuple(_doubts(outcomes, satellites))
+    return Validated(outcomes, results.page, results.figures, doubts, not_claimed, wall_s)
+
+
+def _tell_each(finished: StudyResult, tell: Tell) -> None:
+    for outcome in finished.outcomes:
+        tell(outcome)
+
+
+def _doubts(outcomes: Sequence[ClaimOutcome], satellites: int | None) -> Iterator[str]:
     if far := loose(outcomes):
-        warn(f"own limits more than ten times off, without a reason: {', '.join(far)}")
+        yield f"own limits more than ten times off, without a reason: {', '.join(far)}"
     if few := [outcome.claim.id for outcome in outcomes if outcome.verdict is ClaimVerdict.TOO_FEW]:
-        warn(
+        yield (
             f"{counted(len(few), 'claim')} on a median or mean not judged: made for more satellites than "
             f"--satellites {satellites} flies"
         )
-    if flight_data is not None:
-        say(claims.NOT_CLAIMED)
-    say(f"{tally(outcomes)}; {wall_s:.0f} s")
-    answer({"wall_s": wall_s, "page": results.page, "claims": [as_json(outcome) for outcome in outcomes]})
-    return int(any(outcome.verdict is ClaimVerdict.FAIL for outcome in outcomes))
 
 
 def _studies(folder: Path | None, flight_data: Path | None, satellites: int | None) -> list[Study]:
@@ -155,8 +194,3 @@ def _results(out: Path | None, whole: bool, record: bool, studies: Sequence[Stud
 def _default_page() -> Path:
     repository = find_repository(Path.cwd())
     return Path(PAGE) if repository is None else repository / "docs" / PAGE
-
-
-def _print(finished: StudyResult) -> None:
-    for outcome in finished.outcomes:
-        say(line(outcome), failed=outcome.verdict is ClaimVerdict.FAIL)

@@ -12,7 +12,6 @@ from fsw.input.schema import faults
 from fsw.input.toml_text import BoundsError
 from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Spread, Threshold
 from sim.campaign.runner import StudyResult
-from sim.console import say
 from sim.errors import HarnessError
 from sim.result_files import write_result
 from sim.validate.page import figure_text, render
@@ -189,7 +188,7 @@ class ResultFiles:
             self._write(known, render([*known.values()], [], wall_s, sorted(self.claimed - known.keys())))
 
     def finish(self, finished: Sequence[StudyResult], wall_s: float) -> None:
-        """All studies are done; say which files there are.
+        """All studies are done.
 
         Raises:
             HarnessError: a file cannot be written.
@@ -197,9 +196,6 @@ class ResultFiles:
         if self.before is None:
             outcomes = [outcome for study in finished for outcome in study.outcomes]
             self._write(with_record({}, finished, self.studies), render(outcomes, finished, wall_s))
-        for name, file in (("figures", self.figures), ("page", self.page)):
-            if file is not None:
-                say(f"{name}: {file}")
 
     def _write(self, known: Record, text: str) -> None:
         for file, content in ((self.figures, as_text(known)), (self.page, text)):

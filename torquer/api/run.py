@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from os import PathLike
+from os import PathLike, fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +19,7 @@ from sim.scenario.schema import Scenario
 from torquer.api.arguments import path_text
 from torquer.api.audit import Audit, check
 from torquer.api.errors import one_sentence
+from torquer.api.export import Export, export
 from torquer.api.laws import LawLike, checked_law, law_given
 from torquer.api.printed import Printed
 from torquer.api.replay import replay
@@ -33,7 +34,9 @@ OF_EVERY_FLIGHT = {"scenario", "seed", "sim_seconds", "limits_ok"}
 
 @dataclass(frozen=True)
 class Run(Printed):
-    """The directory of a flight. What takes time is computed when it is first asked for, and kept.
+    """The directory of a flight, which functions take as they take its path.
+
+    What takes time is computed when it is first asked for, and kept.
 
     Attributes:
         path: the directory.
@@ -114,6 +117,17 @@ class Run(Printed):
         """Audit the limits of the coils in the log, as ``torquer.check`` does."""
         return check(self.path)
 
+    def export(
+        self,
+        out: str | PathLike[str],
+        *,
+        format: str | None = None,
+        force: bool = False,
+        progress: bool = False,
+    ) -> Export:
+        """Write the run for another tool, as ``torquer.export`` does."""
+        return export(self.path, out, format=format, force=force, law=self.law, progress=progress)
+
     @cached_property
     @one_sentence
     def truth(self) -> "xr.Dataset":
@@ -146,6 +160,9 @@ class Run(Printed):
         from torquer.api.tables import pulses  # noqa: PLC0415  an extra
 
         return pulses(self.check().report, self.scenario)
+
+    def __fspath__(self) -> str:
+        return fspath(self.path)
 
     def __str__(self) -> str:
         return summary_text(dict(self.summary)) if self.concluded else self.failures[Verdict.COMPLETE.value]

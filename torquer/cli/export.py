@@ -30,6 +30,9 @@ def export(run_or_log: Path, name: str | None, out: Path, force: bool, law: str 
     mcap, blf and asc hold the bus log, and a LOG alone will do; csv, parquet and netcdf the histories of
     plant and estimates, a row a tick. docs/export.md says what opens them.
     """
-    from sim.export import command
+    from sim.console import say
+    from torquer.api.export import export
 
-    return command.export(run_or_log, name, out, force, law)
+    written = export(run_or_log, out, format=name, force=force, law=law, progress=True)
+    say(str(written))
+    return int(not written.ok)

@@ -1,11 +1,15 @@
 """``torquer validate``: the published figures and reference checks."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from torquer.cli.numbers import WholeNumber
 from torquer.cli.options import JSON, JUNIT, examples, sentences
+
+if TYPE_CHECKING:
+    from sim.campaign.claim import ClaimOutcome
 
 EXAMPLES = examples(
     "torquer validate --quick",
@@ -66,6 +70,38 @@ def validate(
 
     All take an hour or more, most of it flights. A run that was stopped goes on where it was.
     """
-    from sim.validate.command import validate
+    from sim.console import answer, say, warn
+    from sim.validate.page import as_json
+    from torquer.api.validate import validate
 
-    return validate(reference, only, out, quick, workers, satellites, junit, flight_data, record)
+    done = validate(
+        reference=reference,
+        flight_data=flight_data,
+        only=only,
+        quick=quick,
+        satellites=satellites,
+        workers=workers,
+        out=out,
+        record=record,
+        junit=junit,
+        tell=_say,
+        progress=True,
+    )
+    for name, file in (("figures", done.found.figures), ("page", done.page)):
+        if file is not None:
+            say(f"{name}: {file}")
+    for doubt in done.doubts:
+        warn(doubt)
+    if done.found.not_claimed:
+        say(done.found.not_claimed)
+    say(done.found.tally)
+    answer({"wall_s": done.found.wall_s, "page": done.page, "claims": list(map(as_json, done.outcomes))})
+    return int(not done.ok)
+
+
+def _say(outcome: "ClaimOutcome") -> None:
+    from sim.campaign.claim import ClaimVerdict
+    from sim.console import say
+    from sim.validate.page import line
+
+    say(line(outcome), failed=outcome.verdict is ClaimVerdict.FAIL)

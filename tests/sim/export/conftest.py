@@ -45,7 +45,7 @@ def exported(flight, tmp_path_factory):
     def file_of(suffix):
         if suffix not in files:
             files[suffix] = tmp_path_factory.mktemp("out") / f"run.{suffix}"
-            assert command.export(flight.folder, None, files[suffix], force=False) == 0
+            assert command.export(flight.folder, None, files[suffix], force=False).ok
         return files[suffix]
 
     return file_of

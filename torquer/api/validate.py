@@ -1,0 +1,143 @@
+"""``torquer.validate``: the published figures and reference checks."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import Field, Strict
+
+from fsw.input.own_code import refuse_while_loading
+from fsw.input.schema import Section
+from sim.campaign.claim import ClaimOutcome, ClaimVerdict
+from sim.progress import shown
+from sim.validate import command
+from sim.validate.command import Validated
+from sim.validate.page import as_json, line
+from torquer.api.arguments import checked, optional_path
+from torquer.api.errors import one_sentence
+from torquer.api.extras import required
+from torquer.api.printed import Printed
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class _ValidateOptions(Section):
+    only: Annotated[tuple[str, ...], Strict(False)]
+    quick: bool
+    satellites: int | None = Field(ge=1)
+    workers: int | None = Field(ge=1)
+    record: bool
+
+
+@dataclass(frozen=True)
+class Validation(Printed):
+    """Claims that were checked; ``print`` shows what the command prints.
+
+    Attributes:
+        found: the whole of it, as ``sim.validate`` gives it.
+    """
+
+    found: Validated
+
+    @property
+    def outcomes(self) -> tuple[ClaimOutcome, ...]:
+        """Each claim with its figure and verdict."""
+        return self.found.outcomes
+
+    @cached_property
+    @one_sentence
+    def table(self) -> "pd.DataFrame":
+        """A row a claim: figure, limits, verdict, source, where they are from. Needs ``torquer[data]``."""
+        rows = list(map(as_json, self.outcomes))
+        table: pd.DataFrame = required("pandas", "validation.table").DataFrame(rows).set_index("id")
+        return table
+
+    @property
+    def page(self) -> Path | None:
+        """The page; None: not written."""
+        return self.found.page
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """The claims that fail, a line each."""
+        return tuple(line(one) for one in self.outcomes if one.verdict is ClaimVerdict.FAIL)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What of the outcomes is to be looked at, a sentence each."""
+        return self.found.doubts
+
+    @property
+    def ok(self) -> bool:
+        """No claim fails; some may not be judged."""
+        return self.found.ok
+
+    def __str__(self) -> str:
+        return "\n".join([*map(line, self.outcomes), self.found.tally])
+
+    def __repr__(self) -> str:
+        return f"<Validation: {self.found.tally}>"
+
+
+@one_sentence
+def validate(
+    *,
+    reference: str | PathLike[str] | None = None,
+    flight_data: str | PathLike[str] | None = None,
+    only: Sequence[str] = (),
+    quick: bool = False,
+    satellites: int | None = None,
+    workers: int | None = None,
+    out: str | PathLike[str] | None = None,
+    record: bool = False,
+    junit: str | PathLike[str] | None = None,
+    tell: Callable[[ClaimOutcome], None] | None = None,
+    progress: bool = False,
+) -> Validation:
+    """Check published figures and references, as ``torquer validate`` does; all take an hour or more.
+
+    Args:
+        reference: check against the reference files in this folder alone.
+        flight_data: make the claims on recorded passes in this folder, alone.
+        only: these claims alone, by the first words of their ids.
+        quick: leave out flights.
+        satellites: at most so many of each population; None: all.
+        workers: processes; None: one a core.
+        out: the page; None: none, unless all is run, or it is recorded.
+        record: put the outcomes among those of ``validation.json``, and write the page of all.
+        junit: file for the verdicts as JUnit XML.
+        tell: called with each outcome once it is known; at the end, where a bar shows how far it is.
+        progress: show progress on stderr.
+
+    Raises:
+        InputError: an argument, reference data that are malformed or missing, or a file to write.
+    """
+    options = checked(
+        _ValidateOptions,
+        "validate",
+        only=(only,) if isinstance(only, str) else only,
+        quick=quick,
+        satellites=satellites,
+        workers=workers,
+        record=record,
+    )
+    refuse_while_loading("torquer.validate")
+    with shown(progress):
+        return Validation(
+            command.validate(
+                optional_path(reference, "reference"),
+                options.only,
+                optional_path(out, "out"),
+                options.quick,
+                options.workers,
+                options.satellites,
+                optional_path(junit, "junit"),
+                optional_path(flight_data, "flight_data"),
+                options.record,
+                tell or (lambda outcome: None),
+            )
+        )
