@@ -11,16 +11,19 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from torquer.api.audit import Audit, check
+    from torquer.api.calibrate import SatelliteCalibration, calibrate
     from torquer.api.campaign import CampaignRuns, campaign
     from torquer.api.compare import Comparison, compare
     from torquer.api.design import Design, design
     from torquer.api.errors import Error, InputError
     from torquer.api.export import Export, export
     from torquer.api.flight import fly, report
+    from torquer.api.phasing import WiringVerdict, phasing
     from torquer.api.replay import replay
     from torquer.api.run import Run, load
     from torquer.api.satellites import NewScenario, Sizing, new, size
     from torquer.api.scenarios import scenarios
+    from torquer.api.telemetry import FollowedPass, telemetry
     from torquer.api.validate import Validation, validate
 
 _MODULES = {
@@ -30,11 +33,15 @@ _MODULES = {
     "Design": "design",
     "Error": "errors",
     "Export": "export",
+    "FollowedPass": "telemetry",
     "InputError": "errors",
     "NewScenario": "satellites",
     "Run": "run",
+    "SatelliteCalibration": "calibrate",
     "Sizing": "satellites",
     "Validation": "validate",
+    "WiringVerdict": "phasing",
+    "calibrate": "calibrate",
     "campaign": "campaign",
     "check": "audit",
     "compare": "compare",
@@ -43,10 +50,12 @@ _MODULES = {
     "fly": "flight",
     "load": "run",
     "new": "satellites",
+    "phasing": "phasing",
     "replay": "replay",
     "report": "flight",
     "scenarios": "scenarios",
     "size": "satellites",
+    "telemetry": "telemetry",
     "validate": "validate",
 }
 """Modules of ``torquer.api`` by what they hold."""
@@ -58,11 +67,15 @@ __all__ = [
     "Design",
     "Error",
     "Export",
+    "FollowedPass",
     "InputError",
     "NewScenario",
     "Run",
+    "SatelliteCalibration",
     "Sizing",
     "Validation",
+    "WiringVerdict",
+    "calibrate",
     "campaign",
     "check",
     "compare",
@@ -71,10 +84,12 @@ __all__ = [
     "fly",
     "load",
     "new",
+    "phasing",
     "replay",
     "report",
     "scenarios",
     "size",
+    "telemetry",
     "validate",
 ]
 

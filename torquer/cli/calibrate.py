@@ -4,8 +4,7 @@ from pathlib import Path
 
 import click
 
-from sim.errors import HarnessError
-from torquer.cli.options import JSON, SETTINGS, examples, sentences
+from torquer.cli.options import JSON, SETTINGS, examples, say_report, sentences
 
 EXAMPLES = examples(
     "torquer calibrate RUN --out calibration.toml --page calibration.html    # flown with law phasing",
@@ -27,13 +26,12 @@ class Ratios(click.ParamType[tuple[float, ...]]):
             numbers = tuple(float(word) for word in value.split(","))
         except ValueError:
             numbers = ()
-        if len(numbers) != 3 or not all(1e-6 < number < 1e6 for number in numbers):
+        from sim.commissioning.calibrate.command import fault_of_ratios
+
+        if len(numbers) != 3:
             self.fail(f"{value!r} is not three positive numbers with commas between", param, ctx)
-        x, y, z = sorted(numbers)
-        if x + y < z:
-            self.fail(
-                f"no body has the moments of inertia {value}: {x:g} + {y:g} is less than {z:g}", param, ctx
-            )
+        if fault := fault_of_ratios(numbers):
+            self.fail(fault, param, ctx)
         return numbers
 
 
@@ -86,25 +84,18 @@ def calibrate(
     value comes with its uncertainty and with the verdict whether the data tell it. Exit code 1: they do not
     tell the magnetometer; cells and body are left out of the file where they are not told.
     """
-    if source.suffix.lower() == ".csv":
-        from sim.commissioning.calibrate.command import calibrate_recorded
-
-        if scenario is not None or settings:
-            option = "--scenario" if scenario is not None else "--set"
-            raise HarnessError(f"{option}: recorded telemetry in {source} is calibrated without a scenario")
-        if tle is None or out is None:
-            raise HarnessError(
-                f"{source}: recorded telemetry needs {'--tle' if tle is None else '--out'} FILE"
-            )
-        return calibrate_recorded(source, tle, out, page, ratios, int(parameters))
-    of_telemetry = {
-        "--tle": tle is not None,
-        "--inertia-ratios": ratios is not None,
-        "--parameters": parameters != "9",
-    }
-    if given := [option for option, is_given in of_telemetry.items() if is_given]:
-        raise HarnessError(f"{', '.join(given)}: {source} is no PASS.csv")
-    from sim.commissioning.calibrate.flown import command
     from sim.scenario.schema import parse_settings
+    from torquer.api.calibrate import calibrate
 
-    return command.calibrate(source, scenario, parse_settings(settings), out, page)
+    found = calibrate(
+        source,
+        scenario=scenario,
+        set=parse_settings(settings),
+        tle=tle,
+        inertia_ratios=ratios,
+        parameters=int(parameters),
+        out=out,
+        page=page,
+        progress=True,
+    )
+    return say_report(found.found)

@@ -16,6 +16,7 @@ from torquer.cli.completions import of_buses, of_laws, of_scenarios, of_settings
 from torquer.cli.numbers import WholeNumber
 
 if TYPE_CHECKING:
+    from sim.commissioning.report import CommissioningReport
     from sim.scenario.schema import Scenario
 
 Parameters = ParamSpec("Parameters")
@@ -215,6 +216,16 @@ def warn_of(scenario: "Scenario", ticks: int | None = None) -> None:
 
     for doubt in scenario_warnings(scenario, ticks):
         warn(doubt)
+
+
+def say_report(found: "CommissioningReport") -> int:
+    """Print what was found; return the exit code."""
+    from sim.console import answer, say
+
+    for line in found.lines:
+        say(line.text, failed=line.failed)
+    answer(found.values)
+    return int(not found.ok)
 
 
 def report_failures(failures: Mapping[str, str]) -> int:

@@ -1,15 +1,15 @@
 """``torquer phasing``: which way coils and magnetometer are wired."""
 
 from pathlib import Path
+from typing import TypeVar
 
 import click
 from click.core import ParameterSource
 
 from fsw.bus.open_bus import KINDS
-from sim.errors import HarnessError
 from torquer.cli.completions import of_buses
 from torquer.cli.numbers import Number, WholeNumber
-from torquer.cli.options import JSON, SEEDS, SETTINGS, examples, load_scenario, sentences
+from torquer.cli.options import JSON, SEEDS, SETTINGS, examples, load_scenario, say_report, sentences
 
 EXAMPLES = examples(
     "torquer phasing microsat --set coils.wiring=[1,-2,3]    # in simulation: coil 2 is reversed",
@@ -18,10 +18,7 @@ EXAMPLES = examples(
     "torquer phasing mag_and_command.csv                     # a recorded bench log",
 )
 
-OF_A_BENCH = ("real", "arm")
-OF_A_FLIGHT = ("bus", *OF_A_BENCH, "rounds", "seed", "out")
-OF_A_LOG = ("scenario", "settings", "at_rest", "field_nt", "offset_nt", "coil_field")
-"""Options by what they say something of."""
+Value = TypeVar("Value")
 
 
 @click.command(epilog=EXAMPLES)
@@ -74,49 +71,32 @@ def phasing(
     judged as it is. Exit code 1: the wiring is not the table's, or cannot be told; of a CSV, which tells no
     axis, that no reading responds to a command.
     """
-    import numpy as np
-
-    from sim.bench.command import real_boards
-    from sim.commissioning.phasing import command
-    from sim.commissioning.phasing.bench_log import is_bench_log
-    from sim.commissioning.phasing.judge import Known
+    from sim.commissioning.phasing.command import is_scenario
     from sim.scenario.schema import parse_settings
+    from torquer.api.phasing import phasing
 
-    path = Path(source)
-    known = Known(
-        None if coil_field is None else coil_field * np.eye(3),
-        None if field_nt is None else np.array(field_nt),
-        offset_nt,
-        in_orbit=not at_rest and bus is None,
+    if is_scenario(source) and scenario is None:
+        load_scenario(source, settings)  # says what is most likely wrong in it
+    found = phasing(
+        source,
+        scenario=scenario,
+        set=parse_settings(settings),
+        bus=bus,
+        real=real,
+        arm=arm,
+        at_rest=at_rest,
+        rounds=_given("rounds", rounds),
+        field_nt=field_nt,
+        offset_nt=_given("offset_nt", offset_nt),
+        coil_field_nt_per_am2=coil_field,
+        seed=_given("seed", seed),
+        out=out,
+        progress=True,
     )
-    if is_bench_log(path):
-        _refuse((*OF_A_FLIGHT, *OF_A_LOG), f"{source} is a recorded bench log, which is judged by itself")
-        return command.of_csv(path)
-    if path.suffix != ".toml" and path.exists():
-        _refuse(OF_A_FLIGHT, "a log is judged as it is; name a SCENARIO to fly or for a bench")
-        return command.of_log(path, scenario, parse_settings(settings), known)
-    if scenario is not None:
-        raise HarnessError(f"--scenario: {source} is no log, but a scenario itself")
-    if bus is None:
-        _refuse(OF_A_BENCH, "without --bus the SCENARIO is flown in simulation")
-    chosen = load_scenario(source, settings)
-    if bus is None:
-        return command.of_flight(chosen, rounds, seed, known, out)
-    bench = command.BenchSetUp(bus, real_boards(real), arm)
-    return command.on_bench(chosen, rounds, seed, known, bench, out)
+    return say_report(found.found)
 
 
-def _refuse(names: tuple[str, ...], why: str) -> None:
-    """Refuse options that would do nothing.
-
-    Raises:
-        HarnessError: the command line gives one of them.
-    """
-    context = click.get_current_context()
-    given = [
-        one.opts[0]
-        for one in context.command.params
-        if one.name in names and context.get_parameter_source(one.name) is not ParameterSource.DEFAULT
-    ]
-    if given:
-        raise HarnessError(f"{', '.join(given)}: {why}")
+def _given(name: str, value: Value) -> Value | None:
+    """The value of an option; None where the command line does not give it."""
+    source = click.get_current_context().get_parameter_source(name)
+    return None if source is ParameterSource.DEFAULT else value

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from torquer.cli.numbers import Number
-from torquer.cli.options import JSON, examples, sentences
+from torquer.cli.options import JSON, examples, say_report, sentences
 
 EXAMPLES = examples(
     "torquer telemetry PASS.csv --tle tle.txt --calibration calibration.toml",
@@ -47,6 +47,7 @@ def telemetry(recorded: Path, tle: Path, calibration: Path | None, start_s: floa
     It uses the magnetometer alone, and is judged by what it did not use: gyros, Sun cells, samples to come.
     Exit code 1: the motion cannot be told, or what was not used speaks against it.
     """
-    from sim.commissioning.telemetry.command import telemetry
+    from torquer.api.telemetry import telemetry
 
-    return telemetry(recorded, tle, calibration, page, start_s)
+    found = telemetry(recorded, tle=tle, calibration=calibration, start_s=start_s, page=page, progress=True)
+    return say_report(found.found)

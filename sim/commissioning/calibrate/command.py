@@ -1,6 +1,6 @@
 """``torquer calibrate`` of recorded telemetry: the fit in words, the file, a page with the residuals."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +14,8 @@ from sim.commissioning.calibrate.page import calibration_page
 from sim.commissioning.calibrate.recorded import LEAST_ROWS, RecordedCalibration, calibrate_pass
 from sim.commissioning.recorded.along import placed
 from sim.commissioning.recorded.recorded_pass import read_pass
+from sim.commissioning.report import CommissioningReport, in_lines
 from sim.commissioning.telemetry.follow import Noise
-from sim.console import answer, say
 from sim.errors import HarnessError
 from sim.result_files import check_results, write_result
 from sim.value_types import Array
@@ -109,7 +109,7 @@ PARAMETERS = (9, 12)
 
 def calibrate_recorded(
     path: Path, tle: Path, out: Path, page: Path | None, ratios: Sequence[float] | None, parameters: int
-) -> int:
+) -> CommissioningReport:
     """Calibrate by a CSV file of telemetry; write the tables, and the page if it is wanted.
 
     Args:
@@ -121,7 +121,7 @@ def calibrate_recorded(
         parameters: of the magnetometer, 9 or 12.
 
     Returns:
-        The exit code: 1 where the data do not tell the magnetometer, else 0.
+        What was found; ok where the data tell the magnetometer.
 
     Raises:
         HarnessError: a file cannot be read or written, is malformed, or would replace another of them.
@@ -138,45 +138,55 @@ def calibrate_recorded(
     write_result(out, text)
     if page is not None:
         write_result(page, calibration_page(found, text))
-    _say(found, parameters)
-    say(f"written: {out}" + (f", {page}" if page is not None else ""))
-    answer({**_as_json(found, parameters), "out": out, "page": page})
-    return int(not found.magnetometer.determined.all())
+    lines = [*_lines(found, parameters), f"written: {out}" + (f", {page}" if page is not None else "")]
+    values = {**_as_json(found, parameters), "out": out, "page": page}
+    return CommissioningReport(tuple(in_lines(lines)), values, bool(found.magnetometer.determined.all()))
 
 
-def _say(found: RecordedCalibration, parameters: int) -> None:
+def fault_of_ratios(ratios: Sequence[float]) -> str:
+    """Why numbers are no moments of inertia of a body; empty where they are."""
+    said = ",".join(f"{ratio:g}" for ratio in ratios)
+    if len(ratios) != 3 or not all(1e-6 < ratio < 1e6 for ratio in ratios):
+        return f"{said!r} is not three positive numbers with commas between"
+    x, y, z = sorted(ratios)
+    if x + y < z:
+        return f"no body has the moments of inertia {said}: {x:g} + {y:g} is less than {z:g}"
+    return ""
+
+
+def _lines(found: RecordedCalibration, parameters: int) -> Iterator[str]:
     fit, drift = found.magnetometer, found.drift
     if left_out := found.around.recorded.said_left_out():
-        say(left_out)
-    say(f"{len(fit.residual_nt)} samples; |B| after the fit {fit.rms_nt:.0f} nT RMS")
+        yield left_out
+    yield f"{len(fit.residual_nt)} samples; |B| after the fit {fit.rms_nt:.0f} nT RMS"
     for name, value, sigma, told in zip(NAMES, fit.values, fit.sigma, fit.determined, strict=True):
         digits, unit = (0, " nT") if name.startswith("b_") else (4, "")
         said = "" if told else "   cannot be told from these samples"
-        say(f"  {name:5} {value:10.{digits}f} +- {sigma:.{digits}f}{unit}{said}")
+        yield f"  {name:5} {value:10.{digits}f} +- {sigma:.{digits}f}{unit}{said}"
     if parameters == PARAMETERS[1]:
         for name in TURN_NAMES:
-            say(f"  {name:5} {0.0:10.2f} deg   cannot be told by |B|, which no turn changes")
+            yield f"  {name:5} {0.0:10.2f} deg   cannot be told by |B|, which no turn changes"
     if not fit.determined.all():
         x, y, z = fit.weakest_axis
-        say(f"  the offset is told least along ({x:.2f}, {y:.2f}, {z:.2f}), to {fit.weakest_nt:.0f} nT")
-    say(f"bias moves by up to {drift.largest_nt:.0f} nT within the pass")
+        yield f"  the offset is told least along ({x:.2f}, {y:.2f}, {z:.2f}), to {fit.weakest_nt:.0f} nT"
+    yield f"bias moves by up to {drift.largest_nt:.0f} nT within the pass"
     if drift.eclipse_nt is not None:
-        say(f"  in shadow less in the Sun: {_triple(*drift.eclipse_nt)} nT")
+        yield f"  in shadow less in the Sun: {_triple(*drift.eclipse_nt)} nT"
     if drift.per_degc_nt is not None:
-        say(f"  with temperature: {_triple(*drift.per_degc_nt)} nT/deg C")
+        yield f"  with temperature: {_triple(*drift.per_degc_nt)} nT/deg C"
     for cell in found.cells:
         face = ", ".join(f"{part:.3f}" for part in cell.face_body)
         digits = cell.decimals
         scale = f"full scale {cell.full_scale:.{digits}f} +- {cell.full_scale_sigma:.{digits}f}"
         said = "" if cell.determined else "; cannot be told"
-        say(f"cell {cell.name}: face ({face}) +- {cell.face_sigma_deg:.1f} deg, {scale}{said}")
+        yield f"cell {cell.name}: face ({face}) +- {cell.face_sigma_deg:.1f} deg, {scale}{said}"
     if found.body is not None:
         ratios = " : ".join(f"{ratio:.5f}" for ratio in found.body.ratios)
-        say(f"inertia ratios {ratios}; axis of the greatest +- {found.body.axis_sigma_deg:.1f} deg")
+        yield f"inertia ratios {ratios}; axis of the greatest +- {found.body.axis_sigma_deg:.1f} deg"
     if found.judged is not None and not found.judged.verdict.converged:
-        say(f"body and cells cannot be told: {found.judged.verdict.reason}")
+        yield f"body and cells cannot be told: {found.judged.verdict.reason}"
     elif found.judged is None:
-        say("body and cells cannot be told: the pass is too short, or does not tell the offset")
+        yield "body and cells cannot be told: the pass is too short, or does not tell the offset"
 
 
 def _triple(values: Sequence[float], sigma: Sequence[float]) -> str:

@@ -1,8 +1,8 @@
 """``torquer phasing``: fire each coil in both polarities, or take a log in which that was done, and judge."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields, replace
 from math import ceil
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -12,19 +12,20 @@ import numpy as np
 from fsw.input.schema import Nested
 from fsw.table.table import FlightTable
 from sim.bench.budgets import Budgets
-from sim.bench.command import HilSettings, hil
+from sim.bench.command import HilSettings, hil, real_boards
 from sim.commissioning.calibrate.flown.samples import read_samples
 from sim.commissioning.phasing import bench_words, words
-from sim.commissioning.phasing.bench_log import bench_responses, read_recording
-from sim.commissioning.phasing.judge import Known, Phasing, phasing
-from sim.console import Console, answer, detail, say, speaking
+from sim.commissioning.phasing.bench_log import bench_responses, is_bench_log, read_recording
+from sim.commissioning.phasing.judge import Known, phasing
+from sim.commissioning.report import CommissioningReport, ReportLine, in_lines
+from sim.console import Console, detail, speaking
 from sim.errors import HarnessError
 from sim.flight.virtual import fly_virtual
 from sim.progress import progress
 from sim.record import run_dir
 from sim.record.destination import check_folder
 from sim.record.pace import Pace
-from sim.scenario.schema import Scenario, flight_table, scenario_of
+from sim.scenario.schema import Scenario, flight_table, load, scenario_of
 
 LAW = "phasing"
 SETTLED_S = 20.0
@@ -33,6 +34,13 @@ no more than twice the back-off, which bounds how late a sample may be told to b
 AFTER_S = 30.0
 """After the last pulse, so that what it did is seen."""
 ANY_BUDGET = Budgets(1e9, 1e9, 10**9, 1e9, 1e9)
+OFFSET_NT = 1000.0
+OF_A_BENCH = ("real", "arm")
+OF_A_FLIGHT = ("bus", *OF_A_BENCH, "rounds", "seed", "out")
+OF_A_LOG = ("scenario", "settings", "at_rest", "field_nt", "offset_nt", "coil_field_nt_per_am2")
+"""Options by what they say something of."""
+OPTIONS = {"settings": "set"}
+"""Those that the command line calls otherwise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,16 +53,112 @@ class BenchSetUp:
     deadman_s: float = 5.0
 
 
-def of_csv(path: Path) -> int:
-    """Say the responses in a recorded bench log, which tells no axis: exit code 1 where none is clear."""
+@dataclass(frozen=True, slots=True)
+class PhasingOptions:
+    """How wiring is told; what is None, False or empty is not given.
+
+    Attributes:
+        scenario: of a log that has none beside it, its name or path.
+        settings: laid over the scenario.
+        bus: of a bench.
+        real: its boards that are hardware, with commas between.
+        arm: coils may be driven on it.
+        at_rest: a log is of a bench: the satellite did not move.
+        rounds: pulses of each polarity; None: 1.
+        field_nt: field around the bench, body axes.
+        offset_nt: largest offset of the magnetometer, by axis; None: 1000.
+        coil_field_nt_per_am2: field of each coil at the magnetometer, along its axis; None: the table's.
+        seed: of the plant; None: 1.
+        out: folder in which the run is kept.
+    """
+
+    scenario: str | None = None
+    settings: Nested = field(default_factory=dict)
+    bus: str | None = None
+    real: str | None = None
+    arm: bool = False
+    at_rest: bool = False
+    rounds: int | None = None
+    field_nt: tuple[float, float, float] | None = None
+    offset_nt: float | None = None
+    coil_field_nt_per_am2: float | None = None
+    seed: int | None = None
+    out: Path | None = None
+
+    @property
+    def known(self) -> Known:
+        """What is known of the surroundings."""
+        along, around = self.coil_field_nt_per_am2, self.field_nt
+        return Known(
+            None if along is None else along * np.eye(3),
+            None if around is None else np.array(around),
+            OFFSET_NT if self.offset_nt is None else self.offset_nt,
+            in_orbit=not self.at_rest and self.bus is None,
+        )
+
+    def refuse(self, names: Iterable[str], why: str) -> None:
+        """Refuse options that would do nothing.
+
+        Raises:
+            HarnessError: one of them is given.
+        """
+        given = [name for name in _given(self) if name in names]
+        if given:
+            named = (f"--{OPTIONS.get(name, name).replace('_', '-')}" for name in given)
+            raise HarnessError(f"{', '.join(named)}: {why}")
+
+
+def _given(options: PhasingOptions) -> Iterator[str]:
+    """The names of those that are given."""
+    for one in fields(options):
+        value = getattr(options, one.name)
+        if value is not None and value is not False and value != {}:
+            yield one.name
+
+
+def is_scenario(source: str) -> bool:
+    """Whether what phasing is to be told of is a scenario, and no recording or log."""
+    path = Path(source)
+    return not is_bench_log(path) and (path.suffix == ".toml" or not path.exists())
+
+
+def phase(source: str | Scenario, options: PhasingOptions) -> CommissioningReport:
+    """Tell the wiring of a scenario, in simulation or on a bench, or in a run, log or bench recording.
+
+    Raises:
+        HarnessError: an option that would do nothing, or no log, bench or scenario of that kind.
+        TableError: the scenario is not valid.
+        BusError: the bus cannot be used.
+    """
+    if isinstance(source, str) and is_bench_log(Path(source)):
+        why = f"{source} is a recorded bench log, which is judged by itself"
+        options.refuse((*OF_A_FLIGHT, *OF_A_LOG), why)
+        return of_csv(Path(source))
+    if isinstance(source, str) and not is_scenario(source):
+        options.refuse(OF_A_FLIGHT, "a log is judged as it is; name a SCENARIO to fly or for a bench")
+        return of_log(Path(source), options.scenario, options.settings, options.known)
+    if options.scenario is not None:
+        raise HarnessError(f"--scenario: {source} is no log, but a scenario itself")
+    if options.bus is None:
+        options.refuse(OF_A_BENCH, "without --bus the SCENARIO is flown in simulation")
+    chosen, rounds, seed = load(source, options.settings), options.rounds or 1, options.seed
+    seed = 1 if seed is None else seed
+    if options.bus is None:
+        return of_flight(chosen, rounds, seed, options.known, options.out)
+    bench = BenchSetUp(options.bus, real_boards(options.real), options.arm)
+    return on_bench(chosen, rounds, seed, options.known, bench, options.out)
+
+
+def of_csv(path: Path) -> CommissioningReport:
+    """The responses in a recorded bench log, which tells no axis; ok where one is clear."""
     responses = bench_responses(read_recording(path))
-    for line in bench_words.lines(responses):
-        say(line)
-    answer(bench_words.as_json(responses))
-    return int(not any(response.latest_s() for response in responses))
+    lines = tuple(in_lines(bench_words.lines(responses)))
+    return CommissioningReport(
+        lines, bench_words.as_json(responses), any(one.latest_s() for one in responses)
+    )
 
 
-def of_log(run_or_log: Path, scenario: str | None, settings: Nested, known: Known) -> int:
+def of_log(run_or_log: Path, scenario: str | None, settings: Nested, known: Known) -> CommissioningReport:
     """Judge a log; the scenario is that beside it, unless one is named.
 
     Raises:
@@ -65,7 +169,9 @@ def of_log(run_or_log: Path, scenario: str | None, settings: Nested, known: Know
     return _judge(log, flight_table(run_dir.scenario_of_log(log, folder, scenario, settings)), known)
 
 
-def of_flight(scenario: Scenario, rounds: int, seed: int, known: Known, out: Path | None) -> int:
+def of_flight(
+    scenario: Scenario, rounds: int, seed: int, known: Known, out: Path | None
+) -> CommissioningReport:
     """Fly the scenario in simulation, send TC_LAW for the sequence, and judge.
 
     Raises:
@@ -82,7 +188,7 @@ def of_flight(scenario: Scenario, rounds: int, seed: int, known: Known, out: Pat
 
 def on_bench(
     scenario: Scenario, rounds: int, seed: int, known: Known, bench: BenchSetUp, out: Path | None
-) -> int:
+) -> CommissioningReport:
     """Run the sequence in real time on a bench, and judge.
 
     Raises:
@@ -97,7 +203,8 @@ def on_bench(
         fixed = (True, seconds, "plant", bench.deadman_s, ANY_BUDGET, 1e9)
         with speaking(Console("hil", quiet=True)):  # of the bench only what failed is said
             code = hil(HilSettings(flown, bench.bus, bench.real, *fixed, seed, folder))
-        return _judge(folder / run_dir.BUS_LOG, flight_table(flown), known) or code
+        found = _judge(folder / run_dir.BUS_LOG, flight_table(flown), known)
+        return replace(found, ok=found.ok and not code)
 
 
 def with_sequence(scenario: Scenario, rounds: int) -> Scenario:
@@ -130,16 +237,17 @@ def sequence_ticks(scenario: Scenario, rounds: int, at_rest: bool = False) -> in
     return ceil(whole_s * scenario.time.tick_hz)
 
 
-def _judge(log: Path, table: FlightTable, known: Known) -> int:
-    """Say the verdict: exit code 1 where the wiring is not told, or not the table's."""
+def _judge(log: Path, table: FlightTable, known: Known) -> CommissioningReport:
+    """The verdict; ok where the wiring is told, and is the table's."""
     detail(f"phasing from {log}")
     samples = read_samples(log, table.time.tick_hz)
     try:
         found = phasing(samples, table, _with_table(known, table))
     except HarnessError as error:
         raise HarnessError(f"{log}: {error}") from None
-    _say(found, table)
-    return int(found.wiring is None or found.wiring != words.of_table(table))
+    ok = found.wiring is not None and found.wiring == words.of_table(table)
+    lines = (*in_lines(words.lines(found, table)), ReportLine(words.verdict(found, table), failed=not ok))
+    return CommissioningReport(lines, words.as_json(found, table), ok)
 
 
 def _with_table(known: Known, table: FlightTable) -> Known:
@@ -150,14 +258,6 @@ def _with_table(known: Known, table: FlightTable) -> Known:
     by_output = np.array(coils.field_nt_per_am2)
     dipoles = np.eye(3) if coils.matrix is None else np.array(coils.matrix)
     return Known(by_output @ np.linalg.inv(dipoles), known.field_around_nt, known.offset_nt, known.in_orbit)
-
-
-def _say(found: Phasing, table: FlightTable) -> None:
-    for line in words.lines(found, table):
-        say(line)
-    failed = found.wiring is None or found.wiring != words.of_table(table)
-    say(words.verdict(found, table), failed=failed)
-    answer(words.as_json(found, table))
 
 
 @contextmanager

@@ -10,10 +10,10 @@ from sim.commissioning.recorded.along import placed
 from sim.commissioning.recorded.calibration import UNCALIBRATED, PassCalibration, read_calibration
 from sim.commissioning.recorded.columns import AXES
 from sim.commissioning.recorded.recorded_pass import read_pass
+from sim.commissioning.report import CommissioningReport, in_lines
 from sim.commissioning.telemetry.follow import Noise
 from sim.commissioning.telemetry.judge import AllowedMotion, Judged, figures, judge, spin_place
 from sim.commissioning.telemetry.time_axis import pass_time
-from sim.console import answer, say
 from sim.drawing.canvas import AXES_COLOURS, MORE_COLOURS, TimeAxis, style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import Chart, PageHeader, PageSection, Table, Tile, sections_page
@@ -154,11 +154,10 @@ def _beside(found: dict[str, Any], spun: int) -> str:
 # --- The command
 
 
-def telemetry(path: Path, tle: Path, calibration: Path | None, page: Path | None, start_s: float) -> int:
-    """Follow a recorded pass, say how well, and write the page if it is wanted.
-
-    Returns:
-        The exit code: 1 where the motion cannot be believed, else 0.
+def telemetry(
+    path: Path, tle: Path, calibration: Path | None, page: Path | None, start_s: float
+) -> CommissioningReport:
+    """Follow a recorded pass, and write the page if it is wanted; ok where the motion can be believed.
 
     Raises:
         HarnessError, TableError: a file cannot be read or written, is malformed, or would replace another
@@ -171,15 +170,15 @@ def telemetry(path: Path, tle: Path, calibration: Path | None, page: Path | None
     known = UNCALIBRATED if calibration is None else read_calibration(calibration)
     judged = judged_pass(path, tle, known, start_s)
     found = figures(judged)
-    for line in in_words(judged, found):
-        say(line)
+    lines = in_lines(in_words(judged, found))
     if calibration is None and not judged.verdict.converged:
-        say("samples are taken as they are: torquer calibrate finds what --calibration takes off them")
+        said = "samples are taken as they are: torquer calibrate finds what --calibration takes off them"
+        lines += in_lines([said])
     if page is not None:
         write_result(page, telemetry_page(judged, known, found))
-        say(f"page: {page}")
-    answer({"pass": judged.around.recorded.name, **found, "page": page})
-    return int(not judged.verdict.converged)
+        lines += in_lines([f"page: {page}"])
+    values = {"pass": judged.around.recorded.name, **found, "page": page}
+    return CommissioningReport(tuple(lines), values, judged.verdict.converged)
 
 
 def judged_pass(path: Path, tle: Path, known: PassCalibration, start_s: float) -> Judged:

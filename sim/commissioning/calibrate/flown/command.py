@@ -11,7 +11,8 @@ from sim.commissioning.calibrate.flown.run_fit import RunCalibration, calibrated
 from sim.commissioning.calibrate.flown.samples import read_samples
 from sim.commissioning.calibrate.flown.tables import tables
 from sim.commissioning.calibrate.flown.verdicts import list_undetermined, sentences, turn_rad, turn_sigma_rad
-from sim.console import answer, say, warn
+from sim.commissioning.report import CommissioningReport, ReportLine, in_lines
+from sim.console import warn
 from sim.errors import HarnessError
 from sim.record import run_dir
 from sim.result_files import check_results, write_result
@@ -20,8 +21,8 @@ from sim.scenario.schema import flight_table
 
 def calibrate(
     run_or_log: Path, scenario: str | None, settings: Nested, out: Path | None, page: Path | None
-) -> int:
-    """Calibrate by a log: exit code 1 if it does not tell everything, or not well enough for the tables.
+) -> CommissioningReport:
+    """Calibrate by a log; ok if it tells everything, and well enough for the tables.
 
     Raises:
         HarnessError: no such log, no scenario for it, it tells nothing of the magnetometer, or a file to
@@ -42,23 +43,22 @@ def calibrate(
     except HarnessError as error:
         raise HarnessError(f"{log}: {error}") from None
     missing = list_undetermined(found)
-    for line in sentences(found, tick_s):
-        say(line)
-    for line in missing:
-        say(f"not told: {line}", failed=True)
+    lines = in_lines(sentences(found, tick_s)) + in_lines(
+        (f"not told: {one}" for one in missing), failed=True
+    )
     text, fault = _tables(found, table)
     if text and out is not None:
         write_result(out, text)
-        say(f"written: {out}")
+        lines.append(ReportLine(f"written: {out}"))
     elif out is not None:
-        say(f"{out}: {fault}", failed=True)
+        lines.append(ReportLine(f"{out}: {fault}", failed=True))
     if page is not None:
         from sim.commissioning.calibrate.flown.page import calibration_page  # noqa: PLC0415  (loads matplotlib)
 
         html = calibration_page(found, run_or_log.name, tick_s, float(samples.unix_s[0]), text)
         write_result(page, html)
-    answer(_as_json(found, tick_s, missing, out if text else None, page))
-    return int(bool(missing) or (out is not None and not text))
+    values = _as_json(found, tick_s, missing, out if text else None, page)
+    return CommissioningReport(tuple(lines), values, not missing and (out is None or bool(text)))
 
 
 def _read(log: Path, scenario: str | None) -> dict[str, Path | None]:
