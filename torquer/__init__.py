@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from torquer.api.scenarios import scenarios
     from torquer.api.telemetry import FollowedPass, telemetry
     from torquer.api.validate import Validation, validate
+    from torquer.api.watch import WatchedMoments, watch
 
 _MODULES = {
     "Audit": "audit",
@@ -40,6 +41,7 @@ _MODULES = {
     "SatelliteCalibration": "calibrate",
     "Sizing": "satellites",
     "Validation": "validate",
+    "WatchedMoments": "watch",
     "WiringVerdict": "phasing",
     "calibrate": "calibrate",
     "campaign": "campaign",
@@ -57,6 +59,7 @@ _MODULES = {
     "size": "satellites",
     "telemetry": "telemetry",
     "validate": "validate",
+    "watch": "watch",
 }
 """Modules of ``torquer.api`` by what they hold."""
 
@@ -74,6 +77,7 @@ __all__ = [
     "SatelliteCalibration",
     "Sizing",
     "Validation",
+    "WatchedMoments",
     "WiringVerdict",
     "calibrate",
     "campaign",
@@ -91,6 +95,7 @@ __all__ = [
     "size",
     "telemetry",
     "validate",
+    "watch",
 ]
 
 

@@ -62,7 +62,7 @@ def show_on_terminal(watched: Watched) -> None:
     from sim.watch.terminal import show  # noqa: PLC0415  rich loads when something is drawn
 
     show(watched.view, batches(watched.source, watched.view), watched.source.name)
-    _check_whole(watched.source)
+    check_whole(watched.source)
 
 
 def serve_page(watched: Watched, port: int) -> None:
@@ -74,7 +74,7 @@ def serve_page(watched: Watched, port: int) -> None:
     from sim.watch.web import LiveView, serve  # noqa: PLC0415  an extra
 
     serve(LiveView(watched.source, watched.view), port, lambda address: note(f"{address} until Ctrl-C"))
-    _check_whole(watched.source)
+    check_whole(watched.source)
 
 
 def serve_foxglove(watched: Watched, port: int) -> None:
@@ -89,10 +89,15 @@ def serve_foxglove(watched: Watched, port: int) -> None:
         note(f"Foxglove: open a connection to ws://127.0.0.1:{publisher.port}")
         for _ in batches(watched.source, watched.view):
             publisher.publish(watched.view)
-    _check_whole(watched.source)
+    check_whole(watched.source)
 
 
-def _check_whole(source: FrameSource) -> None:
+def check_whole(source: FrameSource) -> None:
+    """All of a source was shown.
+
+    Raises:
+        LogCutError: it is a log that ends in the middle of a line.
+    """
     if isinstance(source, LogSource) and source.cut_short:
         raise LogCutError(f"{source.path}: the log was cut short: its last line is incomplete")
 
