@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from torquer.api.replay import replay
     from torquer.api.run import Run, load
     from torquer.api.satellites import NewScenario, Sizing, new, size
-    from torquer.api.scenarios import scenarios
+    from torquer.api.scenarios import TypedScenario, scenario, scenarios
     from torquer.api.telemetry import FollowedPass, telemetry
     from torquer.api.validate import Validation, validate
     from torquer.api.watch import WatchedMoments, watch
@@ -40,6 +40,7 @@ _MODULES = {
     "Run": "run",
     "SatelliteCalibration": "calibrate",
     "Sizing": "satellites",
+    "TypedScenario": "scenarios",
     "Validation": "validate",
     "WatchedMoments": "watch",
     "WiringVerdict": "phasing",
@@ -55,6 +56,7 @@ _MODULES = {
     "phasing": "phasing",
     "replay": "replay",
     "report": "flight",
+    "scenario": "scenarios",
     "scenarios": "scenarios",
     "size": "satellites",
     "telemetry": "telemetry",
@@ -76,6 +78,7 @@ __all__ = [
     "Run",
     "SatelliteCalibration",
     "Sizing",
+    "TypedScenario",
     "Validation",
     "WatchedMoments",
     "WiringVerdict",
@@ -91,6 +94,7 @@ __all__ = [
     "phasing",
     "replay",
     "report",
+    "scenario",
     "scenarios",
     "size",
     "telemetry",

@@ -173,7 +173,7 @@ def load(scenario: str | Scenario, overrides: Nested | None = None) -> Scenario:
     if isinstance(scenario, Scenario):
         if not overrides:
             return scenario
-        values, source = scenario.model_dump(mode="json", exclude_none=True), scenario.name
+        values, source = scenario.model_dump(mode="json", exclude_none=True), f"scenario {scenario.name}"
     else:
         values, source = _read(scenario)
     return scenario_of(values, source, with_digests(named(overrides or {}, Path()), Path()))

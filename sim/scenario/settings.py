@@ -6,6 +6,7 @@ from functools import reduce
 from pathlib import PurePath
 
 import numpy as np
+from pydantic import BaseModel
 
 from fsw.input.schema import Nested, TableError, merge
 from fsw.input.toml_text import MOST_LEVELS
@@ -56,6 +57,8 @@ def plain(value: object, levels: int = MOST_LEVELS) -> object:
             return value.tolist()
         case PurePath():
             return str(value)
+        case BaseModel():
+            return value.model_dump(mode="json", exclude_none=True)
         case Mapping():
             return {key: plain(one, levels - 1) for key, one in value.items()}
         case list() | tuple():

@@ -15,7 +15,6 @@ from sim.replay.command import ReplayReport
 from sim.report.summary_text import summary_text
 from sim.report.verdict import Verdict
 from sim.scenario.law_named import with_law_named
-from sim.scenario.schema import Scenario
 from torquer.api.arguments import path_text
 from torquer.api.audit import Audit, check
 from torquer.api.errors import one_sentence
@@ -23,6 +22,7 @@ from torquer.api.export import Export, export
 from torquer.api.laws import LawLike, checked_law, law_given
 from torquer.api.printed import Printed
 from torquer.api.replay import replay
+from torquer.api.scenarios import TypedScenario
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -60,9 +60,9 @@ class Run(Printed):
 
     @cached_property
     @one_sentence
-    def scenario(self) -> Scenario:
+    def scenario(self) -> TypedScenario:
         """The scenario that was flown, with all settings."""
-        return run_dir.read_scenario(self.path)
+        return TypedScenario.of(run_dir.read_scenario(self.path))
 
     @property
     def concluded(self) -> bool:

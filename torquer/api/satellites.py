@@ -10,12 +10,12 @@ from pydantic import Strict
 from fsw.input.schema import Section
 from sim.new_scenario.command import write_new
 from sim.new_scenario.satellite import NewSatellite
-from sim.scenario.schema import Scenario
 from sim.sizing.command import Sized, sized
 from sim.value_types import Json
 from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
 from torquer.api.errors import one_sentence
 from torquer.api.printed import Printed
+from torquer.api.scenarios import TypedScenario
 
 _Triple = Annotated[tuple[float, float, float], Strict(False)]
 
@@ -83,7 +83,7 @@ class NewScenario:
     """
 
     path: Path
-    scenario: Scenario
+    scenario: TypedScenario
     warnings: tuple[str, ...]
 
     def __fspath__(self) -> str:
@@ -177,4 +177,5 @@ def new(
         cells=given.sun == "cells",
         exact=given.bounds == "exact",
     )
-    return NewScenario(*write_new(satellite, optional_path(out, "out")))
+    path, scenario, warnings = write_new(satellite, optional_path(out, "out"))
+    return NewScenario(path, TypedScenario.of(scenario), warnings)
