@@ -12,6 +12,8 @@ from sim.console import current
 Watch = Callable[[int], None]
 
 _SHOWN = ContextVar("shown", default=True)
+_STANDING = ContextVar("standing", default=0)
+"""Width of a line that is to be written over."""
 LINE_EVERY_S = 0.5
 """Time between two states of the line in a notebook."""
 NOTE_EVERY_S = 60.0
@@ -31,7 +33,10 @@ def shown(whether: bool) -> Iterator[None]:
 def note(text: str) -> None:
     """A line on stderr, of what is no part of the result."""
     if _is_shown():
-        print(lines_text(text), file=sys.stderr, flush=True)
+        width = _STANDING.get()  # of a notebook's line, which the note takes the place of
+        line = f"\r{lines_text(text):{width}}" if width else lines_text(text)
+        _STANDING.set(0)
+        print(line, file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -95,9 +100,14 @@ def _line(what: str, total: int) -> Iterator[Watch]:
         nonlocal written_s
         if time.monotonic() - written_s >= LINE_EVERY_S:
             written_s = time.monotonic()
-            print(f"\r{what}: {_percent(done, total)}", end="", file=sys.stderr, flush=True)
+            line = f"{what}: {_percent(done, total)}"
+            _STANDING.set(len(line))
+            print(f"\r{line}", end="", file=sys.stderr, flush=True)
 
-    yield watch
+    try:
+        yield watch
+    finally:
+        _STANDING.set(0)
     if written_s:
         print(f"\r{what}: done ", file=sys.stderr, flush=True)
 

@@ -82,6 +82,23 @@ def test_a_notebook_has_a_line_that_is_written_over(monkeypatch, running):
     assert text.endswith("\rflying: done \n") is running
 
 
+def test_a_note_takes_the_place_of_the_line_of_a_notebook_whole(monkeypatch):
+    kernel = SimpleNamespace(IPKernelApp=SimpleNamespace(initialized=lambda: True))
+    monkeypatch.setitem(sys.modules, "ipykernel.kernelapp", kernel)
+    monkeypatch.setattr(module, "LINE_EVERY_S", 0.0)
+    stream = StringIO()
+    monkeypatch.setattr(sys, "stderr", stream)
+    with progress("flying", 4) as watch:
+        watch(1)
+        note("done")
+        note("once more")
+        watch(2)
+    note("after")
+    assert stream.getvalue() == (
+        "\rflying:  25 %\rdone         \nonce more\n\rflying:  50 %\rflying: done \nafter\n"
+    )
+
+
 @pytest.mark.parametrize("stream", [StringIO, Terminal])
 def test_nothing_is_written_where_it_is_hidden(monkeypatch, stream):
     assert written(monkeypatch, stream(), show=False) == ""

@@ -32,8 +32,8 @@ class TypedScenario(schema.Scenario, Printed):
     def changed(self, settings: Settings | None = None, /, **sections: object) -> Self:
         """A copy with values laid over it, checked as those of a file are.
 
-        ``scenario.changed(initial={"angle_deg": 40.0})`` or ``scenario.changed({"initial.angle_deg": 40.0})``;
-        a section of another scenario may be given too.
+        ``scenario.changed(time={"tick_hz": 10})`` or ``scenario.changed({"time.tick_hz": 10})``; a section of
+        another scenario may be given too.
 
         Raises:
             InputError: a key that is unknown, of the wrong type or out of range.
