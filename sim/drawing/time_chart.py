@@ -78,7 +78,9 @@ def draw(time: TimeAxis, chart: TimeChart) -> DrawnChart:
     picture, axes = stacked(time, [panel.height_in for panel in chart.panels])
     panels = []
     for each, panel in zip(axes, chart.panels, strict=True):
-        _draw(each, time, chart.t_s, panel)
+        draw_lines(each, time, chart.t_s, panel)
+        each.set_title(panel.title)
+        legend(each)
         panels.append(_data(each, panel))
     return DrawnChart(picture, {"panels": panels})
 
@@ -100,18 +102,19 @@ def packed(values: Array) -> str:
     return b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode("ascii")
 
 
-def _draw(axes: Axes, time: TimeAxis, t_s: Array, panel: Panel) -> None:
+def draw_lines(axes: Axes, time: TimeAxis, t_s: Array, panel: Panel, width: float = 1.0) -> None:
+    """The lines of a panel and its ordinate, on axes of any size; ``width`` is a factor of the lines'."""
     for series in panel.series:
-        trace(axes, time, t_s, series.y, series.label, series.colour, linewidth=series.width)
+        trace(axes, time, t_s, series.y, series.label, series.colour, linewidth=width * series.width)
     for level in panel.levels:
-        axes.axhline(level.value, color=level.colour, linewidth=1.0, linestyle=(0, (4, 3)), label=level.label)
+        axes.axhline(
+            level.value, color=level.colour, linewidth=width, linestyle=(0, (4, 3)), label=level.label
+        )
     if panel.decades is not None:
         log_y(axes, *(series.y for series in panel.series), decades=panel.decades)
     if panel.reach is not None:
         axes.set_ylim(*panel.reach)
     axes.set_ylabel(panel.label)
-    axes.set_title(panel.title)
-    legend(axes)
 
 
 def _data(axes: Axes, panel: Panel) -> Json:

@@ -7,6 +7,7 @@ from pathlib import Path
 from fsw.core.state import FlightState
 from fsw.table.config import flight_config
 from sim.audit.check import limits_beside
+from sim.audit.findings import AuditReport
 from sim.errors import HarnessError
 from sim.faults.section import forge_answers
 from sim.record import binding, run_dir
@@ -28,9 +29,15 @@ from sim.scenario.schema import Scenario, flight_table
 from sim.value_types import Json
 
 Watch = Callable[[int], None]
+Draw = Callable[[Scenario, Lines, AuditReport], None]
 
 
-def conclude(path: Path, watch: Watch = lambda tick: None, law: str | None = None) -> Json:
+def conclude(
+    path: Path,
+    watch: Watch = lambda tick: None,
+    law: str | None = None,
+    draw: Draw | None = None,
+) -> Json:
     """Write summary.json and report.html of a run, complete or not; bind a whole one and mark it complete.
 
     The log is replayed through the flight software: that gives its estimates at full precision, and checks
@@ -40,6 +47,7 @@ def conclude(path: Path, watch: Watch = lambda tick: None, law: str | None = Non
         path: the run directory.
         watch: called with each tick that was replayed.
         law: the law of one's own that the run flew, named again; None: none is executed.
+        draw: called with what the charts show, as the report is written.
 
     Raises:
         HarnessError: the directory is not a run or cannot be written, or one of its files is damaged; or it
@@ -51,7 +59,7 @@ def conclude(path: Path, watch: Watch = lambda tick: None, law: str | None = Non
     with TruthReader(path / run_dir.TRUTH) as truth:
         _check_rows(path, truth.complete)
         replayed = _replay(path, scenario, truth, watch)
-    return _write_results(path, scenario, replayed)
+    return _write_results(path, scenario, replayed, draw)
 
 
 def conclude_flight(path: Path, more: More, watch: Watch = lambda tick: None, law: str | None = None) -> Json:
@@ -121,7 +129,7 @@ def _replay(
     return _Replayed(result, performance, lines)
 
 
-def _write_results(path: Path, scenario: Scenario, replayed: _Replayed) -> Json:
+def _write_results(path: Path, scenario: Scenario, replayed: _Replayed, draw: Draw | None = None) -> Json:
     """Audit, summary and page; the run is then marked complete, if it is."""
     run, log = run_dir.read_run(path), run_dir.bus_log(path)
     tally = BusTally(scenario.epoch_unix_s * 1_000_000)
@@ -150,6 +158,8 @@ def _write_results(path: Path, scenario: Scenario, replayed: _Replayed) -> Json:
         binding.release(path, run_dir.SUMMARY)
     run_dir.write_json(path / run_dir.SUMMARY, summary)
     write_report(path / run_dir.REPORT, scenario, summary, replayed.lines, report)
+    if draw is not None:
+        draw(scenario, replayed.lines, report)
     if flight_is_bound:
         binding.bind(path, run_dir.TRUTH, run_dir.SUMMARY)
     if Verdict.COMPLETE not in failed_checks:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Annotated
@@ -12,6 +13,7 @@ from pydantic import Field, Strict
 from fsw.input.own_code import display, given_as, refuse_while_loading
 from fsw.input.schema import Section, TableError
 from fsw.table.own_law import ONLY_ITS_OWNER, LawError
+from sim.audit.findings import AuditReport
 from sim.errors import FlightError
 from sim.flight.record_flight import check_can_fly, ticks_of
 from sim.flight.sil import fly_processes, serve_bus
@@ -22,8 +24,10 @@ from sim.record import run_dir
 from sim.record.binding import require_sources, sign_run
 from sim.record.pace import parse_pace
 from sim.record.signature import private_key, signature_path
+from sim.report.charts.lines import Lines
 from sim.report.conclude import conclude
 from sim.report.follow import follow
+from sim.report.paper.kind import FigureKind
 from sim.scenario.schema import Scenario, expecting, orbit_period_s
 from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
 from torquer.api.audit import optional_key
@@ -142,6 +146,10 @@ def _flight_on(bus: str, scenario: Scenario) -> Iterator[tuple[str, Flight]]:
         yield spec.partition(":")[0], lambda path, watch: fly_processes(path, scenario, spec, listener, watch)
 
 
+class _ReportOptions(Section):
+    figures: FigureKind | None
+
+
 @one_sentence
 def report(
     run: str | PathLike[str],
@@ -149,6 +157,7 @@ def report(
     law: LawLike | None = None,
     sign: str | PathLike[str] | None = None,
     verify: str | PathLike[str] | None = None,
+    figures: str | None = None,
     progress: bool = False,
 ) -> Run:
     """Make summary and report of a run again, as ``torquer report`` does; also of one that was cut short.
@@ -158,6 +167,7 @@ def report(
         law: the law of its own that the run flew, named or given again; without it none is executed.
         sign: private Ed25519 key in PEM with which the run is signed.
         verify: public Ed25519 key in PEM; the run must be signed by its private half.
+        figures: ``pdf`` or ``svg``: draw the figures of ``run.plot`` into its folder ``figures`` too.
         progress: show progress on stderr.
 
     Returns:
@@ -168,14 +178,26 @@ def report(
         Error: one of its files is not its own.
     """
     path = Path(path_text(run, "run"))
+    kind = checked(_ReportOptions, "report", figures=figures).figures
+    drawn: list[Path] = []
     key = None if sign is None else private_key(Path(path_text(sign, "sign")))
     with shown(progress), law_given(law) as named:
         binding = require_sources(path, optional_key(verify))
         before = (path / run_dir.RUN).read_bytes()
         with progress_of("replaying", run_dir.read_run(path)["ticks"]) as watch:
-            conclude(path, watch, named)
+            conclude(path, watch, named, None if kind is None else partial(_draw, path, kind, drawn))
         if key is not None:
             sign_run(path, key)
         elif signature_path(path / run_dir.RUN).exists() and (path / run_dir.RUN).read_bytes() != before:
             note(f"note: {run_dir.RUN} is no longer what was signed: --sign KEY signs it again")
-    return Run(path, checked_law(law), mismatched=not binding.holds, notes=tuple(binding.lines))
+    notes = tuple(binding.lines)
+    return Run(path, checked_law(law), mismatched=not binding.holds, notes=notes, figures=tuple(drawn))
+
+
+def _draw(
+    path: Path, kind: FigureKind, drawn: list[Path], scenario: Scenario, lines: Lines, audit: AuditReport
+) -> None:
+    from sim.report.charts.drawn_flight import DrawnFlight  # noqa: PLC0415  matplotlib
+    from sim.report.paper.files import write_figures  # noqa: PLC0415  as that
+
+    drawn += write_figures(path, DrawnFlight.of(scenario, lines, audit), kind)

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+    from torquer.api.plots import RunPlots
+
 OF_EVERY_FLIGHT = {"scenario", "seed", "sim_seconds", "limits_ok"}
 """Keys of every summary; in a document without them nothing has failed because nothing is told."""
 
@@ -44,6 +46,7 @@ class Run(Printed):
         ended: why the flight ended before its time, as far as ``fly`` knows; empty otherwise.
         mismatched: whether ``torquer.report`` found a file that had been changed since it was written.
         notes: what it found, a line each; of ``torquer.fly``, who can replay the run if not everybody.
+        figures: files that ``torquer.report`` has drawn for papers.
     """
 
     path: Path
@@ -51,6 +54,7 @@ class Run(Printed):
     ended: str = ""
     mismatched: bool = False
     notes: tuple[str, ...] = ()
+    figures: tuple[Path, ...] = ()
 
     @cached_property
     @one_sentence
@@ -152,6 +156,13 @@ class Run(Printed):
 
         with law_given(self.law) as named:
             return estimate(self.path, with_law_named(self.scenario, named)[0], self.record)
+
+    @cached_property
+    def plot(self) -> "RunPlots":
+        """Figures for papers: ``run.plot.pointing()`` and so on, each of which gives its axes."""
+        from torquer.api.plots import RunPlots  # noqa: PLC0415  matplotlib loads when something is drawn
+
+        return RunPlots(self.path, self.scenario, self.law)
 
     @cached_property
     @one_sentence

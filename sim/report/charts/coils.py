@@ -42,19 +42,24 @@ def raster(flight: DrawnFlight) -> DrawnChart:
     """Every pulse of the flight: a lane per coil, a bar up or down by polarity, as high as its level."""
     time = flight.time
     figure, (panel,) = stacked(time, (2.1,), legends=bool(flight.audit.violations))
+    draw_raster(panel, flight)
+    panel.set_title("Every pulse of the flight")
+    _violations(panel, flight, time)
+    return DrawnChart(figure, {"panels": [pulse_lanes(flight)]})
+
+
+def draw_raster(panel: Axes, flight: DrawnFlight) -> None:
+    """The lanes and their bars, on axes of any size."""
     _lanes(panel, flight)
-    bin_s = flight.length_s / (2 * BINS)
+    bin_s, unit_s = flight.length_s / (2 * BINS), flight.time.unit_s
     for coil, colour in zip(COILS, AXES_COLOURS, strict=True):
         bars = {
             (round(float(pulse.start_s) / bin_s), pulse.level)
             for pulse in flight.audit.pulses
             if pulse.coil == coil
         }
-        centres = [(place * bin_s / time.unit_s, level) for place, level in sorted(bars)]
+        centres = [(place * bin_s / unit_s, level) for place, level in sorted(bars)]
         _bars(panel, coil, [(x, x, level) for x, level in centres], colour, flight.audit.limits.max_level)
-    panel.set_title("Every pulse of the flight")
-    _violations(panel, flight, time)
-    return DrawnChart(figure, {"panels": [pulse_lanes(flight)]})
 
 
 def zoom(flight: DrawnFlight) -> DrawnChart:

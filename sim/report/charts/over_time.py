@@ -1,6 +1,7 @@
 """The charts of the report that show the flight: modes, attitude, rates, estimate, field and torques."""
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from fsw.wire.messages import Mode
 from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, MORE_COLOURS, MUTED, Span, shade, stacked
@@ -21,18 +22,22 @@ MOST_SPANS = 2000
 
 def modes(flight: DrawnFlight) -> DrawnChart:
     """The mode of the controller."""
-    time = flight.time
-    figure, (panel,) = stacked(time, (0.9,), legends=False)
+    figure, (panel,) = stacked(flight.time, (0.9,), legends=False)
+    draw_modes(panel, flight)
+    panel.set_title("Mode")
+    return DrawnChart(figure, {"panels": [_mode_lanes(flight)]})
+
+
+def draw_modes(panel: Axes, flight: DrawnFlight) -> None:
+    """A lane for each mode, on axes of any size."""
     rows = len(Mode)
     for row, mode in enumerate(Mode):
         low, high = (row + 0.18) / rows, (row + 0.82) / rows
-        shade(panel, time, flight.in_mode(mode), low, high, MODE_COLOURS[mode], f"mode-{mode.name}")
+        shade(panel, flight.time, flight.in_mode(mode), low, high, MODE_COLOURS[mode], f"mode-{mode.name}")
     panel.set_ylim(0.0, rows)
     panel.set_yticks(np.arange(rows) + 0.5, [mode.name for mode in Mode])
     panel.tick_params(axis="y", length=0.0)
     panel.grid(axis="y", visible=False)
-    panel.set_title("Mode")
-    return DrawnChart(figure, {"panels": [_mode_lanes(flight)]})
 
 
 def _mode_lanes(flight: DrawnFlight) -> Json:
@@ -51,9 +56,14 @@ def _few(spans: tuple[Span, ...]) -> list[Span]:
 
 def pointing(flight: DrawnFlight) -> DrawnChart:
     """The angle of the whole attitude and that of axis 1."""
-    panel = Panel(
+    return draw(flight.time, TimeChart(flight.t_s, (pointing_panel(flight),)))
+
+
+def pointing_panel(flight: DrawnFlight) -> Panel:
+    """Both angles on a logarithmic scale, and the one below which a flight has settled."""
+    return Panel(
         "Pointing error",
-        "angle [deg]",
+        "pointing error [deg]",
         2.3,
         (
             Series("axis 1 from the vertical", flight.line("axis1_deg"), AXES_COLOURS[0]),
@@ -62,56 +72,83 @@ def pointing(flight: DrawnFlight) -> DrawnChart:
         decades=3.5,
         levels=(Level(SETTLED_DEG, f"{SETTLED_DEG:g}°"),),
     )
-    return draw(flight.time, TimeChart(flight.t_s, (panel,)))
 
 
 def rates(flight: DrawnFlight) -> DrawnChart:
     """Rates relative to the orbital frame: components, and magnitude on a logarithmic scale."""
+    return draw(flight.time, TimeChart(flight.t_s, (rate_panel(flight), rate_magnitude_panel(flight))))
+
+
+def rate_panel(flight: DrawnFlight) -> Panel:
+    """The components, body axes."""
+    unit, factor = _rate_unit(flight)
+    lines = _by_axis(factor * flight.line("omega_degps"))
+    return Panel("Rates relative to the orbital frame, body axes", f"relative rate [{unit}]", 1.6, lines)
+
+
+def rate_magnitude_panel(flight: DrawnFlight) -> Panel:
+    """The magnitude on a logarithmic scale."""
+    unit, factor = _rate_unit(flight)
+    line = Series("magnitude", factor * flight.line("rate_degps"), INK)
+    return Panel("Their magnitude", f"relative rate [{unit}]", 1.3, (line,), decades=4.0)
+
+
+def _rate_unit(flight: DrawnFlight) -> tuple[str, float]:
+    """The unit that suits the rates, and how many there are in a degree a second."""
     tumbles = float(np.nanmax(flight.line("rate_degps"))) >= SLOW_DEGPS
-    unit, factor = ("deg/s", 1.0) if tumbles else ("mdeg/s", 1e3)
-    omega, total = factor * flight.line("omega_degps"), factor * flight.line("rate_degps")
-    components = Panel(
-        "Rates relative to the orbital frame, body axes", f"rate [{unit}]", 1.6, _by_axis(omega)
-    )
-    magnitude = Panel(
-        "Their magnitude", f"rate [{unit}]", 1.3, (Series("magnitude", total, INK),), decades=4.0
-    )
-    return draw(flight.time, TimeChart(flight.t_s, (components, magnitude)))
+    return ("deg/s", 1.0) if tumbles else ("mdeg/s", 1e3)
 
 
 def estimate(flight: DrawnFlight) -> DrawnChart:
     """True errors of the estimated attitude and rate, and the 3 sigma that the filter expects."""
-    histories = (
-        ("Attitude estimate", "error [deg]", 1.9, "attitude_error_deg", "attitude_sigma3_deg", 1.0),
-        ("Rate estimate", "error [mdeg/s]", 1.6, "rate_error_degps", "rate_sigma3_degps", 1e3),
-    )
-    panels = [
-        Panel(
-            title,
-            label,
-            height_in,
-            (
-                Series("true error", unit * flight.line(error), AXES_COLOURS[0]),
-                Series("3σ of the filter", unit * flight.line(sigma3), AXES_COLOURS[1], 1.3),
-            ),
-            decades=4.0,
-        )
-        for title, label, height_in, error, sigma3, unit in histories
-    ]
+    panels = (attitude_error_panel(flight), rate_error_panel(flight))
     return draw(flight.time, TimeChart(flight.t_s, panels))
+
+
+def attitude_error_panel(flight: DrawnFlight) -> Panel:
+    """The error of the attitude."""
+    lines = _error_lines(flight.line("attitude_error_deg"), flight.line("attitude_sigma3_deg"))
+    return Panel("Attitude estimate", "attitude error [deg]", 1.9, lines, decades=4.0)
+
+
+def rate_error_panel(flight: DrawnFlight) -> Panel:
+    """The error of the rate."""
+    lines = _error_lines(1e3 * flight.line("rate_error_degps"), 1e3 * flight.line("rate_sigma3_degps"))
+    return Panel("Rate estimate", "rate error [mdeg/s]", 1.6, lines, decades=4.0)
+
+
+def _error_lines(error: Array, sigma3: Array) -> tuple[Series, ...]:
+    return (
+        Series("true error", error, AXES_COLOURS[0]),
+        Series("3σ of the filter", sigma3, AXES_COLOURS[1], 1.3),
+    )
 
 
 def field_and_dipole(flight: DrawnFlight) -> DrawnChart:
     """The geomagnetic field and the true dipole of the coils, body axes."""
-    b_ut, m_am2 = 1e6 * flight.line("b_body_t"), flight.line("m_body_am2")
+    return draw(flight.time, TimeChart(flight.t_s, (field_panel(flight), dipole_panel(flight))))
+
+
+def field_panel(flight: DrawnFlight) -> Panel:
+    """The geomagnetic field, body axes."""
     magnitude = Series("magnitude", 1e6 * flight.line("field_t"), MUTED)
-    field = Panel("Geomagnetic field, body axes", "field [µT]", 1.6, (magnitude, *_by_axis(b_ut)))
-    dipole = Panel("Coil dipole, body axes", "dipole [A m²]", 1.4, _by_axis(m_am2, 0.7))
-    return draw(flight.time, TimeChart(flight.t_s, (field, dipole)))
+    lines = (magnitude, *_by_axis(1e6 * flight.line("b_body_t")))
+    return Panel("Geomagnetic field, body axes", "field [µT]", 1.6, lines)
+
+
+def dipole_panel(flight: DrawnFlight) -> Panel:
+    """The true dipole of the coils, body axes."""
+    lines = _by_axis(flight.line("m_body_am2"), 0.7)
+    return Panel("Coil dipole, body axes", "dipole [A m²]", 1.4, lines)
 
 
 def torques(flight: DrawnFlight) -> DrawnChart:
     """Magnitudes of the torques by source."""
+    return draw(flight.time, TimeChart(flight.t_s, (torque_panel(flight),)))
+
+
+def torque_panel(flight: DrawnFlight) -> Panel:
+    """The magnitudes on a logarithmic scale."""
     colours = {"coils": INK, "gravity_gradient": AXES_COLOURS[0], "bias": AXES_COLOURS[1]}
     spare = iter((AXES_COLOURS[2], *MORE_COLOURS, LIMIT) * 4)
     series = [
@@ -122,8 +159,7 @@ def torques(flight: DrawnFlight) -> DrawnChart:
         )
         for source, torque in flight.lines.torques().items()
     ]
-    panel = Panel("Torques by source", "torque [µN m]", 2.0, series, decades=3.5)
-    return draw(flight.time, TimeChart(flight.t_s, (panel,)))
+    return Panel("Torques by source", "torque [µN m]", 2.0, series, decades=3.5)
 
 
 def _by_axis(vectors: Array, width: float = 1.0) -> tuple[Series, ...]:

@@ -10,10 +10,10 @@ from sim.audit.auditor import AuditLimits
 from sim.audit.findings import DrivenPulse
 
 CHARTS = {
-    "chart-pointing": ["Pointing error", "angle [deg]", "axis 1 from the vertical"],
+    "chart-pointing": ["Pointing error", "pointing error [deg]", "axis 1 from the vertical"],
     "chart-modes": ["Mode", "SAFE", "DETUMBLE", "ACQUIRE", "POINT"],
-    "chart-rates": ["rate [mdeg/s]", "axis 1", "axis 2", "axis 3"],
-    "chart-estimate": ["error [deg]", "error [mdeg/s]", "true error", "3σ of the filter"],
+    "chart-rates": ["relative rate [mdeg/s]", "axis 1", "axis 2", "axis 3"],
+    "chart-estimate": ["attitude error [deg]", "rate error [mdeg/s]", "true error", "3σ of the filter"],
     "chart-raster": ["coil 0", "coil 1", "coil 2", "+3", "-3"],
     "chart-zoom": ["coil 0", "coil 1", "coil 2", "3 s"],
     "chart-duty": ["duty [%]", "2.91 %: limit of all coils"],
