@@ -1,10 +1,12 @@
 """The figures: what of a flight each of them draws, on axes of any size."""
 
-from collections.abc import Callable
-from math import ceil
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+import numpy as np
+from matplotlib import rcParams
 from matplotlib.axes import Axes
+from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Patch
 
 from sim.drawing.canvas import ECLIPSE, TimeAxis, shade
@@ -97,16 +99,24 @@ def _unit(time: TimeAxis) -> str:
 
 
 def _legend(axes: Axes, time: TimeAxis) -> None:
-    """Over the axes, where it hides nothing; in one line, or in two where it is too long for it."""
+    """Over the axes, where it hides nothing, in as few lines as it fits."""
     handles, labels = axes.get_legend_handles_labels()
     if time.eclipses:
         handles, labels = [*handles, Patch(facecolor=ECLIPSE)], [*labels, "eclipse"]
-    width_in = axes.bbox.width / axes.figure.dpi
-    letters = sum(len(label) + HANDLE_LETTERS for label in labels)
-    lines = ceil(letters / (LETTERS_AN_INCH * max(width_in, 1.0)))
-    columns = ceil(len(labels) / lines)
+    letter_in = LETTER * FontProperties(size=rcParams["legend.fontsize"]).get_size_in_points() / 72.0
+    letters = axes.bbox.width / axes.figure.dpi / letter_in
+    columns = fitting_columns([len(label) for label in labels], letters)
     axes.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns)
 
 
-HANDLE_LETTERS, LETTERS_AN_INCH = 4, 22.0
-"""Room that an entry's line takes in a legend, and how many letters of it fit beside each other."""
+LETTER, HANDLE_LETTERS = 0.56, 5
+"""Width of a letter by the size of its font; room of an entry's line and of the gap beside it, in letters."""
+
+
+def fitting_columns(lengths: Sequence[int], letters: float) -> int:
+    """The most columns in which entries of so many letters, listed column after column, fit side by side."""
+    for columns in range(len(lengths), 1, -1):
+        widest = [max(column) for column in np.array_split(lengths, columns)]
+        if sum(widest) + HANDLE_LETTERS * columns <= letters:
+            return columns
+    return 1

@@ -35,7 +35,7 @@ def test_a_figure_is_a_column_wide_and_says_its_units(flown, name):
     assert axes.get_xlabel() == "time [min]"
     assert axes.get_ylabel() == LABELS.get(name, "")
     assert axes.get_title() == ""
-    axes.figure.canvas.draw()
+    axes.figure.draw_without_rendering()
 
 
 @pytest.mark.parametrize(
