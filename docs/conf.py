@@ -43,7 +43,7 @@ autodoc_member_order = "bysource"
 autodoc_default_options = {"exclude-members": "__new__, __init__"}
 napoleon_numpy_docstring = False
 nitpick_ignore_regex = [  # documented elsewhere; a build needs no network, and so looks at no inventory
-    (r"py:.*", r"(pathlib|collections|os|typing|numpy|np|pandas|pd|xarray|xr|pydantic)\..*"),
+    (r"py:.*", r"(pathlib|collections|os|typing|numpy|np|pandas|pd|xarray|xr|pydantic|matplotlib)\..*"),
     (r"py:.*", r"(sim|fsw|torquer\.api)\..*"),  # inner parts, which docs/design.md describes
 ]
 

@@ -28,7 +28,7 @@ class SatelliteCalibration(Commissioned):
 
     @property
     def magnetometer(self) -> Mapping[str, Any]:
-        """What is told of the magnetometer: of telemetry by parameter, of a log offset and matrix."""
+        """What is told of the magnetometer, by telemetry each parameter, by a log offset and matrix."""
         of_telemetry: Mapping[str, Any] | None = self.values.get("magnetometer")
         if of_telemetry is not None:
             return of_telemetry
@@ -37,7 +37,7 @@ class SatelliteCalibration(Commissioned):
 
     @property
     def written(self) -> Path | None:
-        """The file of the calibration; None: there is none."""
+        """The file of the calibration; None if there is none."""
         file: Path | None = self.values["out"]
         return file
 

@@ -42,13 +42,13 @@ class WiringVerdict(Commissioned):
 
     @property
     def verdict(self) -> str | None:
-        """One sentence: what is wired how, or that it cannot be told; None of a bench log."""
+        """What is wired how, or that it cannot be told, in one sentence; None of a bench log."""
         sentence: str | None = self.values.get("verdict")
         return sentence
 
     @property
     def pairs(self) -> tuple[tuple[tuple[int, ...], tuple[int, ...]], ...]:
-        """Wirings of magnetometer and coils, signed axes, that cannot be told apart; one: it is told."""
+        """Wirings of magnetometer and coils, signed axes, that cannot be told apart; one is told."""
         found = self.values.get("pairs", ())
         return tuple((tuple(pair["magnetometer"]), tuple(pair["coils"])) for pair in found)
 

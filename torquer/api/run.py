@@ -159,7 +159,7 @@ class Run(Printed):
 
     @cached_property
     def plot(self) -> "RunPlots":
-        """Figures for papers: ``run.plot.pointing()`` and so on, each of which gives its axes."""
+        """The figures for papers, ``run.plot.pointing()`` and so on, each of which gives its axes."""
         from torquer.api.plots import RunPlots  # noqa: PLC0415  matplotlib loads when something is drawn
 
         return RunPlots(self.path, self.scenario, self.law)

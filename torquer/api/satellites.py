@@ -55,7 +55,7 @@ class Sizing(Printed):
 
     @property
     def pointing_deg(self) -> float | None:
-        """The pointing error to expect once settled, RMS; None: there is none to rely on."""
+        """The pointing error to expect once settled, RMS; None if there is none to rely on."""
         expected = self.found.values["pointing_rms_deg"]
         return None if expected is None else float(expected)
 

@@ -51,14 +51,14 @@ class Validation(Printed):
     @cached_property
     @one_sentence
     def table(self) -> "pd.DataFrame":
-        """A row a claim: figure, limits, verdict, source, where they are from. Needs ``torquer[data]``."""
+        """A row a claim, with figure, limits, verdict and source. Needs ``torquer[data]``."""
         rows = list(map(as_json, self.outcomes))
         table: pd.DataFrame = required("pandas", "validation.table").DataFrame(rows).set_index("id")
         return table
 
     @property
     def page(self) -> Path | None:
-        """The page; None: not written."""
+        """The page; None if it was not written."""
         return self.found.page
 
     @property
