@@ -55,6 +55,7 @@ def pulses(axes: Axes, flight: DrawnFlight) -> None:
     """A lane for each coil, a bar for each pulse, up or down by its polarity, as high as its level."""
     _begin(axes, flight.time)
     draw_raster(axes, flight)
+    axes.spines["left"].set_visible(True)
 
 
 def modes(axes: Axes, flight: DrawnFlight) -> None:
