@@ -47,7 +47,7 @@ def conclude(
         path: the run directory.
         watch: called with each tick that was replayed.
         law: the law of one's own that the run flew, named again; None: none is executed.
-        draw: called with what the charts show, as the report is written.
+        draw: called with what the charts show, once the report is written.
 
     Raises:
         HarnessError: the directory is not a run or cannot be written, or one of its files is damaged; or it
@@ -158,12 +158,12 @@ def _write_results(path: Path, scenario: Scenario, replayed: _Replayed, draw: Dr
         binding.release(path, run_dir.SUMMARY)
     run_dir.write_json(path / run_dir.SUMMARY, summary)
     write_report(path / run_dir.REPORT, scenario, summary, replayed.lines, report)
-    if draw is not None:
-        draw(scenario, replayed.lines, report)
     if flight_is_bound:
         binding.bind(path, run_dir.TRUTH, run_dir.SUMMARY)
     if Verdict.COMPLETE not in failed_checks:
         run_dir.update(path, complete=True)
+    if draw is not None:
+        draw(scenario, replayed.lines, report)
     return summary
 
 

@@ -47,6 +47,21 @@ def test_a_report_replaces_links_and_leaves_what_they_lead_to(run, elsewhere, to
 
 
 @pytest.mark.long
+def test_no_figure_is_drawn_through_a_link(run, elsewhere, torquer):
+    (run / "figures").symlink_to(elsewhere)
+    before = (run / run_dir.REPORT).stat().st_mtime_ns
+    drawn = torquer("report", run, "--figures", "svg")
+    assert (drawn.code, content(elsewhere)) == (2, {})
+    assert (run / run_dir.REPORT).stat().st_mtime_ns == before, "nothing was done"
+    (run / "figures").unlink()
+    (run / "figures").mkdir()
+    (run / "figures" / "pointing.svg").symlink_to(elsewhere / "new")
+    assert torquer("report", run, "--figures", "svg").code == 0
+    assert content(elsewhere) == {}
+    assert (run / "figures" / "pointing.svg").is_file()
+
+
+@pytest.mark.long
 @pytest.mark.parametrize("name", [run_dir.REPORT, run_dir.SUMMARY])
 def test_a_link_to_nothing_makes_nothing_elsewhere(name, run, elsewhere, torquer):
     (run / name).unlink()

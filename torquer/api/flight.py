@@ -27,7 +27,7 @@ from sim.record.signature import private_key, signature_path
 from sim.report.charts.lines import Lines
 from sim.report.conclude import conclude
 from sim.report.follow import follow
-from sim.report.paper.kind import FigureKind
+from sim.report.paper.kind import FigureKind, figure_folder
 from sim.scenario.schema import Scenario, expecting, orbit_period_s
 from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
 from torquer.api.audit import optional_key
@@ -184,6 +184,8 @@ def report(
     with shown(progress), law_given(law) as named:
         binding = require_sources(path, optional_key(verify))
         before = (path / run_dir.RUN).read_bytes()
+        if kind is not None:
+            figure_folder(path)
         with progress_of("replaying", run_dir.read_run(path)["ticks"]) as watch:
             conclude(path, watch, named, None if kind is None else partial(_draw, path, kind, drawn))
         if key is not None:

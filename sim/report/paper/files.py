@@ -10,7 +10,7 @@ from sim.record.destination import check_folder
 from sim.record.whole_file import replacing
 from sim.report.charts.drawn_flight import DrawnFlight
 from sim.report.paper.figures import FIGURES, PaperFigure
-from sim.report.paper.kind import FOLDER, FigureKind
+from sim.report.paper.kind import FigureKind, figure_folder
 from sim.report.paper.look import COLUMN_IN, paper_style
 
 _UNDATED: dict[str, dict[str, Any]] = {
@@ -25,7 +25,7 @@ def write_figures(run: Path, flight: DrawnFlight, kind: FigureKind) -> list[Path
     Raises:
         HarnessError: a file cannot be written.
     """
-    folder = run / FOLDER
+    folder = figure_folder(run)
     shown = {name: figure for name, figure in FIGURES.items() if not figure.why_not(flight)}
     files = [folder / f"{name}.{kind}" for name in shown]
     check_folder(folder, [file.name for file in files])
