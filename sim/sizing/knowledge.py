@@ -26,7 +26,7 @@ from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 STEP_S = 10
 ORBITS = 3
 """The last one counts."""
-PART = 0.6
+PART = 0.5
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,8 +23,11 @@ def diagnose(of: Controlled, settled: float | None, evidence: FlightEvidence) ->
     Args:
         of: what is controlled.
         settled: since when it has settled, in orbits; None: it has not.
-        evidence: of the flight.
+        evidence: of the flight. Over its last orbit the error must be small too, or it has only swung by.
     """
+    last_orbit = np.sqrt(np.mean(np.square(evidence.trend[-2:]))) if evidence.trend else 0.0
+    if last_orbit > of.threshold:
+        settled = None
     missed = Missed("settling", of.what, of.threshold, settled)
     found = [] if settled is not None else reasons(missed, evidence)
     return {

@@ -24,6 +24,14 @@ def test_of_a_flight_that_has_settled_there_are_findings_and_no_reason():
     assert "45 % of them at the highest level" in found["findings"]["coils"]
 
 
+@pytest.mark.parametrize(("last", "is_settled"), [((4.0, 4.5), True), ((28.0, 3.0), False)])
+def test_an_error_that_only_swings_by_at_the_end_has_not_settled(last, is_settled):
+    """Under 5 deg for the last ten minutes of an orbit of 20 deg RMS."""
+    found = diagnosed(settled=4.9, trend=(30.0, 25.0, 28.0, 26.0, *last))
+    assert (found["reasons"] == []) is is_settled
+    assert ("not settled under 5 deg" in found["findings"]["time"]) is not is_settled
+
+
 @pytest.mark.parametrize(
     ("settings", "evidence", "finding", "words"),
     [
