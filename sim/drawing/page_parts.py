@@ -2,12 +2,31 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from markupsafe import Markup
 
 from sim.drawing.pages import page
 from sim.value_types import Json
+
+
+class TableCell(str):
+    """A cell that is more than its text.
+
+    Attributes:
+        kind: class of style, ``good``, ``bad`` or ``note``; empty: none.
+        href: address to which it links; empty: none.
+    """
+
+    __slots__ = ("href", "kind")
+    kind: str
+    href: str
+
+    def __new__(cls, text: str, kind: str = "", href: str = "") -> Self:
+        """The text with its style and link."""
+        cell = super().__new__(cls, text)
+        cell.kind, cell.href = kind, href
+        return cell
 
 
 class Table(NamedTuple):

@@ -86,7 +86,7 @@ class Gathered:
 
     def __init__(self, section: RequirementSection, scenario: Scenario, ticks: int) -> None:
         self.section = section
-        self.what = section.what or _pointed(scenario)
+        self.what = section.what or pointed(scenario)
         self.ticks_per_orbit = orbit_period_s(scenario) * scenario.time.tick_hz
         self.ticks = ticks
         self.judged = ticks + 1 > section.by_orbit * self.ticks_per_orbit
@@ -181,7 +181,7 @@ class Gathered:
         self.statistic.take(mean if self.section.index == "mpe" else relative)
 
 
-def _pointed(scenario: Scenario) -> str:
+def pointed(scenario: Scenario) -> str:
     """What a requirement refers to where it does not say so."""
     what = controlled(scenario).what
     return "attitude" if what == "rate" else what

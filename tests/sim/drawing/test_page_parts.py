@@ -3,7 +3,7 @@
 import pytest
 from markupsafe import Markup
 
-from sim.drawing.page_parts import Chart, PageHeader, PageSection, Table, Tile, sections_page
+from sim.drawing.page_parts import Chart, PageHeader, PageSection, Table, TableCell, Tile, sections_page
 
 HEADER = PageHeader(
     "Kind of page", "a <name>", ("one", "two"), [("good", "✓ kept")], [Tile("tile", "5", "note")]
@@ -49,6 +49,14 @@ def test_a_table_breaks_its_heads_behind_underscores_and_no_short_cell():
         '<td class="long">a sentence',
     ):
         assert words in page
+
+
+def test_a_cell_may_have_a_style_and_a_link_whose_address_stays_whole():
+    cell = TableCell("<b>", "bad", "a_b/c.html")
+    page = sections_page(HEADER, [PageSection("here", "Title", "", (Table((cell,), [(cell, "plain")]),))])
+    assert '<th><a href="a_b/c.html">&lt;b&gt;</a></th>' in page
+    assert '<td class="short bad"><a href="a_b/c.html">&lt;b&gt;</a></td>' in page
+    assert '<td class="short">plain</td>' in page
 
 
 def test_what_is_empty_is_left_out():
