@@ -15,7 +15,7 @@ import numpy as np
 
 from fsw.input.schema import TableError
 from sim.campaign.definition.campaign import Campaign, DrawnRun, StatisticsSection
-from sim.campaign.definition.columns import Cell, cells, input_cells
+from sim.campaign.definition.columns import Cell, cells, input_cells, requirement_cells
 from sim.campaign.flight import RecordedFlight, record_scenario
 from sim.campaign.results.row import RunRow, Status
 from sim.campaign.runner import LOST
@@ -178,9 +178,11 @@ def keep_run(path: Path, campaign: Campaign, drawn: DrawnRun) -> None:
 def _flown(campaign: Campaign, drawn: DrawnRun) -> RunRow:
     record = record_scenario(campaign.scenario(drawn), drawn.seed)
     scored = score(record, campaign.statistics)
+    summary = record.summary()
     found: dict[str, Cell] = {
         **input_cells(drawn.inputs),
-        **cells(record.summary()),
+        **cells(summary),
+        **requirement_cells(summary, len(campaign.base["requirement"])),
         **scored.figures,
         "frames_sha256": record.digest.frames,
         "commands_sha256": record.digest.commands,

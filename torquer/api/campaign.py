@@ -15,6 +15,7 @@ from sim.campaign import command
 from sim.campaign.command import PAGE, FlownCampaign
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report.analysis import CampaignAnalysis, FigureStatistics
+from sim.campaign.report.scenario_requirements import share_json
 from sim.campaign.report.text import lines
 from sim.campaign.report.verdicts import meets, verdicts
 from sim.campaign.rerun import campaign_run
@@ -53,6 +54,7 @@ def _values(campaign: Campaign, analysis: CampaignAnalysis) -> Json:
             str(entry): {**_proportion(found), "met": meets(found, campaign)}
             for entry, found in analysis.by_requirement.items()
         },
+        "scenario_requirements": share_json(analysis.shares),
         "missed": [str(one) for one in verdicts(campaign, analysis) if one.met is False],
         "figures": {figure.name: _figure(figure) for figure in analysis.figures},
         "indices_deg": {

@@ -44,6 +44,8 @@ NUMBERS: tuple[str, ...] = (
 )
 """Figures of a run; NULL where a flight has none."""
 TEXTS = ("mode_final", "isolated")
+_OF_REQUIREMENTS = {"verdict": "TEXT", "measured": "REAL", "limit": "REAL"}
+"""What a row holds of each requirement of the scenario, with its type in SQLite."""
 
 
 def cells(summary: Mapping[str, Any]) -> dict[str, Cell]:
@@ -57,6 +59,24 @@ def cells(summary: Mapping[str, Any]) -> dict[str, Cell]:
         "requirements_failed": None if Outcome.NOT_JUDGED in outcomes else outcomes.count(Outcome.FAILED),
         "isolated": ", ".join(units),
         "isolated_units": len(units),
+    }
+
+
+def requirement_kinds(count: int) -> dict[str, str]:
+    """The columns of a scenario with so many requirements, each with its type in SQLite."""
+    return {
+        f"requirements_{number}_{key}": kind
+        for number in range(count)
+        for key, kind in _OF_REQUIREMENTS.items()
+    }
+
+
+def requirement_cells(summary: Mapping[str, Any], count: int) -> dict[str, Cell]:
+    """Verdict, figure and limit of the first requirements of the scenario, by column."""
+    return {
+        f"requirements_{number}_{key}": one[key]
+        for number, one in enumerate(summary["requirements"][:count])
+        for key in _OF_REQUIREMENTS
     }
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.definition.requirements import FigureRequirement
 from sim.campaign.one_run import ERROR_HISTORY
+from sim.campaign.report.shares import RequirementShare, requirement_shares
 from sim.campaign.results.row import Status
 from sim.campaign.results.store import Results
 from sim.statistics.indices import INDICES, POINTS, IndexPercentile, Interpretation, table
@@ -70,6 +71,7 @@ class CampaignAnalysis:
         failures: the sentence of each run that failed, by run.
         success: runs that meet all requirements, of those that have a result; a failed one does not.
         by_requirement: the same for each requirement.
+        shares: the requirements of the scenario.
         figures: the first is the one that runs are ranked by.
         indices: percentiles of each pointing index over all runs.
         profiles: of each index, (runs that were flown, points).
@@ -83,6 +85,7 @@ class CampaignAnalysis:
     failures: dict[int, str]
     success: Proportion
     by_requirement: dict[FigureRequirement, Proportion]
+    shares: tuple[RequirementShare, ...]
     figures: tuple[FigureStatistics, ...]
     indices: dict[str, dict[Interpretation, IndexPercentile]]
     profiles: dict[str, Array]
@@ -116,6 +119,7 @@ def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
         by_requirement={
             entry: clopper_pearson(count, total, settings.confidence) for entry, count in met.items()
         },
+        shares=requirement_shares(campaign, results, len(failures)),
         figures=figures,
         indices=table(profiles, settings.probability, settings.confidence, len(failures)),
         profiles=profiles,

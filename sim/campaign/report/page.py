@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from sim.campaign.definition.campaign import Campaign
-from sim.campaign.report import pictures, text
+from sim.campaign.report import pictures, scenario_requirements, text
 from sim.campaign.report.analysis import CampaignAnalysis
 from sim.campaign.report.verdicts import value_words, verdicts
 from sim.console import counted
@@ -19,7 +19,7 @@ MOST_TILES = 4
 def write_page(path: Path, campaign: Campaign, analysis: CampaignAnalysis, version: str) -> None:
     """Write the page of a campaign with at least one run."""
     with style():
-        sections = list(_sections(campaign, analysis))
+        sections = list(_sections(path.parent, campaign, analysis))
     runs = analysis.done + len(analysis.failures)
     header = PageHeader(
         "Campaign",
@@ -60,10 +60,20 @@ def _tiles(campaign: Campaign, analysis: CampaignAnalysis) -> list[Tile]:
     ]
 
 
-def _sections(campaign: Campaign, analysis: CampaignAnalysis) -> Iterator[PageSection]:
+def _sections(folder: Path, campaign: Campaign, analysis: CampaignAnalysis) -> Iterator[PageSection]:
     confidence = f"{100.0 * campaign.statistics.confidence:g} % confidence"
     note = f"Parts of the runs, with two-sided bounds by Clopper and Pearson, {confidence}."
     yield PageSection("requirements", "Requirements", note, (text.requirement_table(campaign, analysis),))
+    if analysis.shares and analysis.done:
+        note = (
+            "Parts of the runs that are judged by each, with the same bounds; a run too short for one "
+            "is not judged. The margin is the limit less the figure. A run whose report is kept links to it."
+        )
+        tables = (
+            scenario_requirements.share_table(analysis.shares),
+            *scenario_requirements.run_tables(analysis.shares, folder),
+        )
+        yield PageSection("scenario", "Requirements of the scenario", note, tables)
     if analysis.failures:
         note = "Not flown to their end; they count as runs that meet nothing."
         yield PageSection("failures", "Runs that failed", note, (text.failure_table(analysis),))

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics
+from sim.campaign.report.scenario_requirements import share_lines
 from sim.campaign.report.verdicts import WORDS, meets, proportion, value_words, verdicts
 from sim.console import counted
 from sim.drawing.page_parts import Table
@@ -39,6 +40,7 @@ def lines(campaign: Campaign, analysis: CampaignAnalysis) -> list[str]:
     heading = f"{campaign.name}: {counted(runs, 'run')} of {length(campaign, analysis)}"
     rows = [heading, f"  success    {proportion(analysis.success, campaign)}"]
     rows += [f"  required   {one}" for one in verdicts(campaign, analysis) if one.group == "requirement"]
+    rows += share_lines(analysis.shares, campaign)
     rows += [f"  {figure.name}: {_percentiles(figure)}" for figure in analysis.figures]
     strongest = [
         f"{each.column.removeprefix('input_')} {each.correlation.value:+.2f}"

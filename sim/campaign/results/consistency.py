@@ -1,13 +1,17 @@
 """Whether the rows of results.sqlite can be what a campaign wrote: files are edited and damaged."""
 
 import math
+import re
 import sqlite3
 from collections.abc import Mapping, Sequence
 
 from sim.campaign.definition.campaign_file import MOST_RUNS
 from sim.campaign.definition.requirements import FigureRequirement
+from sim.report.requirements.judge import Outcome
 from sim.statistics.indices import INDICES, POINTS
 
+_VERDICT = re.compile(r"requirements_\d+_verdict")
+_OUTCOMES = ", ".join(f"'{outcome}'" for outcome in Outcome)
 _INDICES = ", ".join(f"'{name}'" for name in INDICES)
 _ROWS = {
     "run < 0": "its number is less than 0",
@@ -58,6 +62,8 @@ def find_contradiction(
     for name, kind in kinds.items():
         words, allowed = _CELLS.get(kind, _UNKNOWN)
         conditions[f"typeof({quoted(name)}) NOT IN ({allowed})"] = f"its {name} is no {words}"
+    verdicts = [name for name in kinds if _VERDICT.fullmatch(name)]
+    conditions |= {f"{quoted(name)} NOT IN ({_OUTCOMES})": f"its {name} is no verdict" for name in verdicts}
     conditions |= _ROWS | {_missed(entry): f"it is a success, and misses {entry}" for entry in requirements}
     return _first(connection, "runs", conditions) or _first(
         connection, "profiles LEFT JOIN runs USING (run)", _PROFILES

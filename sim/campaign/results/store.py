@@ -17,7 +17,7 @@ import numpy as np
 
 from sim.campaign.code_digest import code_digest
 from sim.campaign.definition.campaign import Campaign
-from sim.campaign.definition.columns import NUMBERS, TEXTS, Cell, input_cells
+from sim.campaign.definition.columns import NUMBERS, TEXTS, Cell, input_cells, requirement_kinds
 from sim.campaign.results.consistency import find_contradiction, quoted
 from sim.campaign.results.row import RunRow, Status
 from sim.errors import HarnessError
@@ -197,7 +197,7 @@ def _lock(path: Path) -> Iterator[None]:
 def _create(results: Results, campaign: Campaign) -> None:
     inputs = input_cells(campaign.draw(0).inputs)
     kinds = {name: "TEXT" if isinstance(value, str) else "NUMERIC" for name, value in inputs.items()}
-    kinds |= FIGURES
+    kinds |= FIGURES | requirement_kinds(len(campaign.base["requirement"]))
     columns = "".join(f", {quoted(name)} {kind}" for name, kind in kinds.items())
     meta = {
         "schema_version": str(SCHEMA_VERSION),
@@ -226,7 +226,8 @@ def _check(results: Results, campaign: Campaign | None) -> None:
 
 def _check_campaign(results: Results, campaign: Campaign) -> None:
     folder, kinds = results.path.parent, results.kinds()
-    if absent := [name for name in FIGURES if name not in kinds]:
+    wanted = FIGURES | requirement_kinds(len(campaign.base["requirement"]))
+    if absent := [name for name in wanted if name not in kinds]:
         raise HarnessError(
             f"{folder} was begun by an older torquer, whose runs have no {absent[0]}: choose another --out"
         )

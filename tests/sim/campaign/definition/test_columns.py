@@ -2,7 +2,14 @@
 
 import pytest
 
-from sim.campaign.definition.columns import NUMBERS, TEXTS, cells, input_cells
+from sim.campaign.definition.columns import (
+    NUMBERS,
+    TEXTS,
+    cells,
+    input_cells,
+    requirement_cells,
+    requirement_kinds,
+)
 from sim.campaign.definition.requirements import FigureRequirement
 from sim.campaign.flight import record_scenario
 from sim.scenario.schema import load
@@ -54,6 +61,22 @@ def test_failed_requirements_are_not_counted_while_one_is_not_judged():
     assert failed is None
     assert not FigureRequirement("requirements_failed", at_most=0.0).met_by(failed)
     assert cells(SUMMARY | {"requirements": []})["requirements_failed"] == 0
+
+
+def test_each_requirement_of_the_scenario_has_its_columns_and_no_more():
+    judged = {"verdict": "met", "measured": 0.5, "limit": 1.0, "text": "APE"}
+    unjudged = judged | {"verdict": "not judged", "measured": None}
+    found = requirement_cells({"requirements": [judged, unjudged, judged]}, 2)
+    assert found == {
+        "requirements_0_verdict": "met",
+        "requirements_0_measured": 0.5,
+        "requirements_0_limit": 1.0,
+        "requirements_1_verdict": "not judged",
+        "requirements_1_measured": None,
+        "requirements_1_limit": 1.0,
+    }
+    assert requirement_kinds(2).keys() == found.keys()
+    assert requirement_kinds(0) == {}
 
 
 SHARED = {"scenario", "seed", "wall_seconds", "realtime_factor", "events"}

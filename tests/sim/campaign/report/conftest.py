@@ -40,6 +40,11 @@ def done_row(small):
         profiles = {name: _f4(profile(over_time)) for name in INDICES}
         profiles[ERROR_HISTORY] = _f4(over_time[::-50])
         cells["limits_ok"] = 1
+        cells |= {
+            "requirements_0_verdict": "not judged", "requirements_0_limit": 3.0,
+            "requirements_1_verdict": "met" if pointing_deg < 50.0 else "failed",
+            "requirements_1_measured": pointing_deg, "requirements_1_limit": 50.0,
+        }  # fmt: skip
         met = pointing_deg <= 60.0
         missed = "" if met else "pointing_deg_rms_last_orbit <= 60"
         return RunRow(run, Status.DONE, "", 1, met, missed, cells, profiles)

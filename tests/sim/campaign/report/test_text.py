@@ -13,7 +13,8 @@ def test_lines_say_what_matters(campaign_of_40, analysis):
     assert lines[0] == "microsat: 40 runs of 0.02 orbits"
     assert lines[1] == "  success    25 of 40, 62.5 % (48.3 to 75.3 % with 90 % confidence)"
     assert lines[2].startswith("  required   missed: pointing_deg_rms_last_orbit <= 60: 25 of 40, ")
-    assert lines[3].startswith(
+    assert lines[3] == "  scenario   settling of whole attitude, at most 3 orbits: not judged"
+    assert lines[6].startswith(
         "  pointing_deg_rms_last_orbit: 50 % 51.5 (42.5 to 60.5), 95 % 78.5 (75.5 to –)"
     )
     assert "depends on initial_angle_deg +0.97" in "\n".join(lines)

@@ -24,6 +24,7 @@ CONTRADICTIONS = {
     "UPDATE runs SET limits_ok = 0 WHERE run = 2": "it is a success that broke the limits of the coils",
     "UPDATE runs SET limits_ok = NULL WHERE run = 2": "nothing says whether the limits of the coils",
     "UPDATE runs SET nees_mean = 'large' WHERE run = 2": "its nees_mean is no number",
+    "UPDATE runs SET requirements_1_verdict = 'fine' WHERE run = 2": "1_verdict is no verdict",
     "UPDATE runs SET seed = 1.5 WHERE run = 2": "its seed is no whole number",
     "UPDATE runs SET mode_final = x'00' WHERE run = 2": "its mode_final is no text",
     "UPDATE runs SET status = 'failed', failure = 'x', success = 0 WHERE run = 2": "and was not flown",
