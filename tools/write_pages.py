@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import click
 
+from sim.campaign.definition.words import FIGURE_WORDS, KINDS
 from sim.fault_table import requirements
 from sim.fault_table.render import kinds_page
 from sim.methods import page as methods_page
@@ -153,7 +154,31 @@ def evidence_page() -> str:
     return head.replace("{{rows}}", "\n".join(rows))
 
 
+FIGURES_HEAD = """# Figures of a campaign
+
+Written by `tools/write_pages.py`; do not edit. Every figure that a run of a [campaign](campaigns.md) has: its
+column in `results.sqlite` and in `[requirement]` of the campaign file, what pages and terminal call it, and
+its unit. Figures without a unit are counts or parts.
+"""
+
+
+def figures_page() -> str:
+    """campaign-figures.md: the columns of a run by kind, in words."""
+    parts = [FIGURES_HEAD]
+    for kind in KINDS:
+        rows = [
+            f"| `{name}` | {words.words} | {words.unit} |"
+            for name, words in FIGURE_WORDS.items()
+            if words.kind == kind
+        ]
+        parts.append(
+            "\n".join([f"## {kind.capitalize()}", "", "| column | what | unit |", "|---|---|---|", *rows])
+        )
+    return "\n".join(f"{part.rstrip()}\n" for part in parts)
+
+
 PAGES: dict[str, Callable[[], str]] = {
+    "campaign-figures.md": figures_page,
     "cli.md": cli_page,
     "evidence.md": evidence_page,
     "methods.md": lambda: methods_page(read_methods(), as_figures(read_record(DOCS / "validation.json"))),

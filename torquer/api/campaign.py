@@ -79,7 +79,7 @@ def _figure(figure: FigureStatistics) -> Json:
         "without": figure.without,
         "mean": float(figure.values.mean()),
         "largest": float(figure.values.max()),
-        "percentiles": {f"{each.probability:g}": asdict(each) for each in figure.percentiles},
+        "percentiles": {f"{each.probability!r}": asdict(each) for each in figure.percentiles},
     }
 
 

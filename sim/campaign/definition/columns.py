@@ -85,6 +85,20 @@ def input_cells(inputs: Mapping[str, Any]) -> dict[str, Cell]:
     return {f"input_{name}": value for name, value in _flat(inputs)}
 
 
+def input_keys(inputs: Mapping[str, Any]) -> dict[str, str]:
+    """The key of each drawn value by its column, elements as further parts of the key."""
+    return {f"input_{key.replace('.', '_')}": key for key in _keys(inputs)}
+
+
+def _keys(values: Mapping[Any, Any], prefix: str = "") -> Iterator[str]:
+    for key, value in values.items():
+        if isinstance(value, dict | list | tuple):
+            below = value if isinstance(value, dict) else dict(enumerate(value))
+            yield from _keys(below, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}"
+
+
 def _flat(values: Mapping[Any, Any], prefix: str = "") -> Iterator[tuple[str, Cell]]:
     for key, value in values.items():
         name = prefix + str(key).replace(".", "_")

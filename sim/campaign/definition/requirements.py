@@ -7,6 +7,7 @@ from math import inf
 from fsw.input.near import did_you_mean
 from fsw.input.schema import Nested, TableError
 from sim.campaign.definition.columns import NUMBERS
+from sim.campaign.definition.words import FIGURE_WORDS, POINTING
 
 SHORT = {"pointing_deg": "pointing_deg_rms_last_orbit"}
 """Short names of figures."""
@@ -57,6 +58,15 @@ def requirements_in(values: Nested, source: str) -> tuple[FigureRequirement, ...
     return tuple(found)
 
 
+def _one_of_each_kind() -> str:
+    """A figure of each kind, for whoever has named none."""
+    first: dict[str, str] = {}
+    for name, words in FIGURE_WORDS.items():
+        first.setdefault(words.kind, name)
+    first |= {POINTING: next(iter(SHORT))}
+    return ", ".join(f"of the {kind} {name}" for kind, name in first.items())
+
+
 def _flat(values: Mapping[str, object], prefix: str = "") -> Iterator[tuple[str, object]]:
     """Limits by figure, its dots as underscores."""
     for key, value in values.items():
@@ -72,7 +82,7 @@ def _requirement(name: str, limit: object, source: str) -> FigureRequirement:
         raise TableError(f"{source}: requirement.{name} has no limit: give a number, at_least or at_most")
     figure = SHORT.get(name, name)
     if figure not in NUMBERS:
-        hint = did_you_mean(figure, [*SHORT, *NUMBERS]) or f": one is {next(iter(SHORT))}"
+        hint = did_you_mean(figure, [*SHORT, *NUMBERS]) or f": {_one_of_each_kind()}"
         raise TableError(f"{source}: requirement.{name} is no figure of a run{hint}")
     for side, value in limits.items():
         if isinstance(value, bool) or not isinstance(value, int | float) or not -inf < value < inf:

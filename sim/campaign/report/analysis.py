@@ -7,7 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.campaign.definition.campaign import Campaign
+from sim.campaign.definition.columns import input_keys
 from sim.campaign.definition.requirements import FigureRequirement
+from sim.campaign.definition.words import FIGURE_WORDS, ColumnWords, input_words
 from sim.campaign.one_run import ERROR_HISTORY
 from sim.campaign.report.shares import RequirementShare, requirement_shares
 from sim.campaign.results.row import Status
@@ -44,6 +46,11 @@ class FigureStatistics:
     requirement: FigureRequirement | None
 
     @property
+    def words(self) -> ColumnWords:
+        """What it is."""
+        return FIGURE_WORDS[self.name]
+
+    @property
     def worst_first(self) -> NDArray[np.int64]:
         """Places of the runs, the worst first: the largest value, or the least where that is limited."""
         return np.argsort(self.values if falls(self.requirement) else -self.values, kind="stable")
@@ -76,6 +83,7 @@ class CampaignAnalysis:
         indices: percentiles of each pointing index over all runs.
         profiles: of each index, (runs that were flown, points).
         inputs: numeric inputs by column, of the runs that were flown.
+        input_words: of every input, by column.
         sensitivities: the strongest first.
         errors: pointing error over time by run.
         orbits: how long each of these runs was.
@@ -90,6 +98,7 @@ class CampaignAnalysis:
     indices: dict[str, dict[Interpretation, IndexPercentile]]
     profiles: dict[str, Array]
     inputs: dict[str, Array]
+    input_words: dict[str, ColumnWords]
     sensitivities: tuple[Sensitivity, ...]
     errors: dict[int, Array]
     orbits: Array
@@ -124,6 +133,7 @@ def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
         indices=table(profiles, settings.probability, settings.confidence, len(failures)),
         profiles=profiles,
         inputs=inputs,
+        input_words={name: input_words(key) for name, key in input_keys(campaign.draw(0).inputs).items()},
         sensitivities=_sensitivities(all_inputs, figures[0].ranked, settings.confidence) if figures else (),
         errors=results.profiles(ERROR_HISTORY),
         orbits=np.where(np.isfinite(columns["orbits"]), columns["orbits"], campaign.base["time"]["orbits"]),

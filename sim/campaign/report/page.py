@@ -4,8 +4,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from sim.campaign.definition.campaign import Campaign
+from sim.campaign.definition.words import percent
 from sim.campaign.report import pictures, scenario_requirements, text
 from sim.campaign.report.analysis import CampaignAnalysis
+from sim.campaign.report.drawn import drawn_tables
 from sim.campaign.report.verdicts import value_words, verdicts
 from sim.console import counted
 from sim.drawing.canvas import style
@@ -53,7 +55,7 @@ def _badges(campaign: Campaign, analysis: CampaignAnalysis) -> list[tuple[str, s
 def _tiles(campaign: Campaign, analysis: CampaignAnalysis) -> list[Tile]:
     probability = campaign.statistics.probability
     return [
-        Tile(text.figure_words(figure.name), value_words(found.value), f"{100.0 * probability:g} % of runs")
+        Tile(str(figure.words), value_words(found.value), f"{percent(probability)} of runs")
         for figure in analysis.figures[:MOST_TILES]
         for found in figure.percentiles
         if found.probability == probability
@@ -61,7 +63,7 @@ def _tiles(campaign: Campaign, analysis: CampaignAnalysis) -> list[Tile]:
 
 
 def _sections(folder: Path, campaign: Campaign, analysis: CampaignAnalysis) -> Iterator[PageSection]:
-    confidence = f"{100.0 * campaign.statistics.confidence:g} % confidence"
+    confidence = f"{percent(campaign.statistics.confidence)} confidence"
     note = f"Parts of the runs, with two-sided bounds by Clopper and Pearson, {confidence}."
     yield PageSection("requirements", "Requirements", note, (text.requirement_table(campaign, analysis),))
     if analysis.shares and analysis.done:
@@ -79,7 +81,7 @@ def _sections(folder: Path, campaign: Campaign, analysis: CampaignAnalysis) -> I
         yield PageSection("failures", "Runs that failed", note, (text.failure_table(analysis),))
     if not analysis.figures:
         return
-    first = analysis.figures[0].name
+    first = analysis.figures[0].words.words
     note = (
         f"Percentiles over all runs, in brackets two-sided bounds by order statistics, {confidence}. "
         "A run that failed or has no such figure is the worst; mean and largest are of those that have it."
@@ -95,19 +97,22 @@ def _sections(folder: Path, campaign: Campaign, analysis: CampaignAnalysis) -> I
         chart("indices", pictures.indices(analysis, campaign.statistics.probability, campaign.index),
                "Cumulative distribution of each index, over all times and over runs alone; crosses: limits."),
     ))  # fmt: skip
-    note = f"By {first}. torquer sil --from DIR --run NUMBER flies one again."
+    note = f"By the {first}. torquer sil --from DIR --run NUMBER flies one again."
     yield PageSection("worst", "Worst runs", note, (text.worst_table(analysis),), (
         chart("worst-runs", pictures.worst_runs(analysis),
                "Pointing error over the flight, RMS of short stretches."),
     ))  # fmt: skip
     if any(each.correlation for each in analysis.sensitivities):
-        note = f"Spearman's rank correlation of each input with {first}, bounds {confidence}."
+        note = f"Spearman's rank correlation of each input with the {first}, bounds {confidence}."
         tables = (text.sensitivity_table(analysis),)
         yield PageSection("sensitivity", "What it depends on", note, tables, (
             chart("scatter", pictures.scatter(analysis),
-                   f"{first} over the inputs with the strongest correlation; red: the worst runs."),
+                   f"The {first} over the inputs with the strongest correlation; red: the worst runs."),
         ))  # fmt: skip
+    if analysis.input_words:
+        note = "Of the runs that were flown, by section of the scenario; each run has noise of its own."
+        yield PageSection("drawn", "What is drawn", note, drawn_tables(campaign, analysis))
     yield PageSection("convergence", "Convergence", "Whether more runs would change the result.", (), (
         chart("convergence", pictures.converging(analysis, campaign.statistics),
-               f"Percentile of {first} over the first runs, by their number."),
+               f"Percentile of the {first} over the first runs, by their number."),
     ))  # fmt: skip

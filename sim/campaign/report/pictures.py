@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from sim.campaign.definition.campaign import IndexLimits, StatisticsSection
+from sim.campaign.definition.words import ColumnWords, percent
 from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics, falls
 from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, MORE_COLOURS, MUTED, WIDTH_IN, legend, log_x, log_y
 from sim.statistics.convergence import convergence
@@ -34,9 +35,10 @@ def distributions(analysis: CampaignAnalysis) -> Figure:
         bins = min(MOST_BINS, max(6, round(2.0 * len(shown.values) ** 0.5)))
         panel.hist(shown.values, bins=bins, color=BAR, edgecolor="white", linewidth=0.4)
         for number, found in enumerate(shown.percentiles):
-            _mark(panel, found, number, float(shown.values.max()))
+            _mark(panel, found, number, shown)
         _limits(panel, shown)
         panel.set_title(_title(shown))
+        panel.set_xlabel(shown.words.unit)
         panel.set_ylabel("runs")
         panel.yaxis.set_major_locator(MaxNLocator(integer=True))
     return figure
@@ -53,12 +55,14 @@ def cumulative(analysis: CampaignAnalysis, confidence: float) -> Figure:
         x = values[steps - 1]
         low, high = [each.low for each in bounds], [each.high for each in bounds]
         panel.fill_between(
-            x, low, high, step="post", color=BAND, linewidth=0.0, label=f"{100.0 * confidence:g} % bounds"
+            x, low, high, step="post", color=BAND, linewidth=0.0, label=f"{percent(confidence)} bounds"
         )
         panel.step(x, below / len(shown.ranked), where="post", color=AXES_COLOURS[0], label="part of runs")
         _limits(panel, shown)
         panel.set_ylim(0.0, 1.02)
         panel.set_title(_title(shown))
+        panel.set_xlabel(shown.words.unit)
+        panel.set_ylabel("part of runs")
         legend(panel)
     return figure
 
@@ -108,10 +112,10 @@ def scatter(analysis: CampaignAnalysis) -> Figure:
         panel.plot(x[worst], first.values[worst], ".", color=LIMIT, markersize=4.0)
         if first.requirement and np.isfinite(first.requirement.at_most):
             panel.axhline(first.requirement.at_most, color=LIMIT, linewidth=0.8)
-        title = "\n".join(_words(name.removeprefix("input_")))
+        title = "\n".join(_wrapped(analysis.input_words[name]))
         panel.set_title(f"{title}\nrank correlation {found.value:+.2f}")
     for panel in panels[::COLUMNS]:
-        panel.set_ylabel(first.name)
+        panel.set_ylabel("\n".join(_wrapped(first.words)))
     return figure
 
 
@@ -177,16 +181,14 @@ def converging(analysis: CampaignAnalysis, settings: StatisticsSection) -> Figur
     least, largest = first.values.min(), first.values.max()
     low = np.clip(np.nan_to_num(found.low, nan=least), least, largest)
     high = np.clip(np.nan_to_num(found.high, nan=largest), least, largest)
-    bounds = f"{100.0 * confidence:g} % bounds, all values where runs are too few for one"
+    bounds = f"{percent(confidence)} bounds, all values where runs are too few for one"
     panel.fill_between(found.runs, low, high, color=BAND, linewidth=0.0, label=bounds)
     value = np.where(np.isfinite(found.value), found.value, np.nan)
-    panel.plot(
-        found.runs, value, color=AXES_COLOURS[0], label=f"{100.0 * probability:g} % of the runs so far"
-    )
+    panel.plot(found.runs, value, color=AXES_COLOURS[0], label=f"{percent(probability)} of the runs so far")
     panel.set_xlabel("runs")
-    panel.set_ylabel(first.name)
+    panel.set_ylabel(first.words.unit)
     panel.margins(x=0.0)
-    panel.set_title("Convergence")
+    panel.set_title(f"Convergence of the {first.words.words}")
     legend(panel)
     return figure
 
@@ -201,28 +203,32 @@ def _grid(count: int, columns: int) -> tuple[Figure, list[Axes]]:
     return figure, panels[:count]
 
 
-def _words(column: str) -> list[str]:
-    """The name of a column in lines that a narrow panel has room for, broken after underscores."""
-    lines = wrap(column.replace("_", "_ "), TITLE_WIDTH, break_long_words=False)
-    return [line.replace(" ", "") for line in lines]
+def _wrapped(words: ColumnWords) -> list[str]:
+    """A column in words, in lines that a narrow panel has room for."""
+    return wrap(str(words), TITLE_WIDTH, break_long_words=False)
 
 
 def _title(shown: FigureStatistics) -> str:
-    return shown.name + (f"\n{shown.without} of {len(shown.ranked)} runs have none" if shown.without else "")
+    return shown.words.words + (
+        f"\n{shown.without} of {len(shown.ranked)} runs have none" if shown.without else ""
+    )
 
 
-def _mark(panel: Axes, found: Percentile, number: int, largest: float) -> None:
-    colour = (MUTED, INK, AXES_COLOURS[1])[min(number, 2)]
+def _mark(panel: Axes, found: Percentile, number: int, shown: FigureStatistics) -> None:
+    """A percentile with its bounds; its words stand on the side to which there is room."""
+    middle = 0.5 * float(shown.values.min() + shown.values.max())
+    colour = {0.05: MUTED, 0.5: INK}.get(found.probability, AXES_COLOURS[1])
     if found.low is not None and found.high is not None:
-        panel.axvspan(
-            min(found.low, largest), min(found.high, largest), color=colour, alpha=0.15, linewidth=0.0
-        )
+        low, high = np.clip((found.low, found.high), shown.values.min(), shown.values.max()).tolist()
+        panel.axvspan(low, high, color=colour, alpha=0.15, linewidth=0.0)
     if not np.isfinite(found.value):
         return
     panel.axvline(found.value, color=colour, linewidth=1.0)
+    left = found.value > middle
     panel.annotate(
-        f"{100.0 * found.probability:g} %", (found.value, 1.0), (2.0, -8.0 - 9.0 * number),
+        percent(found.probability), (found.value, 1.0), (-2.0 if left else 2.0, -8.0 - 9.0 * number),
         ("data", "axes fraction"), "offset points", color=colour, fontsize=7.0,
+        ha="right" if left else "left",
     )  # fmt: skip
 
 

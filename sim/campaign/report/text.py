@@ -1,11 +1,10 @@
 """The statistics of a campaign in words: the lines on the terminal, and the tables of the page."""
 
-from collections.abc import Sequence
-
 from sim.campaign.definition.campaign import Campaign
+from sim.campaign.definition.words import percent
 from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics
 from sim.campaign.report.scenario_requirements import share_lines
-from sim.campaign.report.verdicts import WORDS, meets, proportion, value_words, verdicts
+from sim.campaign.report.verdicts import WORDS, meets, proportion, requirement_words, value_words, verdicts
 from sim.console import counted
 from sim.drawing.page_parts import Table
 from sim.statistics.indices import IndexPercentile, Interpretation
@@ -17,15 +16,6 @@ INDEX_NAMES = {
     "mpe": "MPE, mean performance error",
     "rpe": "RPE, relative performance error",
     "ake": "AKE, absolute knowledge error",
-}
-UNITS = {
-    "deg": "deg",
-    "degps": "deg/s",
-    "s": "s",
-    "orbits": "orbits",
-    "percent": "%",
-    "j": "J",
-    "am2": "A m^2",
 }
 ALIKE = 0.01
 """Runs whose length differs by less than this part have the scenario's: it is rounded to ticks."""
@@ -41,9 +31,9 @@ def lines(campaign: Campaign, analysis: CampaignAnalysis) -> list[str]:
     rows = [heading, f"  success    {proportion(analysis.success, campaign)}"]
     rows += [f"  required   {one}" for one in verdicts(campaign, analysis) if one.group == "requirement"]
     rows += share_lines(analysis.shares, campaign)
-    rows += [f"  {figure.name}: {_percentiles(figure)}" for figure in analysis.figures]
+    rows += [f"  {figure.words}: {_percentiles(figure, campaign)}" for figure in analysis.figures]
     strongest = [
-        f"{each.column.removeprefix('input_')} {each.correlation.value:+.2f}"
+        f"{analysis.input_words[each.column].words} {each.correlation.value:+.2f}"
         for each in analysis.sensitivities
         if each.correlation and each.correlation.significant
     ]
@@ -78,20 +68,11 @@ def _orbits(number: str) -> str:
     return f"{number} orbit{'' if number == '1' else 's'}"
 
 
-def figure_words(figure: str) -> str:
-    """The key of a figure in words, its unit last: pointing rms last orbit, deg."""
-    words = figure.split("_")
-    units = [word for word in words if word in UNITS]
-    return ", ".join(
-        (" ".join(word for word in words if word not in UNITS), *(UNITS[unit] for unit in units))
-    )
-
-
 def requirement_table(campaign: Campaign, analysis: CampaignAnalysis) -> Table:
     """How many runs meet each requirement, and whether that reaches the probability of the campaign."""
-    wanted = f"of {100.0 * campaign.statistics.probability:g} %"
+    wanted = f"of {percent(campaign.statistics.probability)}"
     rows = [
-        (str(entry), *_cells_of(found), WORDS[meets(found, campaign)])
+        (requirement_words(entry), *_cells_of(found), WORDS[meets(found, campaign)])
         for entry, found in analysis.by_requirement.items()
     ]
     rows.append(("all, and the limits of the coils", *_cells_of(analysis.success), _ABSENT))
@@ -107,10 +88,10 @@ def figure_table(analysis: CampaignAnalysis) -> Table:
     """Percentiles of the figures with their bounds."""
     if not analysis.figures:
         return Table((), [])
-    names = [f"{100.0 * each.probability:g} %" for each in analysis.figures[0].percentiles]
+    names = [percent(each.probability) for each in analysis.figures[0].percentiles]
     rows = [
         (
-            figure.name,
+            str(figure.words),
             f"{len(figure.values)}" + (f" of {len(figure.ranked)}" if figure.without else ""),
             f"{figure.values.mean():.4g}",
             *map(with_bounds, figure.percentiles),
@@ -128,8 +109,8 @@ def index_table(campaign: Campaign, analysis: CampaignAnalysis) -> Table:
         limit = getattr(campaign.index, name)
         cells = [_index_cell(found[how], how, limit) for how in Interpretation]
         rows.append((INDEX_NAMES[name], _ABSENT if limit is None else f"{limit:g}", *cells))
-    percent = f"{100.0 * campaign.statistics.probability:g} %"
-    return Table((f"[deg], {percent}", "limit", *(f"{how}" for how in Interpretation)), rows)
+    wanted = percent(campaign.statistics.probability)
+    return Table((f"[deg], {wanted}", "limit", *(f"{how}" for how in Interpretation)), rows)
 
 
 def _index_cell(found: IndexPercentile, how: Interpretation, limit: float | None) -> str:
@@ -142,14 +123,14 @@ def _index_cell(found: IndexPercentile, how: Interpretation, limit: float | None
 def index_note(campaign: Campaign, analysis: CampaignAnalysis) -> str:
     """What the numbers of the index table mean."""
     settings = campaign.statistics
-    percent, confidence = f"{100.0 * settings.probability:g} %", f"{100.0 * settings.confidence:g} %"
+    wanted, confidence = percent(settings.probability), percent(settings.confidence)
     held = next(iter(analysis.indices.values()))[Interpretation.TEMPORAL].held
     needed = runs_needed(settings.probability, settings.confidence)
     counted = "orbit" if settings.last_orbits == 1.0 else f"{settings.last_orbits:g} orbits"
     return (
         f"Over the last {counted} of each run, windows of {settings.window_s:g} s. "
-        f"Ensemble: at all times in {percent} of the runs. Mixed: at {percent} of all times of all runs. "
-        f"Temporal: at {percent} of the time in the worst of these runs, which bounds {100.0 * held:.1f} % "
+        f"Ensemble: at all times in {wanted} of the runs. Mixed: at {wanted} of all times of all runs. "
+        f"Temporal: at {wanted} of the time in the worst of these runs, which bounds {100.0 * held:.1f} % "
         "of the ensemble. "
         f"Bounds are one-sided with {confidence} confidence; those of ensemble and mixed need {needed} runs."
     )
@@ -163,7 +144,7 @@ def sensitivity_table(analysis: CampaignAnalysis) -> Table:
         cells = (
             (f"{found.value:+.3f}", f"{found.low:+.3f} to {found.high:+.3f}") if found else (_ABSENT, _ABSENT)
         )
-        rows.append((each.column.removeprefix("input_"), *cells))
+        rows.append((str(analysis.input_words[each.column]), *cells))
     return Table(("input", "rank correlation", "bounds"), rows)
 
 
@@ -174,8 +155,8 @@ def worst_table(analysis: CampaignAnalysis) -> Table:
     first, inputs = analysis.figures[0], [each.column for each in analysis.sensitivities[:4]]
     head = (
         "run",
-        *(figure.name for figure in analysis.figures),
-        *(name.removeprefix("input_") for name in inputs),
+        *(str(figure.words) for figure in analysis.figures),
+        *(str(analysis.input_words[name]) for name in inputs),
     )
     flown = {int(run): place for place, run in enumerate(analysis.errors)}
     rows = []
@@ -202,8 +183,8 @@ def _value_of(figure: FigureStatistics, run: int) -> str:
     return f"{figure.values[place]:.4g}" if known else _ABSENT
 
 
-def _percentiles(figure: FigureStatistics) -> str:
-    named: Sequence[str] = [
-        f"{100.0 * each.probability:g} % {with_bounds(each)}" for each in figure.percentiles[1:]
-    ]
-    return ", ".join(named)
+def _percentiles(figure: FigureStatistics, campaign: Campaign) -> str:
+    """The median, and the percentile of the campaign."""
+    wanted = (0.5, campaign.statistics.probability)
+    shown = (each for each in figure.percentiles if each.probability in wanted)
+    return ", ".join(f"{percent(each.probability)} {with_bounds(each)}" for each in shown)

@@ -64,7 +64,9 @@ def test_statistics_are_values_of_json(done):
 def test_the_command_on_its_folder_prints_the_same(done, command):
     said = command("campaign", done.path)
     assert said.exit_code == 1
-    assert said.stderr.startswith("torquer: missed: pointing_deg_rms_last_orbit <= 45: ")
+    assert said.stderr.startswith(
+        "torquer: missed: pointing error, RMS over the last orbit, at most 45 deg: "
+    )
     assert said.stdout.startswith(f"{done}\n")
     assert f"page: {done.page}" in said.stdout
 

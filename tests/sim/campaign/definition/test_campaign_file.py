@@ -106,6 +106,10 @@ REFUSED = {
         disperse(ANGLE, NORMAL) + f'\n[[disperse]]\nkey = "{ANGLE}"\n{NORMAL}',
         "gives initial.angle_deg twice",
     ),
+    "unlike": (
+        HEAD + "requirement.zzzz = 3.0",
+        "no figure .*of the pointing pointing_deg, of the rate rate_degps",
+    ),
     "requirement": (HEAD + "requirement.pointing = 3.0", "requirement.pointing is no figure .*'pointing_deg"),
     "one figure twice": (
         HEAD + "requirement.pointing_deg = 3.0\nrequirement.pointing_deg_rms_last_orbit = 9.0",

@@ -46,7 +46,8 @@ def test_it_has_all_sections_and_pictures(page):
     seen = Tags(page).seen
     sections = [name for tag, name in seen if tag == "section"]
     assert sections == [
-        "requirements", "scenario", "failures", "figures", "indices", "worst", "sensitivity", "convergence",
+        "requirements", "scenario", "failures", "figures", "indices", "worst", "sensitivity", "drawn",
+        "convergence",
     ]  # fmt: skip
     charts = [name for tag, name in seen if tag == "figure"]
     assert charts == [

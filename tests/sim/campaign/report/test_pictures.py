@@ -9,6 +9,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
 
 from sim.campaign.definition.campaign import IndexLimits
+from sim.campaign.definition.words import input_words
 from sim.campaign.report import pictures
 from sim.drawing.canvas import style
 from sim.statistics.sensitivity import spearman
@@ -62,7 +63,10 @@ def narrow(analysis):
         )
         for name, values in inputs.items()
     )
-    return replace(analysis, inputs=inputs, sensitivities=sensitivities)
+    words = {
+        name: input_words(f"disturbance.residual_dipole_am2.{number}") for number, name in enumerate(inputs)
+    }
+    return replace(analysis, inputs=inputs, sensitivities=sensitivities, input_words=words)
 
 
 @pytest.mark.long

@@ -19,7 +19,7 @@ from sim.statistics.proportion import clopper_pearson
 from torquer.api.campaign import as_json
 
 MISSED = (
-    "missed: pointing_deg_rms_last_orbit <= 60: "
+    "missed: pointing error, RMS over the last orbit, at most 60 deg: "
     "25 of 40, 62.5 % (48.3 to 75.3 % with 90 % confidence), to be 95 %"
 )
 
@@ -99,6 +99,6 @@ def test_a_figure_that_few_runs_have_is_drawn_and_told(small, tmp_path, done_row
         found = analyse(small, results)
     percentiles = json.loads(json.dumps(as_json(small, found), allow_nan=False))["figures"]["converged_at_s"]
     assert (percentiles["without"], percentiles["percentiles"]["0.95"]["value"]) == (12, None)
-    assert any("converged_at_s: 50 % no value" in line for line in text.lines(small, found))
+    assert any("estimate converged after [s]: 50 % no value" in line for line in text.lines(small, found))
     write_page(tmp_path / "page.html", small, found, "0")
     assert "12 of 20 runs have none" in (tmp_path / "page.html").read_text()
