@@ -86,6 +86,18 @@ def chromium():
         browser.close()
 
 
+CUT_OFF = """[...document.querySelectorAll(".scroll")]
+    .filter((each) => each.clientWidth > 0 && each.scrollWidth > each.clientWidth + 1)
+    .map((each) => `${each.closest("[id]").id} ${each.scrollWidth}`)"""
+"""The parts of a page of which a screen shows one end only, until they are scrolled."""
+
+
+@pytest.fixture(scope="session")
+def cut_off():
+    """Which parts of a page are cut off at the side of the screen."""
+    return lambda page: page.evaluate(CUT_OFF)
+
+
 @pytest.fixture
 def look(chromium):
     """Opens a page by path or address: what the browser complains of, or asks for more, fails the test."""

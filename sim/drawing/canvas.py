@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from math import ceil
 from threading import RLock
 from typing import Any
 
@@ -26,7 +27,10 @@ AXES_COLOURS = ("#0072b2", "#d55e00", "#009e73")
 MORE_COLOURS = ("#cc79a7", "#e69f00", "#56b4e9")
 ECLIPSE = "#dde4ee"
 
-WIDTH_IN = 8.2
+WIDTH_IN, NARROW_IN = 8.2, 4.4
+"""Of a picture as wide as the page, and of one for a narrow screen."""
+DOTS_AN_INCH = 96
+"""Pixels of a page in an inch of a picture."""
 LEFT_IN, RIGHT_IN, BOTTOM_IN = 0.72, 0.12, 0.42
 TITLE_IN, LEGEND_IN = 0.32, 0.19
 """Margins: the same in all charts, so that their times stand under each other."""
@@ -107,7 +111,11 @@ class TimeAxis:
 
 
 def stacked(
-    time: TimeAxis, heights_in: Sequence[float], legends: bool = True, right_in: float = RIGHT_IN
+    time: TimeAxis,
+    heights_in: Sequence[float],
+    legends: bool = True,
+    right_in: float = RIGHT_IN,
+    width_in: float = WIDTH_IN,
 ) -> tuple[Figure, list[Axes]]:
     """A figure of panels one over the other on one time axis, eclipses shaded, with room for legends.
 
@@ -116,7 +124,7 @@ def stacked(
     count, inner_in = len(heights_in), sum(heights_in)
     top_in = TITLE_IN + LEGEND_IN * legends
     height_in = inner_in + top_in * count + BOTTOM_IN
-    figure = Figure(figsize=(WIDTH_IN, height_in))
+    figure = Figure(figsize=(width_in, height_in))
     grid = figure.subplots(
         count,
         1,
@@ -124,8 +132,8 @@ def stacked(
         squeeze=False,
         height_ratios=list(heights_in),
         gridspec_kw={
-            "left": LEFT_IN / WIDTH_IN,
-            "right": 1.0 - right_in / WIDTH_IN,
+            "left": LEFT_IN / width_in,
+            "right": 1.0 - right_in / width_in,
             "bottom": BOTTOM_IN / height_in,
             "top": 1.0 - top_in / height_in,
             "hspace": top_in * count / inner_in,
@@ -186,11 +194,13 @@ def trace(panel: Axes, time: TimeAxis, t_s: Array, y: Array, label: str, colour:
     panel.plot(time.of(t_s), y, label=label, color=colour, marker=marker, **how)  # type: ignore[arg-type]  # of any option
 
 
-def legend(panel: Axes) -> None:
-    """A legend in one line between panel and title; left, where a narrow screen shows it."""
+def legend(panel: Axes, columns: int | None = None) -> None:
+    """A legend between panel and title, in one line or so many columns; left, where its title is."""
     handles, labels = panel.get_legend_handles_labels()
-    panel.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=max(1, len(labels)))
-    panel.set_title(panel.get_title(loc="left"), pad=72.0 * LEGEND_IN + 6.0)
+    ncols = max(1, columns or len(labels))
+    lines = ceil(len(labels) / ncols)
+    panel.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=ncols)
+    panel.set_title(panel.get_title(loc="left"), pad=72.0 * LEGEND_IN * max(1, lines) + 6.0)
 
 
 def log_y(panel: Axes, *histories: Array, decades: float) -> None:

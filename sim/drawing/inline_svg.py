@@ -1,5 +1,6 @@
 """A figure of matplotlib as an SVG element that stands in an HTML page: small, without metadata."""
 
+from collections.abc import Sequence
 from io import StringIO
 from itertools import groupby
 from xml.etree import ElementTree
@@ -8,7 +9,7 @@ import matplotlib
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from sim.drawing.canvas import SETTINGS
+from sim.drawing.canvas import DOTS_AN_INCH, SETTINGS
 from sim.drawing.page_parts import Chart
 from sim.drawing.palette import themed
 from sim.value_types import Json
@@ -16,6 +17,8 @@ from sim.value_types import Json
 _NUMBER = frozenset("0123456789.-e")
 _UNUSED = frozenset(("metadata", "style"))
 _VERBATIM = frozenset(("id", "class", "xlink:href"))
+_LEAST_SCALE = 0.95
+"""Of a panel on the page, beside its size as a picture: one that had to be smaller goes to the next row."""
 _OF_THE_ROOT = ("width", "height", "version")
 """The page scales the picture by its ``viewBox``."""
 
@@ -40,9 +43,38 @@ def svg(figure: Figure, salt: str) -> str:
     return ElementTree.tostring(root, encoding="unicode")
 
 
-def chart(name: str, picture: Figure, words: str, data: Json | None = None) -> Chart:
-    """A chart of a page, of a figure that was drawn within ``canvas.style``."""
-    return Chart(name, Markup(svg(picture, name)), words, data)
+def chart(
+    name: str,
+    picture: Figure | Sequence[Figure],
+    words: str,
+    data: Json | None = None,
+    narrow: Figure | None = None,
+) -> Chart:
+    """A chart of a page, of figures that were drawn within ``canvas.style``.
+
+    Args:
+        name: of the chart, unique on its page.
+        picture: one figure as wide as the page, or several that stand beside each other where there is room
+            for them, and below each other on a narrow screen.
+        words: what it shows.
+        data: what the page's script draws instead.
+        narrow: the same as one wide figure, for a narrow screen.
+    """
+    if not isinstance(picture, Figure):
+        return Chart(name, _panels(name, picture), words, data)
+    wide = Markup(svg(picture, name))
+    if narrow is not None:
+        wide = Markup('<div class="wide">{}</div><div class="narrow">{}</div>').format(
+            wide, Markup(svg(narrow, f"{name}-narrow"))
+        )
+    return Chart(name, wide, words, data)
+
+
+def _panels(name: str, figures: Sequence[Figure]) -> Markup:
+    """Figures of one width, as many beside each other as the page has room for."""
+    least_px = round(_LEAST_SCALE * DOTS_AN_INCH * max(figure.get_figwidth() for figure in figures))
+    panels = Markup("").join(Markup(svg(figure, f"{name}-{place}")) for place, figure in enumerate(figures))
+    return Markup('<div class="panels" style="--panel: {}px">{}</div>').format(least_px, panels)
 
 
 def _simplify(element: ElementTree.Element) -> None:

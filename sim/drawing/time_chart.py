@@ -9,11 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from sim.drawing.canvas import MUTED, Span, TimeAxis, legend, log_y, stacked, trace
+from sim.drawing.canvas import DOTS_AN_INCH, MUTED, Span, TimeAxis, legend, log_y, stacked, trace
 from sim.value_types import Array, Json
-
-DOTS_AN_INCH = 96
-"""Pixels of a page in an inch of a picture."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,10 +64,14 @@ class TimeChart:
 
 
 class DrawnChart(NamedTuple):
-    """A chart as a picture, and as the data of the script; None of what is a picture alone."""
+    """A chart as a picture or several, and as the data of the script; None of what is a picture alone.
 
-    picture: Figure
+    ``narrow`` is the picture for a narrow screen, where there is no script that draws it.
+    """
+
+    picture: Figure | Sequence[Figure]
     data: Json | None = None
+    narrow: Figure | None = None
 
 
 def draw(time: TimeAxis, chart: TimeChart) -> DrawnChart:

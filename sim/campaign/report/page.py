@@ -10,7 +10,7 @@ from sim.campaign.report.analysis import CampaignAnalysis
 from sim.campaign.report.drawn import drawn_tables
 from sim.campaign.report.verdicts import value_words, verdicts
 from sim.console import counted
-from sim.drawing.canvas import style
+from sim.drawing.canvas import NARROW_IN, style
 from sim.drawing.inline_svg import chart
 from sim.drawing.page_parts import PageHeader, PageSection, Tile, sections_page
 from sim.record.whole_file import replace_text
@@ -100,7 +100,8 @@ def _sections(folder: Path, campaign: Campaign, analysis: CampaignAnalysis) -> I
     note = f"By the {first}. torquer sil --from DIR --run NUMBER flies one again."
     yield PageSection("worst", "Worst runs", note, (text.worst_table(analysis),), (
         chart("worst-runs", pictures.worst_runs(analysis),
-               "Pointing error over the flight, RMS of short stretches."),
+               "Pointing error over the flight, RMS of short stretches.",
+               narrow=pictures.worst_runs(analysis, NARROW_IN)),
     ))  # fmt: skip
     if any(each.correlation for each in analysis.sensitivities):
         note = f"Spearman's rank correlation of each input with the {first}, bounds {confidence}."
@@ -114,5 +115,6 @@ def _sections(folder: Path, campaign: Campaign, analysis: CampaignAnalysis) -> I
         yield PageSection("drawn", "What is drawn", note, drawn_tables(campaign, analysis))
     yield PageSection("convergence", "Convergence", "Whether more runs would change the result.", (), (
         chart("convergence", pictures.converging(analysis, campaign.statistics),
-               f"Percentile of the {first} over the first runs, by their number."),
+               f"Percentile of the {first} over the first runs, by their number.",
+               narrow=pictures.converging(analysis, campaign.statistics, NARROW_IN)),
     ))  # fmt: skip

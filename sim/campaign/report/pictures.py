@@ -1,7 +1,6 @@
 """The pictures of a campaign."""
 
 from collections.abc import Sequence
-from math import ceil
 from textwrap import wrap
 
 import numpy as np
@@ -24,13 +23,13 @@ COLUMNS = 3
 LOGARITHMIC = 30.0
 """An input that varies by more than this factor has a logarithmic axis."""
 MOST_INPUTS, MOST_BINS, MOST_STEPS = 6, 40, 400
-MOST_TICKS, TITLE_WIDTH = 4, 34
-"""Of a panel of the scatter: numbers on its abscissa, characters in a line of its title."""
+MOST_TICKS, TITLE_WIDTH, TITLE_AN_INCH = 4, 26, 12
+"""Of a panel of the scatter: numbers on its abscissa, letters in a line of its title; and in an inch."""
 
 
-def distributions(analysis: CampaignAnalysis) -> Figure:
+def distributions(analysis: CampaignAnalysis) -> list[Figure]:
     """A histogram of each figure; percentiles with their bounds and the requirement on it."""
-    figure, panels = _grid(len(analysis.figures), 2)
+    figures, panels = _panels(len(analysis.figures), 2)
     for panel, shown in zip(panels, analysis.figures, strict=False):
         bins = min(MOST_BINS, max(6, round(2.0 * len(shown.values) ** 0.5)))
         panel.hist(shown.values, bins=bins, color=BAR, edgecolor="white", linewidth=0.4)
@@ -41,12 +40,12 @@ def distributions(analysis: CampaignAnalysis) -> Figure:
         panel.set_xlabel(shown.words.unit)
         panel.set_ylabel("runs")
         panel.yaxis.set_major_locator(MaxNLocator(integer=True))
-    return figure
+    return figures
 
 
-def cumulative(analysis: CampaignAnalysis, confidence: float) -> Figure:
+def cumulative(analysis: CampaignAnalysis, confidence: float) -> list[Figure]:
     """The fraction of runs up to a value, with its bounds, and the requirement."""
-    figure, panels = _grid(len(analysis.figures), 2)
+    figures, panels = _panels(len(analysis.figures), 2)
     for panel, shown in zip(panels, analysis.figures, strict=False):
         values, count = np.sort(shown.values), len(shown.values)
         steps = np.unique(np.linspace(1, count, min(count, MOST_STEPS)).round().astype(int))
@@ -64,12 +63,12 @@ def cumulative(analysis: CampaignAnalysis, confidence: float) -> Figure:
         panel.set_xlabel(shown.words.unit)
         panel.set_ylabel("part of runs")
         legend(panel)
-    return figure
+    return figures
 
 
-def indices(analysis: CampaignAnalysis, probability: float, limits: IndexLimits) -> Figure:
+def indices(analysis: CampaignAnalysis, probability: float, limits: IndexLimits) -> list[Figure]:
     """The fraction of times of all runs, and of runs at all times, up to a value of each index; limits."""
-    figure, panels = _grid(2, 2)
+    figures, panels = _panels(2, 2)
     for panel, title in zip(
         panels, ("mixed: part of all times", "ensemble: part of runs, at all times"), strict=False
     ):
@@ -89,13 +88,13 @@ def indices(analysis: CampaignAnalysis, probability: float, limits: IndexLimits)
         log_x(panel, float(values[values > 0.0].min()), float(values.max()))
         panel.set_ylim(0.0, 1.02)
         legend(panel)
-    return figure
+    return figures
 
 
-def scatter(analysis: CampaignAnalysis) -> Figure:
+def scatter(analysis: CampaignAnalysis) -> list[Figure]:
     """The first figure over the inputs that it depends on most."""
     names = [each.column for each in analysis.sensitivities if each.correlation is not None][:MOST_INPUTS]
-    figure, panels = _grid(len(names), COLUMNS)
+    figures, panels = _panels(len(names), COLUMNS)
     first = analysis.figures[0]
     flown = np.array(list(analysis.errors))
     places = np.searchsorted(flown, first.runs)
@@ -114,17 +113,16 @@ def scatter(analysis: CampaignAnalysis) -> Figure:
             panel.axhline(first.requirement.at_most, color=LIMIT, linewidth=0.8)
         title = "\n".join(_wrapped(analysis.input_words[name]))
         panel.set_title(f"{title}\nrank correlation {found.value:+.2f}")
-    for panel in panels[::COLUMNS]:
-        panel.set_ylabel("\n".join(_wrapped(first.words)))
-    return figure
+        panel.set_ylabel(first.words.unit)
+    return figures
 
 
-def worst_runs(analysis: CampaignAnalysis) -> Figure:
+def worst_runs(analysis: CampaignAnalysis, width_in: float = WIDTH_IN) -> Figure:
     """The pointing error of the worst runs over that of all: median, half and nine tenths of the runs.
 
     Where runs differ in length, those of the runs that last as long.
     """
-    figure = Figure(figsize=(WIDTH_IN, PANEL_IN + 0.9), layout="constrained")
+    figure = Figure(figsize=(width_in, PANEL_IN + 0.9), layout="constrained")
     panel = figure.subplots()
     x, errors = over_time(list(analysis.errors.values()), analysis.orbits)
     runs, first = list(analysis.errors), analysis.figures[0]
@@ -143,7 +141,7 @@ def worst_runs(analysis: CampaignAnalysis) -> Figure:
     panel.set_xlabel("orbits")
     panel.set_ylabel("pointing error [deg]")
     panel.set_title("Worst runs over the rest")
-    legend(panel)
+    legend(panel, None if width_in == WIDTH_IN else 3)
     return figure
 
 
@@ -171,9 +169,9 @@ def _middles(count: int, length: float) -> Array:
     return (np.arange(count) + 0.5) * length / count
 
 
-def converging(analysis: CampaignAnalysis, settings: StatisticsSection) -> Figure:
+def converging(analysis: CampaignAnalysis, settings: StatisticsSection, width_in: float = WIDTH_IN) -> Figure:
     """The percentile of the first figure by number of runs."""
-    figure = Figure(figsize=(WIDTH_IN, PANEL_IN + 0.4), layout="constrained")
+    figure = Figure(figsize=(width_in, PANEL_IN + 0.4), layout="constrained")
     panel = figure.subplots()
     first = analysis.figures[0]
     probability, confidence = settings.probability, settings.confidence
@@ -188,19 +186,17 @@ def converging(analysis: CampaignAnalysis, settings: StatisticsSection) -> Figur
     panel.set_xlabel("runs")
     panel.set_ylabel(first.words.unit)
     panel.margins(x=0.0)
-    panel.set_title(f"Convergence of the {first.words.words}")
-    legend(panel)
+    panel.set_title(
+        "\n".join(wrap(f"Convergence of the {first.words.words}", round(TITLE_AN_INCH * width_in)))
+    )
+    legend(panel, None if width_in == WIDTH_IN else 1)
     return figure
 
 
-def _grid(count: int, columns: int) -> tuple[Figure, list[Axes]]:
-    """A figure of ``count`` panels in ``columns`` columns."""
-    rows = max(1, ceil(count / columns))
-    figure = Figure(figsize=(WIDTH_IN, PANEL_IN * rows), layout="constrained")
-    panels = list(figure.subplots(rows, columns, squeeze=False).ravel())
-    for panel in panels[count:]:
-        panel.remove()
-    return figure, panels[:count]
+def _panels(count: int, columns: int) -> tuple[list[Figure], list[Axes]]:
+    """Figures of a panel each, of which so many stand beside each other on a wide page."""
+    figures = [Figure(figsize=(WIDTH_IN / columns, PANEL_IN), layout="constrained") for _ in range(count)]
+    return figures, [figure.subplots() for figure in figures]
 
 
 def _wrapped(words: ColumnWords) -> list[str]:

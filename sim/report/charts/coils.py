@@ -12,12 +12,8 @@ from matplotlib.ticker import MaxNLocator
 from sim.audit.findings import COILS, DrivenPulse
 from sim.drawing.canvas import (
     AXES_COLOURS,
-    BOTTOM_IN,
-    LEFT_IN,
-    LEGEND_IN,
     LIMIT,
-    RIGHT_IN,
-    TITLE_IN,
+    NARROW_IN,
     WIDTH_IN,
     Span,
     TimeAxis,
@@ -64,8 +60,12 @@ def draw_raster(panel: Axes, flight: DrawnFlight) -> None:
 
 def zoom(flight: DrawnFlight) -> DrawnChart:
     """The twenty minutes with the most pulses: their lengths, and the back-off after each."""
+    return DrawnChart(_zoom(flight, WIDTH_IN), narrow=_zoom(flight, NARROW_IN))
+
+
+def _zoom(flight: DrawnFlight, width_in: float) -> Figure:
     time = flight.window(flight.busiest(ZOOM_S), min(ZOOM_S, flight.length_s))
-    figure, (panel,) = stacked(time, (2.3,), legends=bool(flight.audit.violations))
+    figure, (panel,) = stacked(time, (2.3,), legends=bool(flight.audit.violations), width_in=width_in)
     _lanes(panel, flight)
     limits = flight.audit.limits
     backoff_s = limits.backoff_us / 1e6
@@ -90,30 +90,18 @@ def zoom(flight: DrawnFlight) -> DrawnChart:
             )
     panel.xaxis.set_major_locator(MaxNLocator(10, steps=[1, 2, 5, 10]))
     part = f"The {ZOOM_S / 60.0:g} minutes with the most pulses" if flight.length_s > ZOOM_S else "The same"
-    panel.set_title(f"{part}, to scale, back-off shaded")
+    panel.set_title(f"{part}, to scale" + (", back-off shaded" if width_in == WIDTH_IN else ""))
     _violations(panel, flight, time)
-    return DrawnChart(figure)
+    return figure
 
 
 def gaps_and_levels(flight: DrawnFlight) -> DrawnChart:
     """The lengths of the gaps against the back-off, and the levels of the pulses."""
-    height_in = 2.6
-    figure = Figure(figsize=(WIDTH_IN, height_in))
-    gaps, levels = figure.subplots(
-        1,
-        2,
-        width_ratios=(3, 2),
-        gridspec_kw={
-            "left": LEFT_IN / WIDTH_IN,
-            "right": 1.0 - RIGHT_IN / WIDTH_IN,
-            "bottom": BOTTOM_IN / height_in,
-            "top": 1.0 - (TITLE_IN + LEGEND_IN) / height_in,
-            "wspace": 0.18,
-        },
-    )
+    pictures = [Figure(figsize=(WIDTH_IN / 2.0, 2.6), layout="constrained") for _ in range(2)]
+    gaps, levels = (picture.subplots() for picture in pictures)
     _gaps(gaps, flight)
     _levels(levels, flight)
-    return DrawnChart(figure)
+    return DrawnChart(pictures)
 
 
 def _gaps(panel: Axes, flight: DrawnFlight) -> None:

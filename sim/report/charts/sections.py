@@ -119,7 +119,7 @@ def _charts(flight: DrawnFlight, drawings: tuple[Drawing, ...]) -> tuple[Chart, 
     charts = []
     for drawing, words in drawings:
         drawn = drawing(flight)
-        charts.append(chart(drawing.__name__, drawn.picture, words, drawn.data))
+        charts.append(chart(drawing.__name__, drawn.picture, words, drawn.data, drawn.narrow))
     return tuple(charts)
 
 

@@ -1,12 +1,13 @@
 """A figure as an SVG element for HTML: without metadata, its groups named, its numbers short."""
 
+import re
 from xml.etree import ElementTree
 
 import pytest
 from matplotlib.figure import Figure
 
 from sim.drawing.canvas import style
-from sim.drawing.inline_svg import svg
+from sim.drawing.inline_svg import chart, svg
 
 
 def drawn(salt):
@@ -60,3 +61,19 @@ def test_the_same_figure_twice_on_a_page_has_ids_of_its_own():
     assert ids[0]
     assert ids[0].isdisjoint(ids[1])
     assert ids[0] == ids[2]
+
+
+def test_several_figures_are_panels_and_a_wide_one_may_have_a_narrow_one():
+    with style():
+        figures = [Figure(figsize=(4.0, 2.0)) for _ in range(2)]
+        for figure in figures:
+            figure.subplots()
+        several, alone = chart("x", figures, "words"), chart("x", figures[0], "words")
+        both = chart("x", figures[0], "words", narrow=figures[1])
+    assert several.svg.startswith('<div class="panels" style="--panel: 365px"><svg')
+    assert several.svg.count("<svg") == 2
+    assert alone.svg.startswith("<svg")
+    assert both.svg.startswith('<div class="wide"><svg')
+    assert '<div class="narrow"><svg' in both.svg
+    ids = re.findall(r' id="([^"]+)"', several.svg + both.svg)
+    assert len(set(ids)) == len(ids), "no id twice on a page"

@@ -55,8 +55,22 @@ def test_a_cell_may_have_a_style_and_a_link_whose_address_stays_whole():
     cell = TableCell("<b>", "bad", "a_b/c.html")
     page = sections_page(HEADER, [PageSection("here", "Title", "", (Table((cell,), [(cell, "plain")]),))])
     assert '<th><a href="a_b/c.html">&lt;b&gt;</a></th>' in page
-    assert '<td class="short bad"><a href="a_b/c.html">&lt;b&gt;</a></td>' in page
+    assert '<td class="bad"><a href="a_b/c.html">&lt;b&gt;</a></td>' in page
     assert '<td class="short">plain</td>' in page
+
+
+def test_a_table_of_many_columns_and_few_rows_may_be_cards_with_the_heads_in_its_cells():
+    head = ("first", "second", "a <b>", "fourth", "fifth")
+    page = sections_page(
+        HEADER, [PageSection("here", "Title", "", (Table(head, [("1", "2", "3", "4", "5")]),))]
+    )
+    assert '<table class="cards">' in page
+    assert '<td class="short">1</td><td class="short" data-head="second">2</td>' in page
+    assert 'data-head="a &lt;b&gt;"' in page
+    sentence = "a sentence that is rather long"
+    for rows in ([("1", "2", "3", "4", sentence)], [("1", "2", "3", "4", "5")] * 13, []):
+        page = sections_page(HEADER, [PageSection("here", "Title", "", (Table(head, rows),))])
+        assert "data-head" not in page.partition("<main>")[2]
 
 
 def test_what_is_empty_is_left_out():

@@ -89,7 +89,9 @@ class Page(HTMLParser):
     def drawn(self, figure, group):
         """The path data of a group of a figure, such as ``eclipse``, one for each panel that has it."""
         start = self.source.index(f'<figure id="{figure}"')
-        figure_text = self.source[start : self.source.index("</figure>", start)]
+        figure_text = self.source[start : self.source.index("</figure>", start)].partition('class="narrow"')[
+            0
+        ]
         return re.findall(rf'<g class="{group}">\s*<path d="([^"]*)"', figure_text)
 
 

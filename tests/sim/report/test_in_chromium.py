@@ -27,6 +27,15 @@ def report(tmp_path_factory, made_run):
     return folder / "report.html"
 
 
+@pytest.mark.parametrize("dark", [False, True])
+def test_nothing_is_cut_off_on_a_narrow_screen(look, cut_off, report, dark):
+    page = look(report, width=390, dark=dark)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert cut_off(page) == []
+    gaps, levels = (one.bounding_box() for one in page.locator("#chart-gaps_and_levels svg").all())
+    assert levels["y"] >= gaps["y"] + gaps["height"]
+
+
 def spans(page):
     """The part of the flight that each chart shows, in seconds, each once."""
     return page.evaluate(
@@ -66,7 +75,7 @@ def test_every_chart_is_drawn_and_takes_the_place_of_its_picture(look, report):
     for view in ("attitude-view", "track-view"):
         assert page.locator(f"#{view}").evaluate(COLOURS) > 20
     for chart in ("zoom", "gaps_and_levels"):
-        assert page.locator(f"#chart-{chart} svg").is_visible()
+        assert page.locator(f"#chart-{chart} svg").first.is_visible()
 
 
 def test_a_drag_zooms_all_charts_and_a_double_click_shows_all_again(look, report):
@@ -176,7 +185,7 @@ def test_without_scripts_and_on_paper_the_pictures_are_shown(look, report):
     paper.emulate_media(media="print")
     for page in (paper, look(report, scripts=False)):
         for chart in (*CHARTS, "track"):
-            assert page.locator(f"#chart-{chart} svg").is_visible()
+            assert page.locator(f"#chart-{chart} svg").first.is_visible()
             assert not page.locator(f"#chart-{chart} .plot").is_visible()
         assert not page.locator("#time-bar").is_visible()
 

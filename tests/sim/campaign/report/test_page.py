@@ -31,15 +31,33 @@ def page(campaign_of_40, analysis, tmp_path_factory):
 
 
 @pytest.mark.parametrize("width", [390, 1400])
-def test_it_is_shown_in_the_dark_without_standing_out_sideways(look, tmp_path, page, width):
+def test_it_is_shown_in_the_dark_without_standing_out_sideways(look, cut_off, tmp_path, page, width):
     (tmp_path / "campaign.html").write_text(page)
     shown = look(tmp_path / "campaign.html", width=width, dark=True)
     assert shown.evaluate("document.documentElement.scrollWidth") <= width
+    assert cut_off(shown) == []
     assert (
         shown.evaluate("getComputedStyle(document.querySelector('header')).backgroundColor")
         == "rgb(22, 28, 35)"
     )
     assert shown.locator("svg").first.is_visible()
+
+
+def test_pictures_beside_each_other_stand_below_each_other_on_a_narrow_screen(look, tmp_path, page):
+    (tmp_path / "campaign.html").write_text(page)
+    for width, rows in ((390, 1), (1400, 2)):
+        shown = look(tmp_path / "campaign.html", width=width)
+        boxes = [one.bounding_box() for one in shown.locator("#chart-indices svg").all()]
+        assert len(boxes) == 2
+        assert len({round(box["x"]) for box in boxes}) == rows
+        assert all(box["x"] >= 0 and box["x"] + box["width"] <= width for box in boxes)
+
+
+def test_a_wide_picture_has_a_narrow_one(look, tmp_path, page):
+    (tmp_path / "campaign.html").write_text(page)
+    for width, seen in ((390, [False, True]), (1400, [True, False])):
+        shown = look(tmp_path / "campaign.html", width=width)
+        assert [one.is_visible() for one in shown.locator("#chart-worst-runs svg").all()] == seen
 
 
 def test_it_has_all_sections_and_pictures(page):
@@ -54,7 +72,7 @@ def test_it_has_all_sections_and_pictures(page):
         f"chart-{name}"
         for name in ("distributions", "cumulative", "indices", "worst-runs", "scatter", "convergence")
     ]
-    assert sum(tag == "svg" for tag, _ in seen) == len(charts)
+    assert sum(tag == "svg" for tag, _ in seen) == 2 * 2 + 2 + 6 + 2 * 2, "a panel each, and two narrow ones"
 
 
 def test_it_says_what_was_flown_and_escapes_it(page):

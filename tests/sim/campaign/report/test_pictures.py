@@ -11,7 +11,7 @@ from matplotlib.text import Text
 from sim.campaign.definition.campaign import IndexLimits
 from sim.campaign.definition.words import input_words
 from sim.campaign.report import pictures
-from sim.drawing.canvas import style
+from sim.drawing.canvas import NARROW_IN, WIDTH_IN, style
 from sim.statistics.sensitivity import spearman
 
 LONG = "input_disturbance_residual_dipole_am2_length"
@@ -38,13 +38,15 @@ def rows_of(figure, renderer):
 
 def assert_readable(draw):
     with style():
-        figure = draw()
-        canvas = FigureCanvasAgg(figure)
-        canvas.draw()
-        renderer = canvas.get_renderer()
-        for row in rows_of(figure, renderer):
-            for left, right in pairwise(row):
-                assert left.x1 < right.x0
+        drawn = draw()
+        for figure in drawn if isinstance(drawn, list) else [drawn]:
+            canvas = FigureCanvasAgg(figure)
+            canvas.draw()
+            renderer = canvas.get_renderer()
+            for row in rows_of(figure, renderer):
+                for left, right in pairwise(row):
+                    assert left.x1 < right.x0
+                assert all(box.x1 <= figure.bbox.x1 + 1 for box in row), "no word runs out of its picture"
 
 
 @pytest.fixture
@@ -77,6 +79,13 @@ def test_indices(analysis, low, high):
         for name, values in analysis.profiles.items()
     }
     assert_readable(lambda: pictures.indices(replace(analysis, profiles=profiles), 0.95, IndexLimits()))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("width_in", [WIDTH_IN, NARROW_IN])
+def test_titles_of_every_width(campaign_of_40, analysis, width_in):
+    assert_readable(lambda: pictures.converging(analysis, campaign_of_40.statistics, width_in))
+    assert_readable(lambda: pictures.worst_runs(analysis, width_in))
 
 
 @pytest.mark.long

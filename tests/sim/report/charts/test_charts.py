@@ -59,7 +59,7 @@ def spans_on(path, axis_of):
 def time_axis(page, figure):
     """Left and right edge of the panels, from the rectangles that clip them."""
     start = page.source.index(f'<figure id="{figure}"')
-    figure_text = page.source[start : page.source.index("</figure>", start)]
+    figure_text = page.source[start : page.source.index("</figure>", start)].partition('class="narrow"')[0]
     x, width = re.search(r'<rect x="([\d.]+)" y="[\d.]+" width="([\d.]+)"', figure_text).groups()
     return float(x), float(x) + float(width)
 

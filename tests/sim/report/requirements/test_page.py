@@ -27,7 +27,7 @@ def test_it_shows_verdicts_and_links(tmp_path):
     for words in (
         "1 of 1 requirement missed by a run",
         '<a href="r/report.html">run_<wbr>1</a>',
-        '<td class="short good">met: 0.5, margin 0.5</td>',
+        '<td class="good" data-head="run_0">met: 0.5, margin 0.5</td>',
         "failed: 2, margin -1",
     ):
         assert words in page
