@@ -15,8 +15,8 @@ from sim.value_types import Json
 OWN = "sim.drawing"
 THEME = "script/theme.js"
 UPLOT, UPLOT_CSS, UPLOT_LICENCE = "vendor/uPlot.iife.min.js", "vendor/uPlot.min.css", "vendor/uPlot.LICENSE"
-TURNED_VIEW = "script/turned_view.js"
-PLOTTING = ("script/clock.js", "script/charts.js", TURNED_VIEW)
+VIEWS = ("script/turned_view.js", "script/coil_view.js")
+PLOTTING = ("script/clock.js", "script/charts.js", *VIEWS)
 LOOPBACK = "ws://127.0.0.1:* ws://localhost:*"
 
 
@@ -56,10 +56,11 @@ def live_page(package: str, template: str, scripts: Sequence[str], **content: ob
     Args:
         package: as of ``page``.
         template: as of ``page``.
-        scripts: of the package, by their paths; they have uPlot and ``turnedView``.
+        scripts: of the package, by their paths; they have uPlot, ``turnedView`` and ``coilView``.
         content: what the template names.
     """
-    run = [_read(OWN, THEME), _uplot(), _read(OWN, TURNED_VIEW), *(_read(package, name) for name in scripts)]
+    run = [_read(OWN, THEME), _uplot(), *(_read(OWN, name) for name in VIEWS)]
+    run += [_read(package, name) for name in scripts]
     css = _read(OWN, UPLOT_CSS) + "\n"
     return _render(package, template, css, run, f"; connect-src {LOOPBACK}", {**content, "data": None})
 

@@ -8,7 +8,8 @@ from sim.errors import HarnessError
 from sim.progress import note
 from sim.record.pace import Pace
 from sim.scenario.schema import Scenario, load
-from sim.watch.directions import nothing_around, onboard_around
+from sim.watch.coil_torque import craft_of
+from sim.watch.directions import onboard_around
 from sim.watch.flight_view import FlightView
 from sim.watch.source import BusSource, FrameSource, LogSource, batches
 
@@ -41,7 +42,9 @@ def watch(what: str, pace: Pace, scenario: str | None) -> Watched:
         source: FrameSource = log
     else:
         source = _bus(what)
-    return Watched(source, FlightView(nothing_around if flown is None else onboard_around(flown)))
+    if flown is None:
+        return Watched(source, FlightView())
+    return Watched(source, FlightView(onboard_around(flown), craft_of(flown)))
 
 
 def _bus(what: str) -> BusSource:

@@ -57,7 +57,13 @@ def off_deg(attitude: Quaternion | None, measured_body: Vec3, modelled_orbit: Ve
     return degrees(acos(max(-1.0, min(1.0, dot(unit(measured_body), predicted)))))
 
 
-def arrows(attitude: Quaternion | None, field_body: Vec3 | None, sun_body: Vec3 | None) -> dict[str, Vec3]:
+def arrows(
+    attitude: Quaternion | None,
+    field_body: Vec3 | None,
+    sun_body: Vec3 | None,
+    dipole_body: Vec3 | None = None,
+    torque_body: Vec3 | None = None,
+) -> dict[str, Vec3]:
     """Unit vectors by name, in orbit axes: 1 up, 2 ahead, 3 along the orbit normal.
 
     Without an attitude they are in body axes, and nothing of the orbit is among them.
@@ -66,6 +72,8 @@ def arrows(attitude: Quaternion | None, field_body: Vec3 | None, sun_body: Vec3 
         attitude: q_body_from_orbit, if it is valid.
         field_body: field as measured, body axes.
         sun_body: direction to the Sun as measured, body axes.
+        dipole_body: that the coils are driven to, body axes.
+        torque_body: of it in the field, body axes.
     """
 
     def to_orbit(vector: Vec3) -> Vec3:
@@ -74,7 +82,8 @@ def arrows(attitude: Quaternion | None, field_body: Vec3 | None, sun_body: Vec3 
     found = {f"body {number}": to_orbit(axis) for number, axis in enumerate(AXES, start=1)}
     if attitude is not None:
         found |= {"nadir": (-1.0, 0.0, 0.0), "ahead": (0.0, 1.0, 0.0)}
-    for name, vector in (("field", field_body), ("Sun", sun_body)):
+    seen = {"field": field_body, "Sun": sun_body, "dipole": dipole_body, "torque": torque_body}
+    for name, vector in seen.items():
         if vector is not None and norm(vector) > 0.0:
             found[name] = to_orbit(unit(vector))
     return found

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import acos, degrees, sqrt
 
-from fsw.core.algebra.quaternion import Quaternion
+from fsw.core.algebra.quaternion import Quaternion, rotate
 from fsw.core.algebra.vector import Vec3, norm
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
@@ -36,6 +36,7 @@ from fsw.wire.messages import (
     intact,
 )
 from sim.bench.bus_load import BITRATE
+from sim.watch.coil_torque import CoilTorque, Craft, coil_torque
 from sim.watch.directions import Around, AroundAt, arrows, nothing_around, off_deg
 from sim.watch.happening import Occurrence, Weight, event_words
 
@@ -129,9 +130,10 @@ class FlightView:
 
     Args:
         around_at: of a tick of the satellite; None where the orbit is not known.
+        craft: of the satellite; None where it is not known.
     """
 
-    def __init__(self, around_at: AroundAt = nothing_around) -> None:
+    def __init__(self, around_at: AroundAt = nothing_around, craft: Craft | None = None) -> None:
         self.tick: int | None = None
         self.unix_s: int | None = None
         self.mode: Mode | None = None
@@ -156,6 +158,10 @@ class FlightView:
         """Frames of a known identifier with a wrong length or CRC."""
         self.load = Load()
         self.around_at = around_at
+        self.craft = craft
+        self.last_pulse: CoilTorque | None = None
+        """Of the last pulse that was driven, also when it is over."""
+        self._calm_b_t: Vec3 | None = None  # the last reading while no coil was driven
         self._unknown = 0  # identifiers in ``frames``
         self._driven = False  # a coil, in this tick or in the one before
         self._pulse: tuple[int, int] | None = None  # coil and number of the one that is under way
@@ -227,6 +233,7 @@ class FlightView:
         coils.levels = [status.level if coil == status.coil else 0 for coil in range(3)]
         coils.current_ma, coils.remaining_ms = status.current_ma, status.remaining_ms
         coils.lockout_ms[status.coil] = status.lockout_ms
+        self.last_pulse = self.coil_torque() or self.last_pulse
 
     def _take_dipole(self, data: bytes) -> None:
         dipole = CoilDipoleStatus.decode(data)
@@ -241,6 +248,8 @@ class FlightView:
 
     def _take_field(self, data: bytes) -> None:
         self.field = MagField.decode(data)
+        if self.field.valid and not self._driven:
+            self._calm_b_t = self.field_body_t()
 
     def _take_sun(self, data: bytes) -> None:
         self.sun = SunVector.decode(data)
@@ -280,15 +289,34 @@ class FlightView:
             return None
         return off_deg(self.attitude, (self.sun.s_x, self.sun.s_y, self.sun.s_z), self.around.sun_orbit)
 
+    def field_body_t(self) -> Vec3 | None:
+        """The field as measured, T; None where it is not."""
+        if self.field is None or not self.field.valid:
+            return None
+        return (1e-9 * self.field.b_x, 1e-9 * self.field.b_y, 1e-9 * self.field.b_z)
+
+    def sun_body(self) -> Vec3 | None:
+        """The direction to the Sun as measured; None where it is not seen."""
+        if self.sun is None or not self.sun.valid:
+            return None
+        return (self.sun.s_x, self.sun.s_y, self.sun.s_z)
+
+    def coil_torque(self) -> CoilTorque | None:
+        """What the coils do; None while none is driven.
+
+        In the field of the orbit where that is known, since a coil that is driven disturbs the magnetometer;
+        else in the last one that was measured undisturbed.
+        """
+        b_body_t = self._calm_b_t
+        if self.around is not None and self.attitude is not None:
+            b_body_t = rotate(self.attitude, self.around.b_orbit_t)
+        return coil_torque(self.coils.levels, self.coils.fractions, b_body_t, self.craft)
+
     def arrows(self) -> dict[str, Vec3]:
         """Directions by name, as of ``directions.arrows``."""
-        measured = self.field is not None and self.field.valid
-        field = (
-            (self.field.b_x, self.field.b_y, self.field.b_z) if self.field is not None and measured else None
-        )
-        seen = self.sun is not None and self.sun.valid
-        sun = (self.sun.s_x, self.sun.s_y, self.sun.s_z) if self.sun is not None and seen else None
-        return arrows(self.attitude, field, sun)
+        driven = self.coil_torque()
+        dipole, torque = (None, None) if driven is None else (driven.dipole, driven.torque)
+        return arrows(self.attitude, self.field_body_t(), self.sun_body(), dipole, torque)
 
     def sample(self) -> SecondSample | None:
         """Of this moment; None before the first SYNC."""

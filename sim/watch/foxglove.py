@@ -23,6 +23,8 @@ COLOURS: dict[str, dict[str, float]] = {
     "body 3": {"r": 0.0, "g": 0.62, "b": 0.45},
     "field": {"r": 0.48, "g": 0.25, "b": 0.63},
     "Sun": {"r": 0.90, "g": 0.62, "b": 0.0},
+    "dipole": {"r": 0.80, "g": 0.47, "b": 0.65},
+    "torque": {"r": 0.70, "g": 0.15, "b": 0.12},
 }
 """Of arrows; the others are grey."""
 GREY = {"r": 0.5, "g": 0.5, "b": 0.5}
@@ -72,13 +74,22 @@ class Publisher:
         self._events = LogChannel("/events", context=context)
         self._state = Channel("/state", schema=STATE_SCHEMA, context=context)
         self._last_sent = 0
+        self._shown: set[str] = set()
 
     def publish(self, view: FlightView) -> None:
         """Everything of this moment, and what has happened since the last one; from the first SYNC on.
 
         Of what happened before, the last is told, and how many are left out.
         """
-        from foxglove.messages import Color, Log, LogLevel, SceneEntity, SceneUpdate
+        from foxglove.messages import (
+            Color,
+            Log,
+            LogLevel,
+            SceneEntity,
+            SceneEntityDeletion,
+            SceneEntityDeletionType,
+            SceneUpdate,
+        )
 
         from sim.drawing.foxglove_scene import ESTIMATE, ORBIT, arrow, attitude, stamp_of
 
@@ -86,6 +97,13 @@ class Publisher:
             return
         now_ns = view.unix_s * 10**9
         self._transforms.log(attitude(ESTIMATE, view.attitude or IDENTITY, now_ns), log_time=now_ns)
+        shown = view.arrows()
+        by_id = SceneEntityDeletionType.MatchingId
+        gone = [
+            SceneEntityDeletion(timestamp=stamp_of(now_ns), type=by_id, id=name)
+            for name in sorted(self._shown - shown.keys())
+        ]
+        self._shown = set(shown)
         arrows = [
             SceneEntity(
                 id=name,
@@ -93,9 +111,9 @@ class Publisher:
                 timestamp=stamp_of(now_ns),
                 arrows=[arrow(vector, Color(**COLOURS.get(name, GREY), a=1.0))],
             )
-            for name, vector in view.arrows().items()
+            for name, vector in shown.items()
         ]
-        self._scene.log(SceneUpdate(entities=arrows), log_time=now_ns)
+        self._scene.log(SceneUpdate(entities=arrows, deletions=gone), log_time=now_ns)
         self._state.log(state(view), log_time=now_ns)
         levels = {Weight.WARNING: LogLevel.Warning, Weight.ERROR: LogLevel.Error}
         for one in view.happenings:

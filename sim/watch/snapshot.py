@@ -67,7 +67,7 @@ def snapshot(view: FlightView, after: int, sampled: int) -> Json:
         "state": state(view),
         "time": time_text(view.unix_s).strip(),
         "ended": view.ended,
-        "arrows": view.arrows(),
+        "body": _body(view),
         "lockout_ms": coils.lockout_ms,
         "fractions": coils.fractions,
         "used": None
@@ -90,6 +90,23 @@ def snapshot(view: FlightView, after: int, sampled: int) -> Json:
             if one.number > after
         ],
     }
+
+
+def _body(view: FlightView) -> Json:
+    """What the picture of the body shows, vectors in body axes; the last pulse, and whether it goes on."""
+    now = view.coil_torque()
+    driven = now or view.last_pulse
+    drawn: Json = {
+        "q": view.attitude,
+        "sides": view.craft.sides if view.craft is not None else (1.0, 1.0, 1.0),
+        "field_t": view.field_body_t(),
+        "sun": view.sun_body(),
+        "dipole": None if driven is None else driven.dipole,
+        "torque": None if driven is None else driven.torque,
+        "in_units": driven is not None and driven.in_units,
+        "driving": now is not None,
+    }
+    return drawn
 
 
 def _frames(view: FlightView) -> list[tuple[str, int]]:

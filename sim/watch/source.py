@@ -34,6 +34,10 @@ class FrameSource(Protocol):
 
     name: str
 
+    @property
+    def waits_for(self) -> str:
+        """What must come before there is a first frame, in a sentence."""
+
     def batches(self) -> Iterator[Batch]:
         """The frames since the last batch, none if none came, until there are no more."""
 
@@ -53,6 +57,13 @@ class BusSource:
         self._bus: Bus | None = None
         if not self.name.startswith("loop:"):
             self._bus = open_bus(self.name)
+
+    @property
+    def waits_for(self) -> str:
+        """Somebody who hosts the bus, or who sends."""
+        if self._bus is None:
+            return f"waits for somebody who hosts {self.name}, as torquer sil --bus loop does"
+        return f"waits for the first frame on {self.name}: plant, flight software and boards are silent"
 
     def batches(self) -> Iterator[Batch]:
         """Until the bus is closed."""
@@ -106,6 +117,11 @@ class LogSource:
         self.name = str(path)
         self._factor = pace.factor
         self.cut_short = False
+
+    @property
+    def waits_for(self) -> str:
+        """Its first line."""
+        return f"waits for the first frame of {self.name}"
 
     def scenario(self) -> Scenario | None:
         """That of the run, if the log is in one."""

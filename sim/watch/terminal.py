@@ -114,6 +114,8 @@ ARROWS = {
     "ahead": "white",
     "field": "magenta",
     "Sun": "yellow",
+    "dipole": "bright_magenta",
+    "torque": "red",
 }
 HEAVIEST = 8
 """Messages that are listed with the load of the bus."""

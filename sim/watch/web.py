@@ -53,9 +53,18 @@ class LiveView:
             self.failure = error
 
     def snapshot(self, after: int, sampled: int) -> dict[str, object]:
-        """As of ``sim.watch.snapshot``."""
+        """As of ``sim.watch.snapshot``, and what is waited for; empty once there is a SYNC."""
         with self._lock:
-            return snapshot(self._view, after, sampled)
+            return {**snapshot(self._view, after, sampled), "waits_for": self._waits_for()}
+
+    def _waits_for(self) -> str:
+        if self._view.tick is not None:
+            return ""
+        if not self._view.frames:
+            return self.source.waits_for
+        return (
+            f"{sum(self._view.frames.values())} frames, waits for SYNC, which the plant sends with each tick"
+        )
 
 
 def application(view: LiveView) -> "Starlette":

@@ -26,7 +26,7 @@ function shared(state) {
   };
 }
 
-const clock = shared({ t_s: 0, playing: false });
+const clock = shared({ t_s: 0, playing: false, pace: 1 });
 const view = shared({ from_s: 0, to_s: flight.time.end_s });
 
 function showSpan(from_s, to_s) {
@@ -101,7 +101,7 @@ function step(part) {
     if (playing && before_ms !== null) {
       const next_s = t_s + (Number(pace.value) * (now_ms - before_ms)) / 1000;
       const over = next_s >= flight.time.end_s;
-      clock.set({ t_s: over ? flight.time.end_s : next_s, playing: !over });
+      clock.set({ t_s: over ? flight.time.end_s : next_s, playing: !over, pace: Number(pace.value) });
     }
     before_ms = clock.state.playing ? now_ms : null;
     if (clock.state.playing) requestAnimationFrame(frame);

@@ -17,7 +17,7 @@ from sim.value_types import Array
 
 
 MOST_SAMPLES = 3000
-COLUMNS = {"q_body_from_orbit": 4, "b_body_t": 3, "sun_body": 3, "r_eci_m": 3, "lit": 1}
+COLUMNS = {"q_body_from_orbit": 4, "b_body_t": 3, "m_body_am2": 3, "sun_body": 3, "r_eci_m": 3, "lit": 1}
 """Histories that are sampled, and their widths."""
 
 

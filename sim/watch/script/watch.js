@@ -6,6 +6,7 @@ const watch = (() => {
   const watchers = [];
   let last = null, connected = false;
 
+  document.body.classList.add("waiting");
   connect();
 
   function connect() {
@@ -40,7 +41,9 @@ const watch = (() => {
   function tell() {
     const badges = [];
     if (!connected) badges.push(["bad", "not connected to torquer watch"]);
-    if (last) {
+    document.body.classList.toggle("waiting", !last || last.waits_for !== "");
+    if (last) text("when", last.waits_for || `${last.time} UTC · tick ${last.state.tick}`);
+    if (last && !last.waits_for) {
       const { state } = last;
       badges.push(["plain", state.mode ?? "no mode yet"]);
       badges.push(state.valid ? ["good", "attitude valid"] : ["bad", "attitude not valid"]);
@@ -51,7 +54,6 @@ const watch = (() => {
       if (state.refused) badges.push(["bad", `${state.refused} pulses refused`]);
       if (last.broken) badges.push(["bad", `${last.broken} broken frames`]);
       if (last.ended) badges.push(["plain", "the flight is over"]);
-      text("when", last.time ? `${last.time} UTC · tick ${state.tick}` : "waiting for SYNC");
       text("numbers", [
         `${number(state.turn_deg, "°")} off the orbit axes`, `3σ ${number(state.sigma3_deg, "°")}`,
         `rate ${number(state.rate_degps, "°/s", 3)}`, `field off prediction ${number(state.field_off_deg, "°")}`,
@@ -100,70 +102,56 @@ const watch = (() => {
   return { watch: (watcher) => watchers.push(watcher), state: () => last };
 })();
 
+// The body as it was last told, in orbital axes; without an attitude in its own.
 (() => {
-  const canvas = document.getElementById("attitude");
-  const COLOURS = {
-    "body 1": "#0072b2", "body 2": "#d55e00", "body 3": "#009e73", field: "#7b3fa0", Sun: "#e69f00",
-    nadir: "#5b6b7b", ahead: "#5b6b7b",
-  };
-  const { project } = turnedView(canvas, draw);
+  const UPRIGHT = [1, 0, 0, 0], SEEN_MS = 800;  // of a log that plays fast, a pulse is over before it is seen
+  let pulses = 0, until_ms = 0;
 
-  function draw() {
-    const size = Math.min(canvas.clientWidth, 520), ratio = devicePixelRatio || 1;
-    if (!size) return;
-    canvas.width = canvas.height = Math.round(size * ratio);
-    const ctx = canvas.getContext("2d");
-    ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
-    ctx.strokeStyle = theme.colour("#8a97a5");
-    ctx.beginPath();
-    ctx.arc(size / 2, size / 2, 0.36 * size, 0, 2 * Math.PI);
-    ctx.stroke();
-    const last = watch.state(), placed = labelPlaces();
-    for (const [name, vector] of Object.entries(last ? last.arrows : {})) {
-      const [right, up] = project(vector);
-      const [x, y] = [size / 2 + 0.36 * size * right, size / 2 - 0.36 * size * up];
-      const level = /^body/.test(name) ? last.state[`level_${Number(name.at(-1)) - 1}`] : 0;
-      const turn = Math.atan2(y - size / 2, x - size / 2);
-      ctx.strokeStyle = ctx.fillStyle = theme.colour(COLOURS[name] ?? "#5b6b7b");
-      ctx.lineWidth = level ? 7 : 2.5;
-      ctx.beginPath();
-      ctx.moveTo(size / 2, size / 2);
-      ctx.lineTo(x, y);
-      ctx.stroke();
-      arrowHead(ctx, x, y, turn);
-      const label = level ? `${name}, coil at ${level}` : name;
-      const half = ctx.measureText(label).width / 2;
-      const middle = Math.min(Math.max(x + 26 * Math.cos(turn), half + 2), size - half - 2);
-      ctx.fillText(label, middle, placed(middle, y + 16 * Math.sin(turn), half));
-    }
+  function scene() {
+    const last = watch.state();
+    if (!last) return null;
+    const { q, sides, field_t, sun, in_units, driving } = last.body, C = axesOf(q ?? UPRIGHT);
+    if (driving || last.state.pulses !== pulses) until_ms = performance.now() + SEEN_MS;
+    pulses = last.state.pulses;
+    const shown = performance.now() < until_ms, [dipole, torque] = shown ? [last.body.dipole, last.body.torque] : [null, null];
+    const turned = (v) => v && turnedBack(C, v);
+    const size = (v, unit) => (v && in_units ? ` ${sizeIn(Math.hypot(...v), unit)}` : "");
+    return {
+      C, oriented: q !== null, sides, field: turned(field_t), sun: turned(sun), lit: true, levels: dipole ?? [],
+      dipole: turned(dipole), torque: turned(torque),
+      dipoleLabel: `m${size(dipole, "A m²")}`, torqueLabel: `T${size(torque, "N m")}`,
+    };
   }
 
-  watch.watch(draw);
-  theme.watch(draw);
-  new ResizeObserver(draw).observe(canvas);
-  draw();
+  watch.watch(coilView(document.getElementById("attitude"), scene));
 })();
 
 (() => {
   const place = document.getElementById("charts");
   const CHARTS = [
-    ["Attitude [deg]", [[1, "off the orbit axes", "#0072b2"], [2, "3 sigma", "#8a97a5"]]],
-    ["Rate [deg/s]", [[3, "rate", "#d55e00"]]],
-    ["Measured against predicted [deg]", [[4, "field", "#7b3fa0"], [5, "Sun", "#e69f00"]]],
+    ["Attitude", "angle [deg]", [[1, "off the orbit axes", "#0072b2"], [2, "3 sigma", "#8a97a5"]]],
+    ["Rate", "rate [deg/s]", [[3, "rate", "#d55e00"]]],
+    ["Measured against predicted", "angle [deg]", [[4, "field", "#7b3fa0"], [5, "Sun", "#e69f00"]]],
   ];
+  const TIME = "time [UTC]";
   const HOURS = [[60, "{HH}:{mm}", null, null, null, null, null, null, 1], [1, "{HH}:{mm}:{ss}", null, null, null, null, null, null, 1]];
-  const plots = CHARTS.map(([title, lines]) => {
+  const plots = CHARTS.map(([title, label, lines]) => {
     const head = document.createElement("h3"), host = document.createElement("div");
     head.textContent = title;
+    host.setAttribute("role", "img");
+    host.setAttribute("aria-label", `${title}: ${label} over ${TIME}`);
     place.append(head, host);
     const ink = () => theme.colour("#1b2733"), grid = () => theme.colour("#c9d2dc");
-    const axis = { stroke: ink, grid: { stroke: grid, width: 0.5 }, ticks: { stroke: grid } };
+    const font = "12px system-ui, sans-serif";
+    const axis = {
+      stroke: ink, grid: { stroke: grid, width: 0.5 }, ticks: { stroke: grid }, font, labelFont: font, labelSize: 18,
+    };
     const options = {
-      width: Math.max(host.clientWidth, 200), height: 170, tzDate: (seconds) => uPlot.tzDate(new Date(seconds * 1e3), "UTC"),
+      width: Math.max(host.clientWidth, 200), height: 190, tzDate: (seconds) => uPlot.tzDate(new Date(seconds * 1e3), "UTC"),
       scales: { y: { range: (_, low, high) => [0, high > 0 ? 1.1 * high : 1] } },
-      axes: [{ ...axis, values: HOURS }, { ...axis, size: 60 }],
-      series: [{ label: "UTC", value: "{HH}:{mm}:{ss}" }, ...lines.map(([, label, colour]) => ({
-        label, stroke: () => theme.colour(colour), width: 1.5, points: { show: false },
+      axes: [{ ...axis, values: HOURS, label: TIME }, { ...axis, size: 60, label }],
+      series: [{ label: "UTC", value: "{HH}:{mm}:{ss}" }, ...lines.map(([, name, colour]) => ({
+        label: name, stroke: () => theme.colour(colour), width: 1.5, points: { show: false },
         value: (_, value) => (value === null ? "–" : value.toFixed(3)),
       }))],
     };
@@ -175,5 +163,5 @@ const watch = (() => {
     for (const { plot, columns } of plots) plot.setData(columns.map((column) => series[column].slice()));
   });
   theme.watch(() => plots.forEach(({ plot }) => plot.redraw(false, true)));
-  new ResizeObserver(() => plots.forEach(({ plot, host }) => plot.setSize({ width: Math.max(host.clientWidth, 200), height: 170 }))).observe(place);
+  new ResizeObserver(() => plots.forEach(({ plot, host }) => plot.setSize({ width: Math.max(host.clientWidth, 200), height: 190 }))).observe(place);
 })();

@@ -208,3 +208,28 @@ def test_a_very_short_flight_is_drawn(look, tmp_path, made_run, ticks):
     page.get_by_role("button", name="Play").click()
     assert page.locator("#chart-pointing canvas").is_visible()
     assert page.locator("#attitude-view").evaluate(COLOURS) > 20
+
+
+def test_a_pulse_shows_its_dipole_and_its_torque(look, report):
+    page = look(report)
+    page.evaluate("clock.set({ t_s: 101 })")
+    words = page.locator("#attitude-words").inner_text()
+    assert re.search(r"coil 0 at level -3 · dipole \S+ m?A m² · torque \S+ [µmn]?N m$", words)
+    page.evaluate("clock.set({ t_s: 104 })")
+    assert page.locator("#attitude-words").inner_text().endswith("coils off")
+    page.evaluate("clock.set({ t_s: 104, playing: true, pace: 300 })")
+    assert "dipole" in page.locator("#attitude-words").inner_text(), (
+        "played fast, it stays in sight for a while"
+    )
+    page.evaluate("clock.set({ playing: false })")
+    key = page.locator("#motion .key").inner_text()
+    assert "m: dipole that the coils are driven to, A m²" in key
+    assert "T: its torque in the field, m × B, N m" in key
+
+
+def test_a_torque_is_the_cross_product_and_sizes_have_their_unit(look, report):
+    page = look(report)
+    assert page.evaluate("torqueOf([0, 0, 2], [1, 0, 0])") == [0, 2, 0]
+    sizes = {8: "8 A m²", 0.2: "200 mA m²", 2.345e-4: "235 µA m²", 5e-9: "5 nA m²", 2e-11: "0.02 nA m²"}
+    for size, text in sizes.items():
+        assert page.evaluate(f"sizeIn({size}, 'A m²')") == text

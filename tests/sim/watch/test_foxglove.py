@@ -8,7 +8,15 @@ import foxglove
 import pytest
 from mcap.reader import make_reader
 
-from fsw.wire.messages import CoilRefused, CoilRefusedReason, FswBoot, MagField, NavAttitude, Sync
+from fsw.wire.messages import (
+    CoilRefused,
+    CoilRefusedReason,
+    CoilStatus,
+    FswBoot,
+    MagField,
+    NavAttitude,
+    Sync,
+)
 from sim.errors import HarnessError
 from sim.watch.flight_view import MOST_HAPPENINGS, FlightView
 from sim.watch.foxglove import Publisher, foxglove_server
@@ -53,6 +61,19 @@ def test_attitude_directions_series_and_events_are_sent(tmp_path):
         "foxglove.SceneUpdate",
         "foxglove.Log",
     }
+
+
+def test_the_arrows_of_a_pulse_are_taken_away_after_it(tmp_path):
+    seen = FlightView()
+
+    def publish(publisher):
+        for level in (2, 0, 0):
+            for message in (CoilStatus(level, 1, 2000, 100, 100_000, 1), Sync(4, 1427424417)):
+                seen.take(message.encode(), 0.0)
+            publisher.publish(seen)
+
+    scenes = [data for topic, _, data in recorded(tmp_path / "live.mcap", publish) if topic == "/scene"]
+    assert [b"dipole" in data for data in scenes] == [True, True, False], "shown, deleted, gone"
 
 
 def test_all_that_happens_in_one_batch_is_an_event(tmp_path):

@@ -22,6 +22,7 @@ class Flight:
     """A source whose name could break a page."""
 
     name = "</title><script>alert(1)</script>"
+    waits_for = "waits for <b>somebody</b>"
 
     def batches(self):
         yield Batch([(FswBoot(0, 1, 5).encode(), 0.0), (Sync(0, 1427424417).encode(), 0.0)], 0.0)
@@ -122,17 +123,41 @@ def test_a_port_that_is_taken_is_named():
 @pytest.mark.parametrize("width", [390, 1400])
 def test_a_browser_draws_attitude_series_and_events_as_they_come(look, view, port, width):
     page = look(f"http://127.0.0.1:{port}/", width)
-    page.get_by_text("attitude not valid").wait_for()
+    page.get_by_text("waits for <b>somebody</b>").wait_for()
     view.read()
     page.get_by_text("coil 2 driven at level -2, -100 mA").wait_for()
     assert page.locator("#happenings tr").count() == 2
     assert "level -2" in page.locator("#coils").inner_text()
     assert page.evaluate("document.querySelectorAll('#charts canvas').length") == 3
+    for words in ("m: dipole that the coils are driven to, A m²", "T: its torque in the field, m × B, N m"):
+        assert words in page.locator(".key").inner_text()
     pixels = "canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer"
     colours = page.locator("#attitude").evaluate(f"canvas => new Set(new Uint32Array({pixels})).size")
     assert colours > 4
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert page.locator(".badges .note").count() == 0, "nothing to be warned of"
+
+
+@pytest.mark.long
+def test_before_the_first_frame_it_says_what_it_waits_for_and_nothing_of_a_flight(look, view, port):
+    page = look(f"http://127.0.0.1:{port}/")
+    page.get_by_text("waits for <b>somebody</b>").wait_for()
+    assert page.locator(".badges li").count() == 0
+    assert not page.locator("section").first.is_visible(), "there is nothing to show yet"
+    view._view.take(FswBoot(0, 1, 5).encode(), 0.0)
+    page.get_by_text("1 frames, waits for SYNC").wait_for()
+
+
+@pytest.mark.long
+def test_the_axes_of_its_charts_have_names_and_units(look, view, port):
+    page = look(f"http://127.0.0.1:{port}/")
+    page.get_by_text("waits for").wait_for()
+    charts = page.locator("#charts [role=img]").evaluate_all("all => all.map((one) => one.ariaLabel)")
+    assert charts == [
+        "Attitude: angle [deg] over time [UTC]",
+        "Rate: rate [deg/s] over time [UTC]",
+        "Measured against predicted: angle [deg] over time [UTC]",
+    ]
 
 
 @pytest.mark.long
@@ -161,7 +186,7 @@ def test_a_page_whose_server_is_gone_says_so(look, view):
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
         thread.start()
         page = look(f"http://127.0.0.1:{port}/")
-        page.get_by_text("attitude not valid").wait_for()
+        page.get_by_text("waits for <b>somebody</b>").wait_for()
         server.force_exit = server.should_exit = True
         thread.join(10.0)
     page.get_by_text("not connected to torquer watch").wait_for()
