@@ -23,3 +23,5 @@ axes.legend()
 # What ``torquer sil`` prints is what the run prints:
 
 print(run)
+
+# sphinx_gallery_thumbnail_path = '_static/gallery/plot_1_pointing.png'

@@ -29,3 +29,5 @@ figure.legend(ncols=2, loc="outside upper right")
 # How long each coil was driven, by level:
 
 print(run.pulses.groupby(["coil", "level"]).length_s.sum().unstack(fill_value=0.0).round(1))
+
+# sphinx_gallery_thumbnail_path = '_static/gallery/plot_2_pulses.png'

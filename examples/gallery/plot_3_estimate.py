@@ -31,3 +31,5 @@ axes.fill_between(
 )
 axes.set(xlabel="orbit", ylabel="attitude, deg", ylim=(0.0, 1.5))
 axes.legend()
+
+# sphinx_gallery_thumbnail_path = '_static/gallery/plot_3_estimate.png'

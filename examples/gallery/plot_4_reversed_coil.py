@@ -27,3 +27,5 @@ axes.legend()
 
 print(broken)
 print(broken.pulses[broken.pulses.coil == 1].tail(1))
+
+# sphinx_gallery_thumbnail_path = '_static/gallery/plot_4_reversed_coil.png'

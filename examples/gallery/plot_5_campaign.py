@@ -37,3 +37,5 @@ axes.set(xlabel="angle at the start, deg", ylabel="pointing error over the fligh
 # ``done.page`` is the page with all statistics; in short:
 
 print(done)
+
+# sphinx_gallery_thumbnail_path = '_static/gallery/plot_5_campaign.png'
