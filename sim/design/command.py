@@ -10,7 +10,7 @@ from fsw.input.text_file import read_text
 from fsw.input.toml_text import MOST_BYTES, BoundsError, parse_toml
 from sim.design.analysis import ANALYSIS_STEPS, Analysis, PictureMaps, analyse, picture_maps
 from sim.design.from_scenario import body_of, pulsing_of
-from sim.design.pictures import gain_figure, gain_picture, robustness_figure, robustness_picture
+from sim.design.pictures import gain_panels, gain_picture, robustness_panels, robustness_picture
 from sim.design.render import as_json, as_text
 from sim.design.theory.bodies import Body
 from sim.design.theory.linear import Gains, Number
@@ -116,12 +116,12 @@ def design_page(analysis: Analysis, scenario: Scenario, maps: PictureMaps) -> st
         charts = (
             chart(
                 "gains",
-                gain_figure(analysis, maps, Gains(scenario.control.k_w, scenario.control.k_a)),
+                gain_panels(analysis, maps, Gains(scenario.control.k_w, scenario.control.k_a)),
                 "Degree of stability over the gains, blue is stable; the red line is where stability ends.",
             ),
             chart(
                 "robustness",
-                robustness_figure(analysis, maps.inertia),
+                robustness_panels(maps.inertia),
                 "Degree of stability of the same gains on a body whose inertia is off.",
             ),
         )

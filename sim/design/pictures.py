@@ -1,5 +1,6 @@
 """The pictures of ``torquer design``: the map of the gains, and robustness against errors of the inertia."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,8 @@ from sim.value_types import Array
 AXIS_NAMES = ("1, radius", "2, along-track", "3, normal")
 COLOURS = "RdBu_r"
 DOTS_PER_INCH = 120
+PANEL_IN = 4.1
+"""Of a panel of the page."""
 ON_MAP, MARK = "#14202b", "#fdfdfd"
 """On the colours of a map, which are the same on a dark page."""
 LEAST_SCALE = 0.2
@@ -32,16 +35,51 @@ Marks = dict[str, tuple[str, Gains]]
 def gain_picture(path: Path, analysis: Analysis, maps: PictureMaps, of_scenario: Gains) -> None:
     """The figure of the gains as PNG."""
     with style():
-        _save(path, gain_figure(analysis, maps, of_scenario))
+        count = len(maps.degree_maps)
+        figure = Figure(figsize=(5.2 * count + 1.0, 5.2), layout="constrained", facecolor="white")
+        panels = list(figure.subplots(1, count, squeeze=False)[0])
+        _draw_gains(panels, analysis, maps, of_scenario)
+        _colour_bar(figure, panels, _gain_reach(maps))
+        figure.suptitle(_title(analysis.body, "degree of stability over the gains"))
+        _save(path, figure)
+
+
+def gain_panels(analysis: Analysis, maps: PictureMaps, of_scenario: Gains) -> list[Figure]:
+    """The same for a page, a figure for each panel."""
+    figures = [_panel_figure() for _ in maps.degree_maps]
+    _draw_gains([figure.subplots() for figure in figures], analysis, maps, of_scenario)
+    for figure in figures:
+        _colour_bar(figure, figure.axes, _gain_reach(maps))
+    return figures
 
 
 def robustness_picture(path: Path, analysis: Analysis, maps: InertiaMaps) -> None:
     """The figure of robustness as PNG."""
     with style():
-        _save(path, robustness_figure(analysis, maps))
+        figure = Figure(figsize=(10.5, 9.0), layout="constrained", facecolor="white")
+        panels = list(figure.subplots(2, 2).ravel())
+        _draw_robustness(panels, maps)
+        _colour_bar(figure, panels[:3], _reach(maps.degree))
+        gains = analysis.chosen.gains
+        gains_text = f"k_w {float(gains.k_w):.5g}, k_a {float(gains.k_a):.5g}"
+        figure.suptitle(_title(analysis.body, f"degree of stability on another inertia, {gains_text}"))
+        _save(path, figure)
 
 
-def gain_figure(analysis: Analysis, maps: PictureMaps, of_scenario: Gains) -> Figure:
+def robustness_panels(maps: InertiaMaps) -> list[Figure]:
+    """The same for a page, a figure for each panel."""
+    figures = [_panel_figure() for _ in range(4)]
+    _draw_robustness([figure.subplots() for figure in figures], maps)
+    for figure in figures[:3]:
+        _colour_bar(figure, figure.axes, _reach(maps.degree))
+    return figures
+
+
+def _panel_figure() -> Figure:
+    return Figure(figsize=(PANEL_IN, PANEL_IN), layout="constrained")
+
+
+def _draw_gains(panels: Sequence[Axes], analysis: Analysis, maps: PictureMaps, of_scenario: Gains) -> None:
     """The degree of stability over (k_w, k_a), for the continuous dipole and for pulses."""
     found, pulsed = analysis.search, analysis.pulsed
     marks = {"continuous dipole": _marks(analysis, of_scenario), "pulses": {"scenario": ("x", of_scenario)}}
@@ -52,34 +90,25 @@ def gain_figure(analysis: Analysis, maps: PictureMaps, of_scenario: Gains) -> Fi
             "best": ("*", pulsed.search.best.gains),
             "steady": ("o", pulsed.search.steady.gains),
         }
-    figure = Figure(figsize=(5.2 * len(maps.degree_maps) + 1.0, 5.2), layout="constrained", facecolor="white")
-    panels = figure.subplots(1, len(maps.degree_maps), squeeze=False)[0]
-    reach = _reach(*(one.degree for one in maps.degree_maps.values()))
     for panel, (name, one) in zip(panels, maps.degree_maps.items(), strict=True):
         panel.set_title(name)
-        _gain_panel(panel, one, marks[name], reach)
-    _colour_bar(figure, panels, reach)
-    figure.suptitle(_title(analysis.body, "degree of stability over the gains"))
-    return figure
+        _gain_panel(panel, one, marks[name], _gain_reach(maps))
 
 
-def robustness_figure(analysis: Analysis, maps: InertiaMaps) -> Figure:
+def _gain_reach(maps: PictureMaps) -> float:
+    return _reach(*(one.degree for one in maps.degree_maps.values()))
+
+
+def _draw_robustness(panels: Sequence[Axes], maps: InertiaMaps) -> None:
     """The degree of stability against errors of the inertia."""
-    gains = analysis.chosen.gains
-    figure = Figure(figsize=(10.5, 9.0), layout="constrained", facecolor="white")
-    panels, reach = figure.subplots(2, 2).ravel(), _reach(maps.degree)
     for panel, (one, other), degree in zip(panels[:3], PAIRS, maps.degree, strict=True):
         percent = 100.0 * maps.errors
-        _field(panel, percent, percent, degree, reach)
+        _field(panel, percent, percent, degree, _reach(maps.degree))
         panel.plot(0.0, 0.0, "+", color=ON_MAP, markersize=9)
         panel.set_xlabel(f"error of the mass spread along axis {AXIS_NAMES[one]} (%)")
         panel.set_ylabel(f"error of the mass spread along axis {AXIS_NAMES[other]} (%)")
         panel.set_title(f"spreads along axes {one + 1} and {other + 1}")
     _tilt_panel(panels[3], maps)
-    _colour_bar(figure, list(panels[:3]), reach)
-    gains_text = f"k_w {float(gains.k_w):.5g}, k_a {float(gains.k_a):.5g}"
-    figure.suptitle(_title(analysis.body, f"degree of stability on another inertia, {gains_text}"))
-    return figure
 
 
 def _marks(analysis: Analysis, of_scenario: Gains) -> Marks:
@@ -136,9 +165,9 @@ def _tilt_panel(panel: Axes, maps: InertiaMaps) -> None:
     panel.legend(loc="best", frameon=True, facecolor="white", borderpad=0.5)
 
 
-def _colour_bar(figure: Figure, panels: list[Axes], reach: float) -> None:
+def _colour_bar(figure: Figure, panels: Sequence[Axes], reach: float) -> None:
     scale = ScalarMappable(TwoSlopeNorm(0.0, -reach, reach), COLOURS)
-    bar = figure.colorbar(scale, ax=panels, shrink=0.9, extend="both")
+    bar = figure.colorbar(scale, ax=list(panels), shrink=0.9, extend="both")
     bar.set_label("degree of stability, max ln|multiplier| / 2π (1/rad); blue is stable")
 
 
