@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import can
 import numpy as np
+from h5py import string_dtype
 from numpy.typing import NDArray
 
 from fsw.bus.can_message import message_of
@@ -87,8 +88,8 @@ def write_netcdf(source: Source, path: Path, watch: Watch) -> list[str]:
         file.dimensions = {"time": table.ticks} | {name: len(name) for name in _AXES.values()}
         file.attrs.update({"Conventions": "CF-1.11", "title": "Torquer flight"} | source.identity)
         for width, name in _AXES.items():
-            labels = file.create_variable(name, (name,), "S1")
-            labels[:] = np.array([axis[1:] for axis in AXES[width]], dtype="S1")
+            labels = file.create_variable(name, (name,), string_dtype())
+            labels[:] = np.array([axis[1:] for axis in AXES[width]], dtype=object)
         time = file.create_variable("time", ("time",), "f8")
         time.attrs["units"] = f"seconds since {source.identity['epoch_utc']}"
         time.attrs["calendar"] = "standard"

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import JSON, SETTINGS, examples, say_report, sentences
+from torquer.cli.options import JSON, SCENARIO_OF_LOG, SETTINGS, examples, say_report, sentences
 
 EXAMPLES = examples(
     "torquer calibrate RUN --out calibration.toml --page calibration.html    # flown with law phasing",
@@ -37,14 +37,14 @@ class Ratios(click.ParamType[tuple[float, ...]]):
 
 @click.command(epilog=EXAMPLES)
 @click.argument("source", metavar="RUN|LOG|PASS.csv", type=click.Path(path_type=Path))
-@click.option("--scenario", metavar="SCENARIO", help="Of a log that has none beside it.")
+@SCENARIO_OF_LOG
 @click.option(
     "--tle",
     metavar="FILE",
     type=click.Path(path_type=Path),
     help="Two-line element sets of a PASS.csv; of many the nearest is taken.",
 )
-@click.option("--out", metavar="FILE", type=click.Path(path_type=Path), help="The file to write.")
+@click.option("--out", "-o", metavar="FILE", type=click.Path(path_type=Path), help="The file to write.")
 @click.option(
     "--page", metavar="FILE", type=click.Path(path_type=Path), help="Write the residuals as an HTML page too."
 )

@@ -22,7 +22,7 @@ EXAMPLES = examples(
 @click.option(
     "--seed", type=WholeNumber(0, 10**15), help="Of all random streams. Default: as the file says, 1."
 )
-@click.option("--workers", type=WholeNumber(min=1), help="Processes. Default: one a core.")
+@click.option("--workers", "-n", type=WholeNumber(min=1), help="Processes. Default: one a core.")
 @click.option(
     "--scheduler", metavar="ADDRESS|FILE", help="Fly on this Dask cluster instead. Needs torquer[cluster]."
 )
@@ -35,7 +35,9 @@ EXAMPLES = examples(
 )
 @click.option("--retry", is_flag=True, help="Fly runs that failed again.")
 @click.option("--parquet", is_flag=True, help="Export to DIR/results.parquet too. Needs torquer[parquet].")
-@click.option("--out", type=click.Path(path_type=Path), help="Folder. Default: campaigns/<name>-<UTC time>.")
+@click.option(
+    "--out", "-o", type=click.Path(path_type=Path), help="Folder. Default: campaigns/<name>-<UTC time>."
+)
 @law_and_settings
 @JUNIT
 @JSON

@@ -42,9 +42,9 @@ EXAMPLES = examples(
 )
 @click.option("--orbits", type=Number(min=0.0, min_open=True), help="Default: those of the scenario.")
 @click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of all random streams.")
-@click.option("--workers", type=WholeNumber(min=1), help="Processes. Default: one a core.")
+@click.option("--workers", "-n", type=WholeNumber(min=1), help="Processes. Default: one a core.")
 @click.option(
-    "--out", type=click.Path(path_type=Path), help="Folder. Default: compare/<scenario>-<UTC time>."
+    "--out", "-o", type=click.Path(path_type=Path), help="Folder. Default: compare/<scenario>-<UTC time>."
 )
 @law_and_settings
 @JSON

@@ -44,6 +44,11 @@ def of_buses(context: click.Context, parameter: click.Parameter, begun: str) -> 
     return _or_files(begun, words) if parameter.param_type_name == "argument" else _beginning(begun, words)
 
 
+def of_paces(context: click.Context, parameter: click.Parameter, begun: str) -> _Items:
+    """Lockstep, and real time with or without its factor."""
+    return _beginning(begun, ("lockstep", "realtime", "realtime:"))
+
+
 def of_laws(context: click.Context, parameter: click.Parameter, begun: str) -> _Items:
     """Laws, the last of a list with commas; files, of which one may have a law."""
     from fsw.core.laws.table import LAWS

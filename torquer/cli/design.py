@@ -32,6 +32,7 @@ EXAMPLES = examples(
 @click.option("--flights", type=WholeNumber(min=4), help="With --laws: flights for each. Default: 24.")
 @click.option(
     "--out",
+    "-o",
     type=click.Path(path_type=Path),
     help="Folder of pictures; default: runs/design-<scenario>, with --json none.",
 )

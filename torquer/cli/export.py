@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import LAW_AGAIN, OUT_FILE, RUN_OR_LOG, examples, sentences
+from torquer.cli.options import FORCE, LAW_AGAIN, OUT_FILE, RUN_OR_LOG, examples, sentences
 
 EXAMPLES = examples(
     "torquer export runs/microsat-20250320T120000Z --out run.mcap",
@@ -21,7 +21,7 @@ EXAMPLES = examples(
     help="Default: by the suffix of FILE.",
 )
 @OUT_FILE
-@click.option("--force", is_flag=True, help="Replace FILE if it is there.")
+@FORCE
 @LAW_AGAIN
 @sentences
 def export(run_or_log: Path, name: str | None, out: Path, force: bool, law: str | None) -> int:

@@ -10,13 +10,14 @@ from torquer.cli.options import JSON, JUNIT, examples, sentences
 
 EXAMPLES = examples(
     "torquer faults --list",
-    "torquer faults --row mag-bias --phases 4 --seeds 3",
+    "torquer faults --only mag-bias --phases 4 --seeds 3",
     "torquer faults --junit faults.xml --quiet",
 )
 
 
 @click.command(epilog=EXAMPLES)
 @click.option(
+    "--only",
     "--row",
     "rows",
     multiple=True,
@@ -27,8 +28,10 @@ EXAMPLES = examples(
 @click.option("--phases", default=1, show_default=True, type=WholeNumber(min=1), help="Of each row.")
 @click.option("--seeds", default=1, show_default=True, type=WholeNumber(min=1), help="Of each phase.")
 @click.option("--list", "listing", is_flag=True, help="Print the rows and what they expect.")
-@click.option("--out", type=click.Path(path_type=Path), help="Folder of faults.xml (JUnit), .html and .json.")
-@click.option("--workers", type=WholeNumber(min=1), help="Processes. Default: one a core.")
+@click.option(
+    "--out", "-o", type=click.Path(path_type=Path), help="Folder of faults.xml (JUnit), .html and .json."
+)
+@click.option("--workers", "-n", type=WholeNumber(min=1), help="Processes. Default: one a core.")
 @click.option("--slow", is_flag=True, help="Also rows that run real processes: minutes.")
 @click.option("--write-docs", is_flag=True, help="Write docs/faults.md of the repository.")
 @JUNIT

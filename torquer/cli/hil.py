@@ -84,7 +84,7 @@ BUDGET = Number(0.0)
     help="Instead, check one board, alone on the bus, against docs/icd.md; its limits are SCENARIO's.",
 )
 @click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of the plant.")
-@click.option("--out", type=click.Path(path_type=Path), help="Write log and numbers into this folder.")
+@click.option("--out", "-o", type=click.Path(path_type=Path), help="Write log and numbers into this folder.")
 @law_and_settings
 @JSON
 @sentences

@@ -204,7 +204,7 @@ def _sentence(error: click.ClickException) -> str:
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="Each command has a help of its own, with examples: torquer sil --help",
 )
-@click.version_option(package_name="torquer", prog_name="torquer")
+@click.version_option(None, "--version", "-V", package_name="torquer", prog_name="torquer")
 @click.pass_context
 def main(context: click.Context) -> None:
     """Magnetic attitude control as flight software: fly it, replay it, audit it."""

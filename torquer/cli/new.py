@@ -31,7 +31,7 @@ EXAMPLES = examples(
     help="exact: the onboard table is right but for magnetometer bias, residual dipole and torque; "
     "ordinary: no part of it is.",
 )
-@click.option("--out", type=click.Path(path_type=Path), help="The file. Default: NAME.toml.")
+@click.option("--out", "-o", type=click.Path(path_type=Path), help="The file. Default: NAME.toml.")
 @JSON
 @sentences
 def new(

@@ -12,7 +12,7 @@ import click
 
 from fsw.bus.open_bus import KINDS
 from sim.console import Console, detail, fail, print_document, speaking, warn
-from torquer.cli.completions import of_buses, of_laws, of_scenarios, of_settings
+from torquer.cli.completions import of_buses, of_laws, of_paces, of_scenarios, of_settings
 from torquer.cli.numbers import WholeNumber
 
 if TYPE_CHECKING:
@@ -41,13 +41,33 @@ COMPRESS = click.option(
 JSON = click.option("--json", "as_json", is_flag=True, help="Print one JSON document alone on stdout.")
 JUNIT = click.option(
     "--junit",
+    "--junit-xml",
+    "--junitxml",
     metavar="FILE",
     type=click.Path(path_type=Path),
     help="Write the verdicts as JUnit XML.",
 )
 OUT_FILE = click.option(
-    "--out", required=True, metavar="FILE", type=click.Path(path_type=Path), help="The file to write."
+    "--out", "-o", required=True, metavar="FILE", type=click.Path(path_type=Path), help="The file to write."
 )
+SCENARIO_OF_LOG = click.option(
+    "--scenario", metavar="SCENARIO", shell_complete=of_scenarios, help="Of a log that has none beside it."
+)
+PACE = click.option(
+    "--pace",
+    default="lockstep",
+    show_default=True,
+    shell_complete=of_paces,
+    help="lockstep or realtime[:FACTOR].",
+)
+TEXT_OUT = click.option(
+    "--out",
+    "-o",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="The file to write. Default: stdout.",
+)
+FORCE = click.option("--force", is_flag=True, help="Replace FILE if it is there.")
 SIGN = click.option(
     "--sign",
     metavar="KEY",
@@ -226,6 +246,25 @@ def say_report(found: "CommissioningReport") -> int:
         say(line.text, failed=line.failed)
     answer(found.values)
     return int(not found.ok)
+
+
+def write_text_out(out: Path | None, text: str, force: bool) -> None:
+    """Write a text to a file, or to stdout where none is named.
+
+    Raises:
+        UsageError: there is no file that could be replaced.
+        HarnessError: it cannot be written, or is there and may not be replaced.
+    """
+    from sim.console import say
+    from sim.export.destination import write_text
+
+    if out is None:
+        if force:
+            raise click.UsageError("--force replaces the file of --out, and none is named")
+        click.echo(text, nl=False)
+        return
+    write_text(out, text, force)
+    say(f"written: {out}")
 
 
 def report_failures(failures: Mapping[str, str]) -> int:

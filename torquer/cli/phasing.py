@@ -9,7 +9,16 @@ from click.core import ParameterSource
 from fsw.bus.open_bus import KINDS
 from torquer.cli.completions import of_buses
 from torquer.cli.numbers import Number, WholeNumber
-from torquer.cli.options import JSON, SEEDS, SETTINGS, examples, load_scenario, say_report, sentences
+from torquer.cli.options import (
+    JSON,
+    SCENARIO_OF_LOG,
+    SEEDS,
+    SETTINGS,
+    examples,
+    load_scenario,
+    say_report,
+    sentences,
+)
 
 EXAMPLES = examples(
     "torquer phasing microsat --set coils.wiring=[1,-2,3]    # in simulation: coil 2 is reversed",
@@ -23,7 +32,7 @@ Value = TypeVar("Value")
 
 @click.command(epilog=EXAMPLES)
 @click.argument("source", metavar="SCENARIO|RUN|LOG|CSV")
-@click.option("--scenario", metavar="SCENARIO", help="Of a log that has none beside it.")
+@SCENARIO_OF_LOG
 @click.option("--bus", shell_complete=of_buses, help=f"On a bench instead of in simulation: auto, {KINDS}.")
 @click.option("--real", metavar="A,B", help="Boards that are hardware: coil, magnetometer, sun.")
 @click.option("--arm", is_flag=True, help="Let coils be driven on the bench.")
@@ -46,7 +55,7 @@ Value = TypeVar("Value")
     help="Field of each coil at the magnetometer, along its axis. Default: the table's.",
 )
 @click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of the plant.")
-@click.option("--out", type=click.Path(path_type=Path), help="Keep the run in this folder.")
+@click.option("--out", "-o", type=click.Path(path_type=Path), help="Keep the run in this folder.")
 @SETTINGS
 @JSON
 @sentences

@@ -8,6 +8,7 @@ import click
 from torquer.cli.numbers import Number
 from torquer.cli.options import (
     COMPRESS,
+    PACE,
     SEEDS,
     bus_option,
     examples,
@@ -35,8 +36,10 @@ WAITING_NOTE_S = 30.0
     help="How long to fly; default: as in the scenario.",
 )
 @click.option("--seed", default=1, show_default=True, type=SEEDS, help="Of all random streams.")
-@click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
-@click.option("--out", type=click.Path(path_type=Path), help="Run directory; default runs/<scenario>-<time>.")
+@PACE
+@click.option(
+    "--out", "-o", type=click.Path(path_type=Path), help="Run directory; default runs/<scenario>-<time>."
+)
 @COMPRESS
 @law_and_settings
 @sentences

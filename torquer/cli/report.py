@@ -24,6 +24,7 @@ EXAMPLES = examples(
 @click.argument("runs", metavar="RUN...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option(
     "--out",
+    "-o",
     metavar="FILE",
     type=click.Path(path_type=Path),
     help="The page of several runs. Default: requirements.html in the folder that holds them.",

@@ -11,6 +11,7 @@ from torquer.cli.options import (
     COMPRESS,
     JSON,
     JUNIT,
+    PACE,
     SEEDS,
     SIGN,
     bus_option,
@@ -37,10 +38,10 @@ EXAMPLES = examples(
 @click.command(epilog=EXAMPLES)
 @scenario_argument(required=False)
 @bus_option(" or virtual.")
-@click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
+@PACE
 @click.option("--orbits", type=Number(min=0.0, min_open=True), help="Default: those of the scenario.")
 @click.option("--seed", type=SEEDS, help="Of all random streams. Default: 1.")
-@click.option("--out", type=click.Path(path_type=Path), help="Default: runs/<scenario>-<UTC time>.")
+@click.option("--out", "-o", type=click.Path(path_type=Path), help="Default: runs/<scenario>-<UTC time>.")
 @click.option(
     "--from",
     "source",

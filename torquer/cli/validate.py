@@ -41,9 +41,10 @@ EXAMPLES = examples(
     help="At most so many of each population. A claim on the median or mean of more is then not judged. "
     "Default: all.",
 )
-@click.option("--workers", type=WholeNumber(min=1), help="Processes. Default: one a core.")
+@click.option("--workers", "-n", type=WholeNumber(min=1), help="Processes. Default: one a core.")
 @click.option(
     "--out",
+    "-o",
     type=click.Path(path_type=Path),
     help="The page. Default, if all is run: docs/validation.md of the repository, else validation.md.",
 )

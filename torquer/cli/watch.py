@@ -2,7 +2,7 @@
 
 import click
 
-from torquer.cli.completions import of_buses, of_scenarios
+from torquer.cli.completions import of_buses, of_paces, of_scenarios
 from torquer.cli.numbers import WholeNumber
 from torquer.cli.options import examples, sentences
 
@@ -19,6 +19,7 @@ EXAMPLES = examples(
     "--pace",
     default="realtime:60",
     show_default=True,
+    shell_complete=of_paces,
     help="Of a log: realtime[:FACTOR], or lockstep: as fast as it can be read.",
 )
 @click.option(

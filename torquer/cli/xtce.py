@@ -4,23 +4,20 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import OUT_FILE, examples, sentences
+from torquer.cli.options import FORCE, TEXT_OUT, examples, sentences, write_text_out
 
 EXAMPLES = examples(
-    "torquer xtce --out torquer.xml",
+    "torquer xtce > torquer.xml",
     "torquer xtce --out torquer.xml --force",
 )
 
 
 @click.command(epilog=EXAMPLES)
-@OUT_FILE
-@click.option("--force", is_flag=True, help="Replace FILE if it is there.")
+@TEXT_OUT
+@FORCE
 @sentences
-def xtce(out: Path, force: bool) -> None:
+def xtce(out: Path | None, force: bool) -> None:
     """Write the messages of the bus as XTCE 1.2, for Yamcs and other mission control systems."""
-    from sim.console import say
-    from sim.export.destination import write_text
     from sim.export.xtce import xtce_text
 
-    write_text(out, xtce_text(), force)
-    say(f"written: {out}")
+    write_text_out(out, xtce_text(), force)

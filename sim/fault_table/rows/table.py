@@ -428,7 +428,7 @@ def choose_rows(names: Sequence[str], slow: bool = False) -> list[FaultRow]:
         if not any(_matches(row, name) for row in ROWS):
             hint = did_you_mean(name, (row.name for row in ROWS))
             raise HarnessError(
-                f"--row {name}: there is no such row{hint}; `torquer faults --list` names them"
+                f"--only {name}: there is no such row{hint}; `torquer faults --list` names them"
             )
     if not names:
         return [row for row in ROWS if slow or not row.slow]

@@ -23,7 +23,7 @@ def test_every_history_of_the_plant_is_there_with_its_unit(flight, dataset, name
 
 
 def test_components_are_chosen_by_name(flight, dataset):
-    chosen = dataset["q_body_from_orbit"].sel(wxyz=b"w")
+    chosen = dataset["q_body_from_orbit"].sel(wxyz="w")
     assert np.array_equal(chosen.values, flight.truth["q_body_from_orbit"][:, 0])
     assert dataset["torque_body_nm_coils"].dims == ("time", "xyz")
 

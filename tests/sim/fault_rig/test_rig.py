@@ -225,7 +225,7 @@ def test_rows_have_names_of_their_own_and_known_checks():
 
 
 def test_an_unknown_row_is_a_sentence():
-    with pytest.raises(HarnessError, match="--row nonsense"):
+    with pytest.raises(HarnessError, match="--only nonsense"):
         choose_rows(["nonsense"])
 
 

@@ -122,7 +122,7 @@ def test_the_list_names_every_row(capsys):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("--row", "gremlins"), "--row gremlins: there is no such row"),
+        (("--row", "gremlins"), "--only gremlins: there is no such row"),
         (("--phases", "0"), "--phases"),
         (("--row", "none", "--write-docs"), "--write-docs: the page is of all rows"),
     ],

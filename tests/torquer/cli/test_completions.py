@@ -47,6 +47,23 @@ def test_buses():
     assert "auto" in found(completions.of_buses, "", parameter="bus")
 
 
+def test_paces():
+    assert found(completions.of_paces, "real", parameter="pace") == ["realtime", "realtime:"]
+    for command in ("sil", "plant", "watch"):
+        paces = next(
+            one for one in main.get_command(click.Context(main), command).params if one.name == "pace"
+        )
+        assert paces.shell_complete(click.Context(main), "lock")[0].value == "lockstep"
+
+
+@pytest.mark.parametrize("command", ["calibrate", "phasing", "replay", "watch"])
+def test_scenarios_of_a_log(command):
+    option = next(
+        one for one in main.get_command(click.Context(main), command).params if one.name == "scenario"
+    )
+    assert option.shell_complete(click.Context(main), "micro")[0].value == "microsat"
+
+
 def test_a_bus_else_files_where_a_run_may_stand():
     watched = found(completions.of_buses, "lo", "watch"), found(completions.of_buses, "my-r", "watch")
     assert watched == (["loop"], ["my-r"])

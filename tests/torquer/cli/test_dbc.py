@@ -30,7 +30,17 @@ def test_a_file_that_is_there_is_replaced_by_force_alone(tmp_path):
     assert "GenMsgCycleTime" in out.read_text()
 
 
-@pytest.mark.parametrize("words", [(), ("--out", "/dev/null"), ("--out", "bus.dbc", "--tick-hz", "0")])
+def test_without_a_file_it_is_on_stdout_alone(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = call("--tick-hz", "4")
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert cantools.database.load_string(done.stdout).get_message_by_name("SYNC").cycle_time == 250
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "words", [("--force",), ("--out", "/dev/null"), ("--out", "bus.dbc", "--tick-hz", "0")]
+)
 def test_what_cannot_be_written_is_one_sentence(tmp_path, monkeypatch, words):
     monkeypatch.chdir(tmp_path)
     refused = call(*words)
