@@ -69,7 +69,8 @@ def _sections(folder: Path, campaign: Campaign, analysis: CampaignAnalysis) -> I
     if analysis.shares and analysis.done:
         note = (
             "Parts of the runs that are judged by each, with the same bounds; a run too short for one "
-            "is not judged. The margin is the limit less the figure. A run whose report is kept links to it."
+            "is not judged. The margin, of a run in brackets, is the limit less the figure. Reports that are "
+            "kept are linked."
         )
         tables = (
             scenario_requirements.share_table(analysis.shares),

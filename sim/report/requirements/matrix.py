@@ -13,6 +13,8 @@ from sim.value_types import Json
 
 KINDS = {Outcome.MET: "good", Outcome.FAILED: "bad", Outcome.NOT_JUDGED: "note"}
 """The class of style of each verdict."""
+SIGNS = {Outcome.MET: "✓ ", Outcome.FAILED: "✗ ", Outcome.NOT_JUDGED: Outcome.NOT_JUDGED.value}
+"""How a cell of the table begins."""
 ABSENT = "–"
 
 
@@ -122,7 +124,7 @@ def _row(each: Sequence[Mapping[str, Any] | None]) -> MatrixRow:
 
 
 def matrix_table(rows: Sequence[MatrixRow], runs: Sequence[JudgedRun]) -> Table:
-    """A row per requirement, a column per run that links to its page."""
+    """A row per requirement, a column per run that links to its page: the sign, the figure and its margin."""
     links = (TableCell(run.name, href=run.page) for run in runs)
     head = ("requirement", "limit", "met by", *links)
     body = [
@@ -130,15 +132,25 @@ def matrix_table(rows: Sequence[MatrixRow], runs: Sequence[JudgedRun]) -> Table:
             row.words,
             row.limit,
             row.share,
-            *(ABSENT if cell is None else _table_cell(cell) for cell in row.cells),
+            *(
+                ABSENT if cell is None else _table_cell(cell, run.page)
+                for cell, run in zip(row.cells, runs, strict=True)
+            ),
         )
         for row in rows
     ]
     return Table(head, body)
 
 
-def _table_cell(cell: MatrixCell) -> TableCell:
-    return TableCell(f"{cell.verdict.value}{_figures(cell, '')}", KINDS[cell.verdict])
+def _table_cell(cell: MatrixCell, page: str) -> TableCell:
+    sign = SIGNS[cell.verdict]
+    if cell.measured is None or cell.margin is None:
+        return TableCell(
+            f"{sign}{'no value' if cell.verdict is Outcome.FAILED else ''}", KINDS[cell.verdict], page
+        )
+    plus = "+" if cell.margin >= 0.0 else ""
+    words = f"{sign}{number(cell.measured)} ({plus}{number(cell.margin)})"
+    return TableCell(words, KINDS[cell.verdict], page)
 
 
 def _figures(cell: MatrixCell, unit: str) -> str:

@@ -15,8 +15,8 @@ from sim.result_files import write_result
 
 PAGE = "requirements.html"
 _NOTE = (
-    "Of each run the verdict, the figure that is limited, and its margin: how far it is under the limit, "
-    "negative where it is over. A run that is too short to be judged by a requirement counts neither way."
+    "Of each run the verdict (✓ met, ✗ missed), the figure that is limited, and in brackets its margin: "
+    "how far it is under the limit. A run that is too short to be judged by a requirement counts neither way."
 )
 
 

@@ -59,7 +59,7 @@ def test_a_few_runs_have_a_column_each_and_link_to_what_is_kept(small, done_row,
     assert [(str(name), name.href) for name in table.head[3:]] == [
         ("run 0", ""), ("run 2", "runs/2/report.html"), ("run 5", ""),
     ]  # fmt: skip
-    assert table.rows[1][3] == "met: 20, margin 30"
+    assert table.rows[1][3] == "✓ 20 (+30)"
     assert table.rows[2][3:] == ("–",) * 3
 
 

@@ -66,7 +66,10 @@ def test_the_table_has_a_column_a_run_with_a_link_where_there_is_a_page():
     table = matrix_table(matrix(RUNS), RUNS)
     assert [(str(cell), cell.href) for cell in table.head[3:5]] == [("a", "a/report.html"), ("b", "")]
     cells = table.rows[0][3:]
-    assert cells == ("met: 0.4, margin 0.6", "failed: 1.5, margin -0.5", "not judged", "–")
+    assert cells == ("✓ 0.4 (+0.6)", "✗ 1.5 (-0.5)", "not judged", "–")
+    assert [cell.href for cell in cells[:2]] == ["a/report.html", ""], (
+        "the heads are not seen on a narrow screen"
+    )
     assert [cell.kind for cell in cells[:3]] == ["good", "bad", "note"]
 
 
@@ -95,3 +98,10 @@ def test_the_document_has_what_each_run_says():
     assert ape["runs"][1] == {
         "run": "b", "verdict": "failed", "measured": 1.5, "limit": 1.0, "margin": -0.5,
     }  # fmt: skip
+
+
+def test_what_never_settled_is_missed_without_a_value():
+    settling = APE | {"index": "settling", "unit": "orbits"}
+    runs = [JudgedRun("a", [judged(settling, None, "failed")])]
+    assert matrix_table(matrix(runs), runs).rows[0][3] == "✗ no value"
+    assert matrix_lines(matrix(runs), runs)[1] == "  FAILED  (a)"

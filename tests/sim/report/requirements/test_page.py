@@ -27,8 +27,8 @@ def test_it_shows_verdicts_and_links(tmp_path):
     for words in (
         "1 of 1 requirement missed by a run",
         '<a href="r/report.html">run_<wbr>1</a>',
-        '<td class="good" data-head="run_0">met: 0.5, margin 0.5</td>',
-        "failed: 2, margin -1",
+        '<td class="good" data-head="run_0"><a href="r/report.html">✓ 0.5 (+0.5)</a></td>',
+        "✗ 2 (-1)",
     ):
         assert words in page
 
