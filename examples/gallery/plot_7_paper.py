@@ -21,3 +21,5 @@ run.plot.pulses(ax=below)
 # Without axes it is as wide as a column of a journal:
 
 run.plot.rates()
+
+# sphinx_gallery_thumbnail_path = '_static/gallery/plot_7_paper.png'
