@@ -22,7 +22,7 @@
 # make test-chromium   the pages in a headless browser, Debian's chromium
 # make fuzz       a million random frames, a thousand mutations of each kind of input file, 200 recorded passes with a spoilt row: half an hour
 # make scenarios  300 random legal scenarios of up to two orbits, read and judged again: a quarter of an hour
-# make attack     a million requests to a coil board, ten minutes on its process, a thousand logs: half an hour
+# make attack     a million requests to a coil board, and to the one in C; ten minutes on its process, a thousand logs: three quarters of an hour
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
 # make verdicts   all flights that miss a requirement for a known reason: is it told, and no wrong one: a minute
 # make causes     satellites that have one cause each: which does their diagnosis name? twenty minutes
@@ -151,7 +151,7 @@ scenarios: venv
 	TORQUER_SCENARIOS=0:300 $(bin)/pytest -q tests/fuzz/test_legal_scenarios.py
 
 attack: venv
-	TORQUER_ATTACK_REQUESTS=1000000 TORQUER_ATTACK_SECONDS=600 TORQUER_ATTACK_LOGS=1000 $(bin)/pytest -q -s tests/attack
+	TORQUER_ATTACK_REQUESTS=1000000 TORQUER_ATTACK_SECONDS=600 TORQUER_ATTACK_LOGS=1000 $(bin)/pytest -q -s tests/attack tests/firmware/test_attack.py tests/firmware/test_twin.py
 
 differential: venv
 	TORQUER_DIFFERENTIAL_ORBITS=100 $(bin)/pytest -q --timeout 3600 tests/differential

@@ -10,8 +10,6 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import NamedTuple, Protocol
 
-import pytest
-
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilFire, PlantBoot, PlantEnd, Sync, TickDone
 
@@ -294,7 +292,75 @@ class Attacker:
         self.maybe_fire()
 
 
-@pytest.fixture
-def tools():
-    """The attacker and the judge."""
-    return Attacker, Judge, Setup
+class SimulatedTarget:
+    """A bench in simulated time. The judge looks at its pin at each event and around the ends of pulses."""
+
+    def __init__(self, setup, judge, bench):
+        self._setup, self._judge, self._bench = setup, judge, bench
+        self._now_ms = 0
+        self._on_ms = self._off_ms = None
+        self._last = None
+        self.restart()
+
+    def now_ms(self):
+        return self._now_ms
+
+    def off_at_ms(self):
+        return self._off_ms
+
+    def send(self, frame):
+        self._bench.receive(frame, self._now_ms)
+        self._look()
+
+    def restart(self):
+        self._bench.switch_on(now_ms=self._now_ms)
+        self._look()
+
+    def wait(self, milliseconds):
+        end_ms = self._now_ms + milliseconds
+        while self._now_ms < end_ms:
+            self._now_ms = min([end_ms, *(at for at in self._sights_ms() if at > self._now_ms)])
+            self._bench.watch(self._now_ms)
+            self._look()
+
+    def _sights_ms(self):
+        """When a pin that is on is worth a look: when its timer ends it, and when it must be off."""
+        pin = self._bench.pin
+        if pin is None:
+            return ()
+        over_ms = self._on_ms + self._setup.pulse_ms
+        timer_ms = () if pin.until_ms is None else (pin.until_ms - 1, pin.until_ms)
+        return (*timer_ms, over_ms - 1, over_ms)
+
+    def _look(self):
+        pin = self._bench.pin
+        on = None if pin is None else (pin.coil, pin.level)
+        if on is not None and self._last is None:
+            self._on_ms = self._now_ms
+        if on is not None:
+            self._off_ms = pin.until_ms
+        elif self._last is not None:
+            self._off_ms = self._now_ms
+        self._last = on
+        self._judge.see(self._now_ms, on)
+
+
+def attack(setup, bench, requests, seed, enough=lambda judge: False):
+    """Attack a bench in simulated time until so many requests have been made: attacker and judge."""
+    judge = Judge(setup)
+    attacker = Attacker(SimulatedTarget(setup, judge, bench), setup, Random(f"{seed}/{tuple(setup)}"))
+    while attacker.requests < requests and not enough(judge):
+        attacker.move()
+    return attacker, judge
+
+
+SETUPS = {
+    "as it flies": Setup(1, 3000, 100_000, True, 5000),
+    "per coil": Setup(1, 3000, 100_000, False, 5000),
+    "fast": Setup(10, 300, 2000, True, 500),
+    "fast, per coil": Setup(10, 300, 2000, False, 500),
+    "pulses that are no whole ticks": Setup(8, 437, 1999, True, 700),
+    "ticks longer than a pulse": Setup(2, 333, 1111, False, 1700),
+    "no dead-man to speak of": Setup(4, 1000, 3000, True, 3_600_000),
+    "a dead-man quicker than a pulse": Setup(20, 900, 1500, True, 300),
+}

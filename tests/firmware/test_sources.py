@@ -1,0 +1,58 @@
+"""The sources of the coil board: their own tests, static analysis, and what they must not contain."""
+
+import re
+import shutil
+import subprocess
+
+import pytest
+from firmware_bench import BOARD, NO_COMPILER, has_compiler
+
+CORE = sorted((BOARD / "src").glob("*.[ch]"))
+SOURCES = sorted(path for path in BOARD.rglob("*") if path.suffix in (".c", ".h", ".ld", ".s"))
+FREE_OF_FINDINGS = ("src/*.c", "host/record.c", "host/slcan.c", "host/harness.c")
+"""What bears MISRA C:2012; the program of this machine uses its operating system, and does not."""
+
+
+def needs(program, package):
+    return pytest.mark.skipif(
+        shutil.which(program) is None, reason=f"{program} is not installed: Debian's package {package}"
+    )
+
+
+def run(*words, cwd=None):
+    done = subprocess.run([str(word) for word in words], check=False, capture_output=True, text=True, cwd=cwd)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not has_compiler(), reason=NO_COMPILER)
+@needs("cmake", "cmake")
+def test_its_own_tests_pass(tmp_path):
+    run("cmake", "-S", BOARD, "-B", tmp_path)
+    run("cmake", "--build", tmp_path)
+    said = run("ctest", "--test-dir", tmp_path, "--output-on-failure")
+    assert "100% tests passed, 0 tests failed out of 4" in said
+
+
+@pytest.mark.long
+@needs("cppcheck", "cppcheck")
+def test_it_is_free_of_findings_of_misra_and_cppcheck():
+    files = [path for pattern in FREE_OF_FINDINGS for path in sorted(BOARD.glob(pattern))]
+    includes = [f"-I{BOARD / folder}" for folder in ("limits", "src", "host")]
+    quiet = ("--suppress=missingIncludeSystem", "--suppress=unusedFunction", "--suppress=misra-c2012-2.5:*.h")
+    rules = ("--addon=misra", "--enable=all", "--std=c99", "--error-exitcode=1", *quiet)
+    assert run("cppcheck", "-q", *rules, *includes, *files) == ""
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.relative_to(BOARD).as_posix())
+def test_each_source_names_its_licence(path):
+    assert path.read_text().splitlines()[0] == "/* SPDX-License-Identifier: Apache-2.0 */"
+
+
+@pytest.mark.parametrize("path", CORE, ids=lambda path: path.name)
+def test_the_core_is_integers_in_memory_of_its_own(path):
+    code = re.sub(r"(?s)/\*.*?\*/", "", path.read_text())
+    assert not re.search(r"\b(float|double|malloc|calloc|free|goto|static\s+\w+\s+\w+\s*;)\b", code)
+    included = set(re.findall(r"#include <(.+)>", code))
+    assert included <= {"stdbool.h", "stdint.h", "stddef.h"}, "it does no input or output and tells no time"

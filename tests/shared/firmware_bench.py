@@ -1,0 +1,121 @@
+"""The coil board in C, compiled for this machine and called as the stub's bench is."""
+
+import ctypes
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from struct import Struct
+
+from fsw.bus import can_frame
+from hil_stub.bench import LEVEL_A
+from hil_stub.coils.coil_driver import Pin
+
+ROOT = Path(__file__).resolve().parents[2]
+BOARD = ROOT / "examples" / "firmware" / "coil_board"
+COMPILER = "gcc"
+STRICT = (
+    "-std=c99",
+    "-Wall",
+    "-Wextra",
+    "-Werror",
+    "-pedantic",
+    "-Wconversion",
+    "-Wsign-conversion",
+    "-Wshadow",
+    "-Wundef",
+)
+NO_COMPILER = f"the coil board in C needs the compiler {COMPILER}, which is not installed"
+_REQUEST = Struct("<B3xIi16s")
+_REPLY = Struct("<BbBxI")
+_REPLY_MOST = _REPLY.size + can_frame.SIZE * 69
+_CLOCK = 2**32
+
+
+def has_compiler():
+    return shutil.which(COMPILER) is not None
+
+
+def limits_header(**values):
+    """The header of limits that ships, with other values: ``tick_hz=10``."""
+    text = (BOARD / "limits" / "limits.h").read_text()
+    for name, value in values.items():
+        text, found = re.subn(rf"(?m)^(#define LIMITS_{name.upper()}) \d+(U?)$", rf"\1 {value:d}\2", text)
+        assert found == 1, name
+    return text
+
+
+def compile_board(folder, limits=None, board=BOARD):
+    """The sources of ``board`` as a library in ``folder``, which holds the header of its limits, too."""
+    host = board / "host"
+    words = ["-shared", "-fPIC", str(host / "harness.c"), str(host / "record.c")]
+    return _compile(folder / "coil_board.so", limits, board, words)
+
+
+def compile_program(folder, limits=None):
+    """The board as a program of this machine."""
+    host = BOARD / "host"
+    words = [str(host / name) for name in ("main.c", "record.c", "slcan.c")]
+    return _compile(folder / "coil_board", limits, BOARD, words)
+
+
+def _compile(product, limits, board, words):
+    folder = product.parent
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "limits.h").write_text(limits_header() if limits is None else limits)
+    sources = [str(source) for source in sorted((board / "src").glob("*.c"))]
+    includes = [f"-I{folder}", f"-I{board / 'src'}"]
+    command = [COMPILER, *STRICT, "-O2", *includes, *sources, *words, "-o", str(product)]
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    if done.returncode:
+        raise AssertionError(f"{COMPILER} does not compile the coil board:\n{done.stderr}")
+    return product
+
+
+class FirmwareBench:
+    """A board in C as a bench: its coils draw their nominal current at once.
+
+    Args:
+        library: as ``compile_board`` gives it. There is one board in each.
+        clock_ms: what the board's clock reads when the bench's reads 0; it counts modulo 2^32.
+        current_ma: what the board measures; None: the current of what it drives.
+    """
+
+    def __init__(self, library, clock_ms=0, current_ma=None):
+        self._step = ctypes.CDLL(str(library)).harness_step
+        self._step.argtypes = (ctypes.c_char_p, ctypes.c_char_p)
+        self._step.restype = ctypes.c_uint32
+        self._reply = ctypes.create_string_buffer(_REPLY_MOST)
+        self._clock_ms = clock_ms
+        self._current_ma = self._nominal_ma if current_ma is None else current_ma
+        self.pin = None
+
+    def switch_on(self, tick=0, now_ms=0):
+        self.pin = None
+        return self._do(0, now_ms, Struct("<I12x").pack(tick))
+
+    def receive(self, frame, now_ms=0):
+        return self._do(1, now_ms, can_frame.pack(frame))
+
+    def watch(self, now_ms):
+        self._do(2, now_ms, bytes(16))
+
+    def due_ms(self):
+        return None if self.pin is None else self.pin.until_ms
+
+    def _nominal_ma(self):
+        pin = self.pin
+        if pin is None:
+            return 0
+        current_ma = round(1000.0 * LEVEL_A[abs(pin.level) - 1])
+        return current_ma if pin.level > 0 else -current_ma
+
+    def _do(self, what, now_ms, record):
+        clock_ms = (self._clock_ms + now_ms) % _CLOCK
+        length = self._step(_REQUEST.pack(what, clock_ms, self._current_ma(), record), self._reply)
+        coil, level, count, until_ms = _REPLY.unpack_from(self._reply)
+        left_ms = (until_ms - clock_ms) % _CLOCK
+        self.pin = Pin(coil, level, now_ms + left_ms) if level else None
+        if not count:
+            return []
+        return list(can_frame.unpack(self._reply.raw[_REPLY.size : length]))
