@@ -1,7 +1,7 @@
 """A link to one board: speaks to it as plant and flight software would, and records its replies."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -129,21 +129,22 @@ class BoardLink:
         self.replies: list[TickReply] = []
         """All replies so far."""
 
-    def step(self, *frames: Frame, early_s: float | None = None) -> TickReply:
+    def step(self, *frames: Frame, early_s: float | None = None, late_s: float = 0.0) -> TickReply:
         """Send SYNC of this tick, ``frames`` and TICK_DONE; return what the board sends until the next tick.
 
-        With ``early_s`` the next tick comes that long after the answer, and not when it is due.
+        With ``early_s`` the next tick comes that long after the answer, and not when it is due; it is due by
+        ``late_s`` later than the rate says.
         """
         tick, self.tick = self.tick, self.tick + 1
         at_s = self.due_s()
         sync = Sync(tick, self._epoch_unix_s + tick // self.tick_hz).encode()
         self._bus.send([sync, *frames, TickDone(tick, 0).encode()])
-        return self._listen(tick + 1, at_s, self.period_s, due=True, early_s=early_s)
+        return self._listen(tick + 1, at_s, self.period_s + late_s, due=True, early_s=early_s)
 
-    def sync(self, tick: int, seconds: float | None = None) -> TickReply:
-        """Send a SYNC alone, of any tick, and listen for so long; None: for the time of a tick."""
+    def sync(self, tick: int, seconds: float | None = None, frames: Sequence[Frame] = ()) -> TickReply:
+        """Send a SYNC of any tick, no TICK_DONE, and listen for so long; None: for the time of a tick."""
         at_s = self.due_s()
-        self._bus.send([Sync(tick, self._epoch_unix_s).encode()])
+        self._bus.send([Sync(tick, self._epoch_unix_s).encode(), *frames])
         return self._listen(tick, at_s, self.period_s if seconds is None else seconds)
 
     def restart(self) -> TickReply:

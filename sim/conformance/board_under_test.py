@@ -68,10 +68,10 @@ class BoardUnderTest:
             )
         return reply
 
-    def expect_locked_out(self, since_s: float, coil: int = 1) -> None:
+    def expect_locked_out(self, since_s: float, **changes: int) -> None:
         """A request is refused, if it comes before the end of a back-off that began at ``since_s``."""
         if self.link.due_s() < since_s + self.limits.backoff_ms / 1000.0 - SLACK_S:
-            self.expect_off(self.expect_refusal(self.request(coil=coil), CoilRefusedReason.LOCKOUT))
+            self.expect_off(self.expect_refusal(self.request(**changes), CoilRefusedReason.LOCKOUT))
 
     def expect_off(self, reply: TickReply) -> CoilStatus:
         """The status of a tick in which nothing may have been driven."""
@@ -164,10 +164,13 @@ class BoardUnderTest:
         while True:
             left_s = end_s - self.link.due_s()
             near = left_s < 6 * period_s
+            told_free = self._is_told_free(coil=1)
             request = self.request(coil=1)
             reply = self.send(request)
             if not reply.refused:
                 break
+            if told_free:
+                raise NonconformanceError(f"refused in tick {reply.tick - 1}, of which lockout_ms was 0")
             if reply.refused[0].reason != CoilRefusedReason.LOCKOUT:
                 raise NonconformanceError(f"refused as {reasons(reply)} in a back-off")
             if left_s + self.link.put_off_s - put_off_s < -(LATE_TICKS + 1) * period_s:
@@ -181,6 +184,22 @@ class BoardUnderTest:
         if reply.status.level == 0:
             raise NonconformanceError("a request is neither driven nor refused")
         self.follow_pulse(request, reply)
+
+    def _is_told_free(self, coil: int) -> bool:
+        """Whether the status of this tick says that no back-off runs for the coil."""
+        last = self.link.replies[-1]
+        return any(
+            isinstance(message, CoilStatus)
+            and message.level == message.lockout_ms == 0
+            and (self.limits.shared or message.coil == coil)
+            for message in last.messages
+            if last.tick == self.link.tick
+        )
+
+    def longest_hold_s(self) -> float:
+        """For how long a tick may be held: so long, and a tick, is short of the dead-man."""
+        deadman_s, period_s = self.limits.deadman_s, self.link.period_s
+        return max(deadman_s - 2.5 * period_s, (deadman_s - period_s) / 2.0)
 
 
 def reasons(reply: TickReply) -> str:

@@ -4,14 +4,29 @@ from collections.abc import Callable
 from itertools import pairwise
 
 from fsw.wire.frame import EXTENDED_FLAG, REMOTE_FLAG, Frame
-from fsw.wire.messages import AnyMessage, CoilEvent, CoilRefusedReason, CoilStatus, Sync
+from fsw.wire.messages import (
+    AnyMessage,
+    CoilEvent,
+    CoilHeartbeat,
+    CoilRefusedReason,
+    CoilStatus,
+    MagHeartbeat,
+    SunHeartbeat,
+    Sync,
+)
 from sim.conformance.board_link import BoardKind, BoardLink, NonconformanceError, TickReply
 from sim.conformance.board_under_test import BoardUnderTest, reasons
 from sim.errors import HarnessError
 
 DEAD_MAN = 2
 """``event`` of COIL_EVENT; restated here, so that the checks do not depend on the board's code."""
+CONTRACT_VERSION = 1
 HEARTBEAT_S = 60
+READY, ON, LOCKED_OUT = 0, 1, 2
+"""``state`` of COIL_HEARTBEAT."""
+MOST_REFUSALS = 64
+FLOOD_S = 0.2
+"""What a flood of requests and its answers may take on a slow bus, beside the tick."""
 DEAD_MAN_SLACK_S, DEAD_MAN_PART = 0.1, 0.02
 """How far a dead-man may be from what the bench says [s], and by which part of it."""
 SILENCES = 10
@@ -19,14 +34,22 @@ SILENCES = 10
 
 
 def boot(board: BoardUnderTest) -> None:
-    """PLANT_BOOT restarts it: boot message, off, a full lockout on every coil, no fault of the self-test."""
+    """PLANT_BOOT restarts it: boot message, off, a full lockout on every coil, no fault of the self-test.
+
+    In tick 0 it has no effect.
+    """
     link = board.link
     link.restart()
+    if link.restart().messages:
+        raise NonconformanceError("PLANT_BOOT in tick 0 made it answer")
     for _ in range(2):
         link.step()
     first = link.restart()
     if len(first.only(link.kind.boot)) != 1 or not isinstance(first.messages[0], link.kind.boot):
         raise NonconformanceError(f"PLANT_BOOT: one boot message first, not {names(first.messages)}")
+    version = first.messages[0].version
+    if version != CONTRACT_VERSION:
+        raise NonconformanceError(f"it is of version {version} of the bus contract, not {CONTRACT_VERSION}")
     if link.kind.sample is not CoilStatus:
         return
     board.expect_lockout(first)
@@ -56,8 +79,14 @@ def noise(board: BoardUnderTest) -> None:
 
 
 def boot_lockout(board: BoardUnderTest) -> None:
-    """After boot nothing is accepted for a full back-off, and then it is; the pulse is as requested."""
-    board.request_until_accepted(board.link.restart().at_s)
+    """After boot nothing is accepted for a full back-off, and then it is; the pulse is as requested.
+
+    A tick is held meanwhile: the back-off is over when the ticks say so, too.
+    """
+    link, held_s = board.link, board.longest_hold_s()
+    since_s = link.restart().at_s
+    link.step(late_s=held_s)
+    board.request_until_accepted(since_s + held_s)
 
 
 def refusals(board: BoardUnderTest) -> None:
@@ -67,13 +96,17 @@ def refusals(board: BoardUnderTest) -> None:
             board.wait_until_free()
         for changes, reason in _improper(board):
             board.expect_off(board.expect_refusal(board.request(**changes()), reason))
-        for damage in (_flip, _shorten, _lengthen):
+        for damage in (_flip, _shorten, _cut_to_its_name, _lengthen):
             request = board.request()
             frame = damage(request.encode())
             board.expect_off(board.expect_refusal(request, CoilRefusedReason.MALFORMED, frame))
-        for flag in (EXTENDED_FLAG, REMOTE_FLAG):
-            proper = board.request().encode()
-            reply = board.link.step(Frame(proper.can_id | flag, proper.data))
+        proper = board.request().encode()
+        for nameless in (
+            Frame(proper.can_id | EXTENDED_FLAG, proper.data),
+            Frame(proper.can_id | REMOTE_FLAG, proper.data),
+            Frame(proper.can_id, proper.data[:2]),
+        ):
+            reply = board.link.step(nameless)
             board.expect_off(reply)
             if reply.refused:
                 raise NonconformanceError(f"a frame that is no request was refused as {reasons(reply)}")
@@ -107,8 +140,26 @@ def _shorten(frame: Frame) -> Frame:
     return Frame(frame.can_id, frame.data[:6])
 
 
+def _cut_to_its_name(frame: Frame) -> Frame:
+    return Frame(frame.can_id, frame.data[:3])
+
+
 def _lengthen(frame: Frame) -> Frame:
     return Frame(frame.can_id, frame.data + b"\x00")
+
+
+def flood(board: BoardUnderTest) -> None:
+    """Of the refusals of a tick the first 64 are reported."""
+    requests = [board.request(tick=board.link.tick - 1 & 0xFF) for _ in range(MOST_REFUSALS + 6)]
+    late_s = min(FLOOD_S, board.limits.deadman_s / 4.0)
+    reply = board.link.step(*(request.encode() for request in requests), late_s=late_s)
+    board.expect_off(reply)
+    reported = [refused.seq for refused in reply.refused]
+    if reported != [request.seq for request in requests[:MOST_REFUSALS]]:
+        raise NonconformanceError(
+            f"of {len(requests)} requests in a tick it refuses {len(reported)}, "
+            f"not the first {MOST_REFUSALS} in their order"
+        )
 
 
 def back_off(board: BoardUnderTest) -> None:
@@ -159,12 +210,22 @@ def dead_man(board: BoardUnderTest) -> None:
 
 
 def dead_man_in_a_pulse(board: BoardUnderTest) -> None:
-    """No SYNC while a coil is on: off, COIL_EVENT, a full lockout; meanwhile no request is accepted."""
+    """No SYNC while a coil is on: off, one COIL_EVENT, a full lockout; the last seq is still remembered."""
     board.wait_until_free()
     board.expect_accepted()
+    board.expect_locked_out(wake_dead_man(board).at_s)
+    repeated = board.request(seq=board.accepted_seq)
+    reply = board.expect_refusal(repeated, CoilRefusedReason.REPEATED_SEQ)
+    board.expect_off(reply)
+    if events := _events(reply):
+        raise NonconformanceError(f"the dead-man was told, and a tick later there are events {events}")
+
+
+def wake_dead_man(board: BoardUnderTest) -> TickReply:
+    """Send nothing until the dead-man has woken: the reply in the next tick."""
     silent_s = 1.5 * board.limits.deadman_s + board.link.period_s
     _silence(board, silent_s)
-    board.expect_locked_out(expect_dead_man(board, f"no SYNC for {silent_s:g} s").at_s)
+    return expect_dead_man(board, f"no SYNC for {silent_s:g} s")
 
 
 def _silence(board: BoardUnderTest, seconds: float) -> None:
@@ -192,16 +253,17 @@ def _events(reply: TickReply) -> list[int]:
 
 
 def restart_in_a_pulse(board: BoardUnderTest) -> None:
-    """A restart while a coil is on: off at once, and a full lockout."""
+    """A restart while a coil is on: off at once, and a full lockout; no seq is a repeated one."""
     board.wait_until_free()
     board.expect_accepted()
     restarted = board.link.restart()
     board.expect_lockout(restarted)
-    board.expect_locked_out(restarted.at_s)
+    for seq in (board.accepted_seq, 0):
+        board.expect_locked_out(restarted.at_s, seq=seq)
 
 
 def heartbeats(board: BoardUnderTest) -> None:
-    """A heartbeat every 60 s of ticks after boot, none before; where none was due yet, it waits for one."""
+    """A heartbeat every 60 s of ticks after boot, none before, and a true one; if need be it waits for it."""
     link = board.link
     if not _heartbeats_due(link):
         link.restart()
@@ -223,6 +285,38 @@ def heartbeats(board: BoardUnderTest) -> None:
                     f"heartbeat {number} after boot comes {ticks} ticks after it, "
                     f"{ticks / link.tick_hz:g} s and not {number * HEARTBEAT_S}"
                 )
+        _check_content(life, board.limits.shared)
+
+
+def _check_content(life: list[TickReply], shared: bool) -> None:
+    """Each heartbeat of a life: its tick, and of a coil driver its state and the least of its rejects."""
+    malformed = 0
+    for reply in life:
+        malformed += sum(refused.reason == CoilRefusedReason.MALFORMED for refused in reply.refused)
+        where = f"the heartbeat in tick {reply.tick}"
+        for beat in reply.messages:
+            if not isinstance(beat, CoilHeartbeat | MagHeartbeat | SunHeartbeat):
+                continue
+            if beat.tick != reply.tick & 0xFFFF:
+                raise NonconformanceError(f"{where} names tick {beat.tick}")
+            if not isinstance(beat, CoilHeartbeat):
+                continue
+            if beat.rejects < malformed:
+                raise NonconformanceError(
+                    f"{where} has rejects {beat.rejects}, after {malformed} broken requests"
+                )
+            state = _state(reply.status, shared)
+            if state is not None and beat.state != state:
+                raise NonconformanceError(f"{where} is of state {beat.state}, not {state} ({reply.status})")
+
+
+def _state(status: CoilStatus, shared: bool) -> int | None:
+    """The state of a board with that status; None: another coil's back-off may run."""
+    if status.remaining_ms:
+        return ON
+    if status.lockout_ms:
+        return LOCKED_OUT
+    return READY if shared else None
 
 
 def _lives(link: BoardLink) -> list[list[TickReply]]:

@@ -12,11 +12,11 @@ from math import ceil
 from typing import NamedTuple
 
 from fsw.bus.open_bus import open_bus, resolve
-from fsw.wire.messages import CoilStatus
+from fsw.wire.messages import CoilStatus, TickDone
 from sim.conformance import checks
 from sim.conformance.board_link import BOARD_KINDS, BoardLink, NonconformanceError, TickReply
 from sim.conformance.board_under_test import BoardLimits, BoardUnderTest
-from sim.conformance.checks import expect_dead_man
+from sim.conformance.checks import expect_dead_man, wake_dead_man
 from sim.console import answer, say
 from sim.errors import HarnessError
 from sim.scenario.coil_limits import coil_limits
@@ -37,7 +37,7 @@ def lost_count(board: BoardUnderTest) -> None:
     link = board.link
     for _ in range(4):
         link.step()
-    for first, second in ((1000, 1001), (1000, 1000), (-3, -2), (-3, -3)):
+    for first, second in ((1000, 1001), (1000, 1000), (2**31, 2**31 + 1), (-3, -2), (-3, -3)):
         now = link.tick
         _send_unexpected_sync(link, now + first)
         link.step()  # a good one between them: they are not in a row
@@ -63,26 +63,32 @@ def _send_unexpected_sync(link: BoardLink, tick: int) -> None:
 
 
 def repeated_tick(board: BoardUnderTest) -> None:
-    """A SYNC that only repeats the tick of the last keeps no board awake: the dead-man wakes."""
+    """A SYNC that only repeats its tick, and an old TICK_DONE, keep no board awake: the dead-man wakes."""
     link = board.link
     link.step()
     since_s, silent_s = link.clock(), 1.5 * board.limits.deadman_s + link.period_s
     while link.clock() - since_s < silent_s:
-        if link.sync(link.tick).messages:
-            raise NonconformanceError("a SYNC that repeats its tick made it answer")
+        if link.sync(link.tick, frames=[TickDone(link.tick - 1, 0).encode()]).messages:
+            raise NonconformanceError("a SYNC that repeats its tick, or an old TICK_DONE, made it answer")
     expect_dead_man(board, f"only a SYNC that repeats its tick for {silent_s:g} s")
 
 
 def own_clock(board: BoardUnderTest) -> None:
-    """Ticks that come four times too fast do not shorten a lockout."""
+    """Ticks that come four times too fast do not shorten a lockout, of the dead-man or of a restart."""
+    for begin in (wake_dead_man, lambda board: board.link.restart()):
+        since = begin(board)
+        _rush(board, since)
+    board.link.restart()
+
+
+def _rush(board: BoardUnderTest, since: TickReply) -> None:
+    """Ticks that come too fast in a lockout that began with the SYNC of that reply."""
     link = board.link
-    since = link.restart()
-    since_s, seconds = since.at_s, min(10.0, board.limits.backoff_ms / 8000.0)
+    seconds = min(10.0, board.limits.backoff_ms / 8000.0)
     reply = since
     for _ in range(ceil(seconds * link.tick_hz * SPEED_UP)):
         reply = link.step(early_s=link.period_s / SPEED_UP)
-    _expect_locked_out(board, reply, board.limits.backoff_ms - 1000.0 * (link.clock() - since_s))
-    link.restart()
+    _expect_locked_out(board, reply, board.limits.backoff_ms - 1000.0 * (link.clock() - since.at_s))
 
 
 def held_tick(board: BoardUnderTest) -> None:
@@ -92,17 +98,17 @@ def held_tick(board: BoardUnderTest) -> None:
     """
     board.wait_until_free()
     link, limits = board.link, board.limits
-    # for so long and a tick no SYNC goes on in the count: that has to be short of the dead-man
-    held_s = max(limits.deadman_s - 2.5 * link.period_s, (limits.deadman_s - link.period_s) / 2.0)
+    held_s = board.longest_hold_s()
     link.sync(link.tick, held_s)
     # longer than the ticks that follow, but over before more of them come: those would end it by their count
     most_ms = int(1000.0 * (link.period_s + held_s) - 2.0 * SLACK_MS)
     duration_ms = min(limits.pulse_ms, ceil(2.1 * board.tick_ms), most_ms)
     request, reply = board.expect_accepted(duration_ms=duration_ms)
     from_s = reply.at_s  # before it was sent: the tester may be held up after it
+    driven_ma = reply.status.current_ma
     link.sync(link.tick, held_s)
     reply = link.step()
-    if reply.status.remaining_ms:
+    if reply.status.remaining_ms or abs(reply.status.current_ma) * 5 > abs(driven_ma):
         raise NonconformanceError(f"a pulse of {duration_ms} ms goes on in a tick that is held for longer")
     burst_s = min(BURST_S, link.period_s / 10.0)
     for _ in range(ceil((limits.pulse_ms + limits.backoff_ms) / board.tick_ms) + 3):
@@ -137,6 +143,7 @@ CHECKS = (
     Check(checks.noise, coil=False),
     Check(checks.boot_lockout, power=True),
     Check(checks.refusals, power=True),
+    Check(checks.flood, power=True),
     Check(checks.back_off, power=True),
     Check(checks.dead_man_in_a_pulse, power=True),
     Check(checks.restart_in_a_pulse, power=True),

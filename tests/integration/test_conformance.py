@@ -114,7 +114,7 @@ def test_without_arm_what_needs_power_is_not_run_and_a_short_lockout_is_found_al
     output, errors, code = ended["short"]
     assert (errors, code) == ("", 1)
     assert "FAILED  boot " in output
-    assert "6 not run: they drive coils and need --arm" in output
+    assert "7 not run: they drive coils and need --arm" in output
 
 
 def test_no_board_there_is_one_sentence(ended):

@@ -155,6 +155,27 @@ def silencing(change):
     )
 
 
+def silence_the_ticks_alone(state, limits):
+    if limits.tick_hz == guard.CLOCK_HZ:
+        return state
+    silenced = replace(state)
+    interlock.silence(silenced, limits)
+    return silenced
+
+
+def judge_by_clock_alone(patch):
+    def judge(state, request, tick, limits):
+        if limits.tick_hz != guard.CLOCK_HZ:
+            state = replace(state, remaining=0, lockout=(0, 0, 0))
+        return interlock.judge(state, request, tick, limits)
+
+    patch.setattr(guard, "judge", judge)
+
+
+def booting_with_a_seq(patch):
+    patch.setattr(guard, "boot", lambda limits: replace(interlock.boot(limits), seq=0))
+
+
 def take_broken(patch):
     taken = coil_driver.intact
     patch.setattr(coil_driver, "intact", lambda f: taken(f) or (f.can_id == CoilFire.ID and len(f.data) == 7))
@@ -252,6 +273,13 @@ IN_THE_BOARD = {
         silencing(lambda state, limits: replace(state, level=0, remaining=0)),
         "dead_man",
     ),
+    "a dead-man that forgets the last seq": (
+        silencing(lambda state, limits: replace(state, level=0, remaining=0, seq=None)),
+        "dead_man_in_a_pulse",
+    ),
+    "a dead-man that locks out by ticks alone": (silencing(silence_the_ticks_alone), "own_clock"),
+    "a boot that takes seq 0 for a repeated one": (booting_with_a_seq, "restart_in_a_pulse"),
+    "requests that are judged by the clock alone": (judge_by_clock_alone, "boot_lockout"),
     "a self-test that fails": (faint_at_boot, "boot"),
     "a clock that is told of time by ticks alone": (told_of_time_by_ticks_alone, "held_tick"),
     "a clock that ends no pulse": (clock_ends_no_pulse, "held_tick"),

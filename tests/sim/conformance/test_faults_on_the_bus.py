@@ -10,6 +10,7 @@ from fsw.wire.messages import (
     CoilRefused,
     CoilStatus,
     PlantBoot,
+    TickDone,
 )
 from hil_stub.bench import Bench, CoilBoard
 from hil_stub.coils.coil_driver import CoilLimits
@@ -95,6 +96,24 @@ def never_forgets(self, tick):
     return frames
 
 
+def few_refusals(frames, tick):
+    """No more than 63 in a tick."""
+    refused = [frame for frame in frames if frame.can_id == CoilRefused.ID]
+    return [frame for frame in frames if frame not in refused[63:]]
+
+
+def restarts_always(self, frame, now_ms=0):
+    return self.switch_on(now_ms=now_ms) if frame.can_id == PlantBoot.ID else receive(self, frame, now_ms)
+
+
+def fed_by_answers(self, frame, now_ms=0):
+    if frame.can_id == TickDone.ID:
+        self._synced_ms = now_ms
+    return receive(self, frame, now_ms)
+
+
+receive = Bench.receive
+
 ON_THE_BUS = {
     "no boot message": (changed(CoilBoot, lambda m, tick: None), "boot"),
     "no status now and then": (times(0), None),
@@ -102,6 +121,22 @@ ON_THE_BUS = {
     "a counter that stands still": (changed(CoilStatus, lambda m, tick: m.replace(counter=3)), "all_along"),
     "broken frames": ({"outward": staticmethod(break_crc)}, "all_along"),
     "no heartbeat": (changed(CoilHeartbeat, lambda m, tick: None), "heartbeats"),
+    "a heartbeat of another tick": (
+        changed(CoilHeartbeat, lambda m, tick: m.replace(tick=m.tick + 1)),
+        "heartbeats",
+    ),
+    "a heartbeat that is always ready": (
+        changed(CoilHeartbeat, lambda m, tick: m.replace(state=0)),
+        "heartbeats",
+    ),
+    "a heartbeat without rejects": (
+        changed(CoilHeartbeat, lambda m, tick: m.replace(rejects=0)),
+        "heartbeats",
+    ),
+    "another bus contract": (changed(CoilBoot, lambda m, tick: m.replace(version=2)), "boot"),
+    "few refusals of a flood": ({"outward": staticmethod(few_refusals)}, "flood"),
+    "PLANT_BOOT restarts it in tick 0 too": ({"receive": restarts_always}, "boot"),
+    "an old TICK_DONE feeds the dead-man": ({"receive": fed_by_answers}, "repeated_tick"),
     "sign lost": (changed(CoilStatus, lambda m, tick: m.replace(level=abs(m.level))), "boot_lockout"),
     "always coil 0": (changed(CoilStatus, lambda m, tick: m.replace(coil=0)), "boot"),
     "no current": (changed(CoilStatus, lambda m, tick: m.replace(current_ma=0)), "boot_lockout"),

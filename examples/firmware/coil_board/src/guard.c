@@ -125,11 +125,8 @@ uint32_t guard_pass_time(guard *state, uint32_t clock_ms)
 void guard_tick(guard *state)
 {
     state->tick_under_way = guard_is_on(state);
-    if (state->by_ticks.remaining == 0U) {
-        state->pulse_level = 0; /* a level stays visible for the last tick in which it was driven */
-    }
     elapse(&state->by_ticks, UNITS_PER_TICK);
-    state->level = state->driven ? state->pulse_level : 0;
+    state->level = state->driven ? state->pulse_level : 0; /* it stays visible for the last tick of the pulse */
     state->driven = guard_is_on(state);
 }
 

@@ -30,7 +30,7 @@ typedef struct {
     uint32_t clock_ms;   /* the last reading of the board's own clock */
     uint8_t coil;        /* that is on, or was on last */
     int8_t level;        /* driven in the tick that has ended, or just accepted; otherwise 0 */
-    int8_t pulse_level;  /* of the pulse, until a tick has passed that it did not reach */
+    int8_t pulse_level;  /* of the coil that is on, or was on last */
     bool has_seq;        /* a request has been accepted since boot */
     uint8_t seq;         /* of the last accepted request */
     bool driven;         /* a coil was on at some instant since the last tick */
