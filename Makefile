@@ -23,6 +23,7 @@
 # make fuzz       a million random frames, a thousand mutations of each kind of input file, 200 recorded passes with a spoilt row: half an hour
 # make scenarios  300 random legal scenarios of up to two orbits, read and judged again: a quarter of an hour
 # make attack     a million requests to a coil board, and to the one in C; ten minutes on its process, a thousand logs: three quarters of an hour
+# make firmware-qemu   the coil board in C on an emulated Cortex-M3: size, conformance, a million requests, into docs/firmware-qemu.md: twenty minutes
 # make differential scheduler against interlock over 100 orbits of whole flights: some minutes
 # make verdicts   all flights that miss a requirement for a known reason: is it told, and no wrong one: a minute
 # make causes     satellites that have one cause each: which does their diagnosis name? twenty minutes
@@ -43,7 +44,7 @@ compiled := .venv/.compiled
 pip := TORQUER_INTERPRETED=1 $(bin)/pip install --quiet --disable-pip-version-check --no-compile
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv environment compiled sil test test-interpreted test-long test-unpaced test-paced lint docs docs-gallery notebooks test-vcan test-chromium evidence gains population validate comparison faults pulse-limits sizing golden causes same-flights fuzz scenarios attack differential replay-elsewhere bench basilisk scaling soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv environment compiled sil test test-interpreted test-long test-unpaced test-paced lint docs docs-gallery notebooks test-vcan test-chromium evidence gains population validate comparison faults pulse-limits sizing golden causes same-flights fuzz scenarios attack firmware-qemu differential replay-elsewhere bench basilisk scaling soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -152,6 +153,9 @@ scenarios: venv
 
 attack: venv
 	TORQUER_ATTACK_REQUESTS=1000000 TORQUER_ATTACK_SECONDS=600 TORQUER_ATTACK_LOGS=1000 $(bin)/pytest -q -s tests/attack tests/firmware/test_attack.py tests/firmware/test_twin.py
+
+firmware-qemu: venv
+	$(bin)/python tests/firmware/record.py
 
 differential: venv
 	TORQUER_DIFFERENTIAL_ORBITS=100 $(bin)/pytest -q --timeout 3600 tests/differential

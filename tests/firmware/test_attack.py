@@ -7,7 +7,7 @@ import os
 
 import pytest
 from coil_attack import SETUPS, attack
-from firmware_bench import FirmwareBench
+from firmware_bench import FirmwareBench, loaded
 
 pytestmark = pytest.mark.long
 
@@ -18,7 +18,7 @@ SEED = int(os.environ.get("TORQUER_ATTACK_SEED", "20150327"))
 @pytest.mark.timeout(7200)
 @pytest.mark.parametrize("setup", SETUPS.values(), ids=SETUPS)
 def test_no_attack_breaks_a_limit(library_of, setup, record_property):
-    bench = FirmwareBench(library_of(**setup._asdict()), clock_ms=2**32 - 500_000)
+    bench = FirmwareBench(loaded(library_of(**setup._asdict())), clock_ms=2**32 - 500_000)
     attacker, judge = attack(setup, bench, REQUESTS // len(SETUPS), SEED)
     found = {
         "requests": attacker.requests,

@@ -1,7 +1,7 @@
 """The coil board in C conforms with docs/icd.md, as the stub does, at other tick rates and limits too."""
 
 import pytest
-from firmware_bench import FirmwareBench
+from firmware_bench import FirmwareBench, loaded
 from simulated_bus import SimulatedBus
 
 from sim.conformance.board_link import BOARD_KINDS, BoardLink
@@ -13,7 +13,7 @@ WRAPS_SOON = 2**32 - 150_000
 
 
 def failures(library, limits, tick_hz, clock_ms=0):
-    bus = SimulatedBus(FirmwareBench(library, clock_ms))
+    bus = SimulatedBus(FirmwareBench(loaded(library), clock_ms))
     link = BoardLink(bus, BOARD_KINDS["coil"], tick_hz, clock=lambda: bus.now_s)
     results = run_checks(link, limits, armed=True)
     assert [result.name for result in results if result.ran] == [check.run.__name__ for check in CHECKS]

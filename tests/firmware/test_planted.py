@@ -1,7 +1,7 @@
 """Each error planted in the coil board in C is found by the conformance suite, by the check for it."""
 
 import pytest
-from firmware_bench import NO_COMPILER, FirmwareBench, has_compiler
+from firmware_bench import NO_COMPILER, FirmwareBench, has_compiler, loaded
 from planted_firmware import PLANTED, compile_planted
 from simulated_bus import SimulatedBus
 
@@ -18,7 +18,7 @@ pytestmark = [
 @pytest.mark.parametrize("error", PLANTED.values(), ids=PLANTED)
 def test_a_planted_error_is_found(tmp_path, error):
     told = dict(error.limits)
-    bus = SimulatedBus(FirmwareBench(compile_planted(tmp_path, error)))
+    bus = SimulatedBus(FirmwareBench(loaded(compile_planted(tmp_path, error))))
     link = BoardLink(bus, BOARD_KINDS["coil"], told.get("tick_hz", 1), clock=lambda: bus.now_s)
     limits = BoardLimits(
         told.get("pulse_ms", 3000),

@@ -5,10 +5,11 @@ import shutil
 import subprocess
 
 import pytest
-from firmware_bench import BOARD, NO_COMPILER, has_compiler
+from firmware_bench import BOARD, NO_COMPILER, has_compiler, limits_header
+from planted_firmware import PLANTED, Planted, compile_planted
 
 CORE = sorted((BOARD / "src").glob("*.[ch]"))
-SOURCES = sorted(path for path in BOARD.rglob("*") if path.suffix in (".c", ".h", ".ld", ".s"))
+SOURCES = sorted(path for path in BOARD.rglob("*") if path.suffix in (".c", ".h", ".ld"))
 FREE_OF_FINDINGS = ("src/*.c", "host/record.c", "host/slcan.c", "host/harness.c")
 """What bears MISRA C:2012; the program of this machine uses its operating system, and does not."""
 
@@ -43,6 +44,47 @@ def test_it_is_free_of_findings_of_misra_and_cppcheck():
     quiet = ("--suppress=missingIncludeSystem", "--suppress=unusedFunction", "--suppress=misra-c2012-2.5:*.h")
     rules = ("--addon=misra", "--enable=all", "--std=c99", "--error-exitcode=1", *quiet)
     assert run("cppcheck", "-q", *rules, *includes, *files) == ""
+
+
+@pytest.mark.long
+@needs("frama-c", "frama-c-base")
+class TestProof:
+    """No step is undefined and each keeps the invariant: proved for every state, frame and time."""
+
+    def prove(self, *folders):
+        said = run("sh", BOARD / "proof" / "prove.sh", *folders)
+        assert "100% coverage" in said, "every function was analysed"
+        return "0 alarms generated" in said and bool(
+            re.search(r"Assertions +11 valid +0 unknown +0 inv", said)
+        )
+
+    @pytest.mark.parametrize(
+        "limits", [{}, {"tick_hz": 1000}, {"tick_hz": 7, "pulse_ms": 437, "shared": 0}], ids=str
+    )
+    def test_it_holds_with_all_limits(self, tmp_path, limits):
+        (tmp_path / "coil_limits.h").write_text(limits_header(**limits))
+        assert self.prove(BOARD / "src", tmp_path)
+
+    @pytest.mark.parametrize(
+        "error",
+        [
+            "there is a coil 3",
+            "level 4 is driven",
+            "a pulse is a tick too long",
+            "a flood of requests fills it",
+        ],
+    )
+    def test_an_error_is_not_proved(self, tmp_path, error):
+        compile_planted(tmp_path, PLANTED.get(error) or OVERFLOW)
+        assert not self.prove(tmp_path / "coil_board" / "src")
+
+
+OVERFLOW = Planted(
+    "coil_board.c",
+    "if (board->refusal_count < REFUSALS_MOST) {",
+    "if (board->refusal_count <= REFUSALS_MOST) {",
+    "",
+)
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.relative_to(BOARD).as_posix())

@@ -10,7 +10,7 @@ from random import Random
 
 import pytest
 from coil_attack import SETUPS, attack
-from firmware_bench import BOARD, FirmwareBench
+from firmware_bench import BOARD, FirmwareBench, loaded
 
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import _SHAPES, CoilFire
@@ -72,7 +72,7 @@ class Twins:
         limits = CoilLimits(setup.tick_hz, setup.pulse_ms, setup.backoff_ms, setup.shared)
         make = lambda: StubBoard(limits, self._currents)  # noqa: E731
         self._stub = Bench(make, setup.deadman_ms, has_clock=True)
-        self._board = FirmwareBench(library, current_ma=lambda: self._currents.now_ma)
+        self._board = FirmwareBench(loaded(library), current_ma=lambda: self._currents.now_ma)
         self.compared = 0
         self.kinds = set()
 

@@ -27,8 +27,8 @@ STRICT = (
 )
 NO_COMPILER = f"the coil board in C needs the compiler {COMPILER}, which is not installed"
 _REQUEST = Struct("<B3xIi16s")
-_REPLY = Struct("<BbBxI")
-_REPLY_MOST = _REPLY.size + can_frame.SIZE * 69
+REPLY = Struct("<BbBxI")
+_REPLY_MOST = REPLY.size + can_frame.SIZE * 69
 _CLOCK = 2**32
 
 
@@ -38,7 +38,7 @@ def has_compiler():
 
 def limits_header(**values):
     """The header of limits that ships, with other values: ``tick_hz=10``."""
-    text = (BOARD / "limits" / "limits.h").read_text()
+    text = (BOARD / "limits" / "coil_limits.h").read_text()
     for name, value in values.items():
         text, found = re.subn(rf"(?m)^(#define LIMITS_{name.upper()}) \d+(U?)$", rf"\1 {value:d}\2", text)
         assert found == 1, name
@@ -62,7 +62,7 @@ def compile_program(folder, limits=None):
 def _compile(product, limits, board, words, strict=True):
     folder = product.parent
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "limits.h").write_text(limits_header() if limits is None else limits)
+    (folder / "coil_limits.h").write_text(limits_header() if limits is None else limits)
     sources = [str(source) for source in sorted((board / "src").glob("*.c"))]
     includes = [f"-I{folder}", f"-I{board / 'src'}"]
     command = [
@@ -81,20 +81,31 @@ def _compile(product, limits, board, words, strict=True):
     return product
 
 
+def loaded(library):
+    """The board of a library, as ``compile_board`` gives it: from request to reply. There is one in each."""
+    step = ctypes.CDLL(str(library)).harness_step
+    step.argtypes = (ctypes.c_char_p, ctypes.c_char_p)
+    step.restype = ctypes.c_uint32
+    reply = ctypes.create_string_buffer(_REPLY_MOST)
+
+    def answer(request):
+        step(request, reply)
+        return reply
+
+    return answer
+
+
 class FirmwareBench:
     """A board in C as a bench: its coils draw their nominal current at once.
 
     Args:
-        library: as ``compile_board`` gives it. There is one board in each.
+        step: the board, from request to reply, as ``loaded`` gives it.
         clock_ms: what the board's clock reads when the bench's reads 0; it counts modulo 2^32.
         current_ma: what the board measures; None: the current of what it drives.
     """
 
-    def __init__(self, library, clock_ms=0, current_ma=None):
-        self._step = ctypes.CDLL(str(library)).harness_step
-        self._step.argtypes = (ctypes.c_char_p, ctypes.c_char_p)
-        self._step.restype = ctypes.c_uint32
-        self._reply = ctypes.create_string_buffer(_REPLY_MOST)
+    def __init__(self, step, clock_ms=0, current_ma=None):
+        self._step = step
         self._clock_ms = clock_ms
         self._current_ma = self._nominal_ma if current_ma is None else current_ma
         self.pin = None
@@ -121,10 +132,10 @@ class FirmwareBench:
 
     def _do(self, what, now_ms, record):
         clock_ms = (self._clock_ms + now_ms) % _CLOCK
-        length = self._step(_REQUEST.pack(what, clock_ms, self._current_ma(), record), self._reply)
-        coil, level, count, until_ms = _REPLY.unpack_from(self._reply)
+        reply = self._step(_REQUEST.pack(what, clock_ms, self._current_ma(), record))
+        coil, level, count, until_ms = REPLY.unpack_from(reply)
         left_ms = (until_ms - clock_ms) % _CLOCK
         self.pin = Pin(coil, level, now_ms + left_ms) if level else None
         if not count:
             return []
-        return list(can_frame.unpack(self._reply.raw[_REPLY.size : length]))
+        return list(can_frame.unpack(reply[REPLY.size : REPLY.size + count * can_frame.SIZE]))

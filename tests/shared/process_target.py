@@ -15,8 +15,6 @@ from coil_attack import Attacker
 from fsw.bus.open_bus import open_bus
 
 STARTS_WITHIN_S = 20.0
-STOP, KILL = 0.03, 0.01
-"""Parts of all waits in which the process is stopped, and before which it is killed."""
 
 
 def now_ms():
@@ -32,11 +30,14 @@ class ProcessTarget:
         random: chooses when it is killed, and when it is stopped.
     """
 
+    STOP, KILL = (
+        0.03,
+        0.01,
+    )  # parts of all waits in which the process is stopped, and before which it is killed
+
     def __init__(self, command_of, judge, random):
         self._command_of, self._judge, self._random = command_of, judge, random
-        with socket.create_server(("127.0.0.1", 0)) as free:
-            self._spec = f"loop:{free.getsockname()[1]}"
-        self._bus = open_bus(self._spec)
+        self._open()
         self._until_ms = None  # of the pin that is on
         self._off_ms = None
         self._start()
@@ -53,9 +54,9 @@ class ProcessTarget:
         self._hear()
 
     def wait(self, milliseconds):
-        if milliseconds > 5 and self._random.random() < KILL:
+        if milliseconds > 5 and self._random.random() < self.KILL:
             self.restart()
-        stopped = milliseconds > 5 and self._random.random() < STOP
+        stopped = milliseconds > 5 and self._random.random() < self.STOP
         if stopped:
             self._process.send_signal(signal.SIGSTOP)
         time.sleep(milliseconds / 1000.0)
@@ -79,6 +80,11 @@ class ProcessTarget:
     def close(self):
         self.stop()
         self._bus.close()
+
+    def _open(self):
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            self._spec = f"loop:{free.getsockname()[1]}"
+        self._bus = open_bus(self._spec)
 
     def _start(self):
         self._process = subprocess.Popen(
@@ -104,14 +110,18 @@ class ProcessTarget:
         while not self._lines.empty():
             heard_ms, line = self._lines.get()
             told_ms, what, *rest = line.split()
-            at_ms = int(told_ms)
-            assert at_ms <= heard_ms, "its clock is ahead of the time"
+            at_ms = self._true_ms(int(told_ms))
+            assert at_ms <= heard_ms + self.AHEAD_MS, "its clock is ahead of the time"
             self._off(at_ms)
             if what == "on":
                 coil, level, _, until_ms = rest
                 self._on = int(coil), int(level)
-                self._until_ms = int(until_ms)
+                self._until_ms = self._true_ms(int(until_ms))
                 self._judge.see(at_ms, self._on)
+
+    def _true_ms(self, told_ms):
+        """The time that the board calls so: its clock is this machine's."""
+        return told_ms
 
     def _off(self, at_ms):
         """What was on went off at this instant, or before by its timer."""

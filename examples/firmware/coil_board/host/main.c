@@ -25,7 +25,7 @@
 #include <unistd.h>
 
 #include "coil_board.h"
-#include "limits.h"
+#include "coil_limits.h"
 #include "record.h"
 #include "slcan.h"
 

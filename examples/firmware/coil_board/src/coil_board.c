@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "coil_board.h"
 
-#include "limits.h"
+#include "coil_limits.h"
 
 #define HEARTBEAT_TICKS (60U * LIMITS_TICK_HZ)
 #define SETTLE_TICKS (((READ_BACK_SETTLE_MS * LIMITS_TICK_HZ) + 999U) / 1000U)
@@ -42,7 +42,7 @@ static void report_status(coil_board *board, int32_t current_ma, outbox *out)
 
 static void report_refusals(coil_board *board, outbox *out)
 {
-    for (uint32_t place = 0U; place < board->refusal_count; place++) {
+    for (uint32_t place = 0U; (place < board->refusal_count) && (place < REFUSALS_MOST); place++) {
         post(out, refused_frame(&board->refusals[place], board->refusal_counter));
         board->refusal_counter++;
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "guard.h"
 
-#include "limits.h"
+#include "coil_limits.h"
 
 #define UNITS_PER_TICK 1000U
 #define UNITS_PER_MS LIMITS_TICK_HZ
@@ -32,7 +32,11 @@ static uint32_t smaller(uint32_t a, uint32_t b)
 
 static uint32_t run_down(uint32_t left, uint32_t units)
 {
-    return left - smaller(left, units);
+    uint32_t rest = 0U;
+    if (left > units) {
+        rest = left - units;
+    }
+    return rest;
 }
 
 /* A product that saturates. */

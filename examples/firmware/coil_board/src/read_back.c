@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "read_back.h"
 
-#include "limits.h"
+#include "coil_limits.h"
 
 #define CURRENT_MOST_MA 1000000 /* beyond it every current is as wrong; what is multiplied below stays in range */
 

@@ -3,7 +3,7 @@
 #include "coil_board.h"
 
 #include "check.h"
-#include "limits.h"
+#include "coil_limits.h"
 
 static coil_board board;
 static outbox sent;

@@ -3,7 +3,7 @@
 #include "guard.h"
 
 #include "check.h"
-#include "limits.h"
+#include "coil_limits.h"
 
 static guard coils;
 static uint32_t now_ms;

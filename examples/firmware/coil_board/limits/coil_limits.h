@@ -3,8 +3,8 @@
  *
  * These are those of the default scenario, microsat. Nothing on the bus can change them.
  */
-#ifndef LIMITS_H
-#define LIMITS_H
+#ifndef COIL_LIMITS_H
+#define COIL_LIMITS_H
 
 /* Ticks a second, 1 to 1000. */
 #define LIMITS_TICK_HZ 1U
