@@ -129,6 +129,13 @@ EVIDENCE = (
         r"^\| a run, flown and scored \| (.*) \|$",
         "a run {}",
     ),
+    Evidence(
+        "firmware-qemu",
+        "the coil board in C on a Cortex-M3",
+        "make firmware-qemu",
+        r"^\| [^|]+ \| (\d+) \| \d+ \|.* \| 0 \|$",
+        "{total} hostile requests, no limit broken",
+    ),
     Evidence("soak", "long runs", "make soak", r"\| (kept) \|$", "{count} budgets kept"),
     Evidence(
         "mutation",

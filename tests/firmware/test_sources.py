@@ -92,6 +92,12 @@ def test_each_source_names_its_licence(path):
     assert path.read_text().splitlines()[0] == "/* SPDX-License-Identifier: Apache-2.0 */"
 
 
+@pytest.mark.parametrize("file", ["CMakeLists.txt", "zephyr/CMakeLists.txt"])
+def test_each_build_has_the_whole_core(file):
+    named = set(re.findall(r"src/(\w+\.c)", (BOARD / file).read_text()))
+    assert named == {path.name for path in CORE if path.suffix == ".c"}
+
+
 @pytest.mark.parametrize("path", CORE, ids=lambda path: path.name)
 def test_the_core_is_integers_in_memory_of_its_own(path):
     code = re.sub(r"(?s)/\*.*?\*/", "", path.read_text())

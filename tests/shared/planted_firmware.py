@@ -328,3 +328,31 @@ PLANTED = {
         "boot",
     ),
 }
+
+UNSEEN = {
+    "the outputs go off when the last tick of a pulse is entered": Planted(
+        GUARD, "state->tick_under_way = guard_is_on(state);", "state->tick_under_way = false;", ""
+    ),
+    "a pulse goes on when the last tick is over": Planted(
+        GUARD,
+        "void guard_sync(guard *state)\n{\n    state->tick_under_way = false;",
+        "void guard_sync(guard *state)\n{",
+        "",
+    ),
+    "the clock may not wrap": Planted(
+        GUARD, "if (elapsed_ms < CLOCK_BACKWARDS) {", "if (clock_ms >= state->clock_ms) {", ""
+    ),
+    "a current may be off by a third": Planted(
+        READ_BACK,
+        "if ((5 * size_of(forward_ma - nominal_ma)) <= nominal_ma) {",
+        "if ((3 * size_of(forward_ma - nominal_ma)) <= nominal_ma) {",
+        "",
+    ),
+    "a reversed current is taken for none": Planted(
+        READ_BACK, "if ((10 * forward_ma) < -nominal_ma) {", "if (forward_ma < (-2 * nominal_ma)) {", ""
+    ),
+    "a current that flows while all is off lets requests through": Planted(
+        COIL_BOARD, "    if (!is_shorted(board)) {", "    if (board->tick <= UINT32_MAX) {", ""
+    ),
+}
+"""What no bus shows, or only in weeks, or with a fault of the coils: found beside the stub alone."""

@@ -30,10 +30,10 @@ class ProcessTarget:
         random: chooses when it is killed, and when it is stopped.
     """
 
-    STOP, KILL = (
-        0.03,
-        0.01,
-    )  # parts of all waits in which the process is stopped, and before which it is killed
+    STOP, KILL = 0.03, 0.01
+    """Parts of all waits in which the process is stopped, and before which it is killed."""
+    AHEAD_MS = 0
+    """By so much its clock may seem to be ahead of this machine's."""
 
     def __init__(self, command_of, judge, random):
         self._command_of, self._judge, self._random = command_of, judge, random
