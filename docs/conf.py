@@ -58,7 +58,7 @@ EVIDENCE = (
     "basilisk",
     "scaling",
 )
-EVIDENCE += ("soak", "mutation", "replay")
+EVIDENCE += ("firmware-qemu", "soak", "mutation", "replay")
 """Pages that evidence.md leads to; they are in no menu."""
 
 plot_gallery = "False"  # sphinx-gallery reads a text here

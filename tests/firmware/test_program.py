@@ -18,7 +18,7 @@ pytestmark = [pytest.mark.long, pytest.mark.paced]
 
 SECONDS = float(os.environ.get("TORQUER_ATTACK_SECONDS", "3"))
 SEED = int(os.environ.get("TORQUER_ATTACK_SEED", "20150327"))
-TICK_HZ = 4
+TICK_HZ = 2
 LIMITS = ("--set", "coils.pulse_s=0.5", "--set", "coils.backoff_s=1.5", "--deadman-s", "1.0")
 
 
