@@ -5,8 +5,12 @@ import shutil
 import subprocess
 
 import pytest
-from firmware_bench import BOARD, NO_COMPILER, has_compiler, limits_header
+from firmware_bench import BOARD, LEVELS_MA, NO_COMPILER, has_compiler, limit, limits_header
 from planted_firmware import PLANTED, Planted, compile_planted
+
+from hil_stub.bench import DEADMAN_MS
+from sim.scenario.coil_limits import coil_limits
+from sim.scenario.schema import load
 
 CORE = sorted((BOARD / "src").glob("*.[ch]"))
 SOURCES = sorted(path for path in BOARD.rglob("*") if path.suffix in (".c", ".h", ".ld"))
@@ -90,6 +94,19 @@ OVERFLOW = Planted(
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.relative_to(BOARD).as_posix())
 def test_each_source_names_its_licence(path):
     assert path.read_text().splitlines()[0] == "/* SPDX-License-Identifier: Apache-2.0 */"
+
+
+def test_the_limits_that_ship_are_those_of_the_default_scenario():
+    scenario = load("microsat")
+    ours = coil_limits(scenario.coils, scenario.time.tick_hz)
+    assert {name: limit(name) for name in ("tick_hz", "pulse_ms", "backoff_ms", "shared")} == {
+        "tick_hz": ours.tick_hz,
+        "pulse_ms": ours.pulse_ms,
+        "backoff_ms": ours.backoff_ms,
+        "shared": ours.shared,
+    }
+    assert limit("deadman_ms") == DEADMAN_MS
+    assert pytest.approx(scenario.coils.levels_ma) == LEVELS_MA
 
 
 @pytest.mark.parametrize("file", ["CMakeLists.txt", "zephyr/CMakeLists.txt"])

@@ -8,7 +8,6 @@ from pathlib import Path
 from struct import Struct
 
 from fsw.bus import can_frame
-from hil_stub.bench import LEVEL_A
 from hil_stub.coils.coil_driver import Pin
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -43,6 +42,15 @@ def limits_header(**values):
         text, found = re.subn(rf"(?m)^(#define LIMITS_{name.upper()}) \d+(U?)$", rf"\1 {value:d}\2", text)
         assert found == 1, name
     return text
+
+
+def limit(name):
+    """The value of a limit in the header that ships."""
+    return int(re.search(rf"(?m)^#define LIMITS_{name.upper()} (\d+)U?$", limits_header())[1])
+
+
+LEVELS_MA = tuple(limit(f"level_{level}_ma") for level in (1, 2, 3))
+"""Nominal currents of the header that ships."""
 
 
 def compile_board(folder, limits=None, board=BOARD, strict=True):
@@ -127,7 +135,7 @@ class FirmwareBench:
         pin = self.pin
         if pin is None:
             return 0
-        current_ma = round(1000.0 * LEVEL_A[abs(pin.level) - 1])
+        current_ma = LEVELS_MA[abs(pin.level) - 1]
         return current_ma if pin.level > 0 else -current_ma
 
     def _do(self, what, now_ms, record):

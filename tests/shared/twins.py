@@ -2,11 +2,11 @@
 
 import math
 
-from firmware_bench import FirmwareBench, loaded
+from firmware_bench import LEVELS_MA, FirmwareBench, loaded
 
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
 from fsw.wire.messages import CoilFire
-from hil_stub.bench import LEVEL_A, Bench
+from hil_stub.bench import Bench
 from hil_stub.coils.coil_driver import CoilDriver, CoilLimits
 from hil_stub.coils.read_back import ReadBack
 
@@ -24,7 +24,7 @@ class Currents:
         self.now_ma = 0
 
     def measure(self, level):
-        nominal_ma = round(1000.0 * (0.0, *LEVEL_A)[abs(level)]) * (1 if level > 0 else -1)
+        nominal_ma = (0, *LEVELS_MA)[abs(level)] * (1 if level > 0 else -1)
         if self._ticks == 0 and self._random.random() < 0.02:
             others = (
                 0,
@@ -52,7 +52,7 @@ class StubBoard:
     """The stub's board with these currents."""
 
     def __init__(self, limits, currents):
-        self._driver = CoilDriver(limits, ReadBack(LEVEL_A))
+        self._driver = CoilDriver(limits, ReadBack(tuple(level_ma / 1000.0 for level_ma in LEVELS_MA)))
         self._currents = currents
 
     def begin_tick(self, tick, clock_ms):

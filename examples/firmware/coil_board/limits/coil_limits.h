@@ -20,9 +20,9 @@
 #define LIMITS_DEADMAN_MS 5000U
 
 /* Nominal currents at levels 1, 2, 3 [mA]. */
-#define LIMITS_LEVEL_1_MA 100
-#define LIMITS_LEVEL_2_MA 200
-#define LIMITS_LEVEL_3_MA 300
+#define LIMITS_LEVEL_1_MA 25
+#define LIMITS_LEVEL_2_MA 100
+#define LIMITS_LEVEL_3_MA 400
 
 /* CRC-32 of the table that these values come from, reported in COIL_BOOT. */
 #define LIMITS_TABLE_CRC 0U
