@@ -106,7 +106,7 @@ def test_the_page_and_the_text_say_what_happened(campaign):
         "ECSS-E-ST-60-10C",
         "Worst runs over the rest",
         "Runs that failed",
-        "initial_angle_deg",
+        "initial angle [deg]",
     ):
         assert words in page
     assert "<script src" not in page
