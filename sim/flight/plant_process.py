@@ -26,18 +26,18 @@ from sim.signals import EndedBySignal, raise_on_signals
 @click.argument("path", metavar="RUN", type=click.Path(path_type=Path))
 @click.option("--bus", required=True)
 @click.option("--patience", type=(float, float), required=True, help="For the boot, for an answer [s].")
-@click.option("--host", type=(int, int), help="Serve the loop bus: descriptors of listener and first client.")
+@click.option(
+    "--host", type=int, multiple=True, help="Serve the loop bus: descriptors of listener and first clients."
+)
 @click.option("--parent", type=int, required=True, help="Process whose end ends this one.")
-def main(
-    path: Path, bus: str, patience: tuple[float, float], host: tuple[int, int] | None, parent: int
-) -> None:
+def main(path: Path, bus: str, patience: tuple[float, float], host: tuple[int, ...], parent: int) -> None:
     """Fly the run that was begun in RUN; if the flight software fails, run.json says why."""
     _exit_with(parent)
     boot_s, answer_s = patience
     try:
         with raise_on_signals():
             scenario = run_dir.read_scenario(path)
-            link = open_bus(bus) if host is None else host_bus(*host)
+            link = host_bus(*host) if host else open_bus(bus)
             record_flight(path, scenario, link, patience=Patience(boot_s, answer_s, answer_s))
     except CounterpartError as error:
         run_dir.update(path, ended=str(error))

@@ -100,7 +100,7 @@ def record_flight(
     log_name = run_dir.COMPRESSED_LOG if run.get("compressed") else run_dir.BUS_LOG
     plant = make_plant(plant_config(scenario, run["seed"]), scenario.fault, effects_of(scenario))
     pace = Pace(run["pace_factor"])
-    senders = SenderWatch(lockstep=pace.factor is None)
+    senders = SenderWatch(lockstep=pace.factor is None, may_boot="flight_software" in run)
     identity, wheel = run_dir.identity(scenario, run["seed"]), scenario.wheel is not None
 
     def store_senders() -> None:

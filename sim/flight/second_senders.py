@@ -75,10 +75,12 @@ class SenderWatch:
     Args:
         lockstep: the plant waits for each answer, so that the flight software is silent between answers.
         own: senders in this process.
+        may_boot: a FSW_BOOT in flight is a restart of the flight software, which is judged elsewhere.
     """
 
-    def __init__(self, lockstep: bool, own: frozenset[str] = WITH_BOARDS) -> None:
+    def __init__(self, lockstep: bool, own: frozenset[str] = WITH_BOARDS, may_boot: bool = False) -> None:
         self._lockstep = lockstep
+        self._may_boot = may_boot
         self._own = frozenset(can_id for can_id, sender in SENDERS.items() if sender in own)
         self._done = self._again = -1
         self._found: dict[int, SecondSenderFrames] = {}
@@ -132,6 +134,9 @@ class SenderWatch:
         sent: set[int] = set()
         for place, frame in answer:
             can_id = frame.can_id
+            if can_id == FswBoot.ID and self._may_boot:
+                sent.clear()
+                continue
             if can_id == FswBoot.ID:
                 is_strange = tick > 0 or can_id in sent  # in tick 0 it may have been requested twice
             else:
@@ -148,7 +153,7 @@ class SenderWatch:
         for frame in from_fsw:
             if frame.can_id == TickDone.ID and self._surplus(tick, frame):
                 strange.append((TickDone.ID, _tick_of_surplus(tick, frame)))
-            elif frame.can_id == FswBoot.ID and tick > 0:
+            elif frame.can_id == FswBoot.ID and tick > 0 and not self._may_boot:
                 strange.append((FswBoot.ID, tick))
         return strange
 

@@ -5,7 +5,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -110,56 +110,100 @@ def fly_processes(
     """
     with TemporaryDirectory() as scratch:
         table = write_flight_table(Path(scratch), scenario)
-        _fly_processes(path, scenario, table, spec, listener, watch, patience)
+        plant, fsw = _start_nodes(
+            spec, listener, _plant_words(path, patience), ("fsw", "--table", str(table))
+        )
+        oversee(path, scenario, {"plant": plant, "flight software": fsw}, watch, patience)
 
 
-def _fly_processes(
+def fly_against(
     path: Path,
     scenario: Scenario,
-    table: Path,
     spec: str,
     listener: socket.socket | None,
     watch: ProgressCallback,
     patience: Patience,
+    start: Callable[[], subprocess.Popen[bytes]] | None,
 ) -> None:
-    waits = (str(patience.boot_s), str(patience.answer_s))
-    plant, fsw = _start_nodes(
-        spec,
-        listener,
-        ("sim.flight.plant_process", str(path), "--patience", *waits),
-        ("fsw", "--table", str(table)),
-    )
+    """Fly the plant as a process, against a flight software that ``start`` starts, or that runs already.
+
+    Whatever it does once the flight has been flown is its own affair.
+
+    Raises:
+        FlightError: the plant or that process ended too early or is stalled; what was started has been ended.
+        OSError: the flight software cannot be started.
+    """
+    words = (*_plant_words(path, patience), "--bus", spec, "--parent", str(os.getpid()))
+    if listener is not None and os.name != "posix":
+        listener.close()
+        listener = None
+    if listener is None:
+        plant = start_node(*words)
+    else:
+        with listener:
+            plant = start_node(*words, "--host", str(listener.fileno()), pass_fds=(listener.fileno(),))
+    try:
+        nodes = {"plant": plant} | ({} if start is None else {"flight software": start()})
+    except OSError:
+        _end((plant,))
+        raise
+    oversee(path, scenario, nodes, watch, patience, flown_is_enough=True)
+
+
+def oversee(
+    path: Path,
+    scenario: Scenario,
+    nodes: Mapping[str, subprocess.Popen[bytes]],
+    watch: ProgressCallback,
+    patience: Patience,
+    flown_is_enough: bool = False,
+) -> None:
+    """Wait until the nodes of a flight have ended, and end those that do not.
+
+    Args:
+        path: the run directory, into which the plant writes.
+        scenario: of the flight.
+        nodes: the processes by their names.
+        watch: called with the tick now and then.
+        patience: of the plant.
+        flown_is_enough: how the others end does not matter once the plant has flown.
+
+    Raises:
+        FlightError: one ended too early or is stalled.
+    """
+    processes = tuple(nodes.values())
     stall = _stall_detector(path, scenario, patience)
     stalled_s = 0.0
     try:
-        while plant.poll() is None and fsw.poll() is None and not (stalled_s := stall.stalled_s()):
+        while all(node.poll() is None for node in processes) and not (stalled_s := stall.stalled_s()):
             time.sleep(POLL_S)
             watch(last_tick(path, scenario))
         deadline = time.monotonic() + (0.0 if stalled_s else GRACE_S)
         while (
-            (plant.poll() is None or fsw.poll() is None)
+            any(node.poll() is None for node in processes)
             and time.monotonic() < deadline
-            and _no_failure(plant, fsw)
+            and _no_failure(*processes)
         ):
             time.sleep(POLL_S / 10.0)
     finally:
-        failed = [
-            (name, process)
-            for name, process in (("plant", plant), ("flight software", fsw))
-            if process.poll()
-        ]
-        _end((plant, fsw))
+        failed = [(name, node) for name, node in nodes.items() if node.poll()]
+        _end(processes)
     run = run_dir.read_run(path)
-    if not failed and "flown" in run:
+    if "flown" in run and (not failed or flown_is_enough):
         return
     tick = last_tick(path, scenario)
-    name, process = failed[0] if failed else ("flight software", fsw)
+    name, process = failed[0] if failed else list(nodes.items())[-1]
     why = run.get("ended") or f"the {name} {exit_text(process.returncode)} at tick {tick}"
     if stalled_s:
         why = f"the plant is stalled: its log has not grown for {stalled_s:.0f} s after tick {tick}"
     if run.get("second_senders"):
         why += f"; {describe_senders(run['second_senders'])}"
     raise FlightError(f"{why}: the run is not complete, its files are in {path}")
+
+
+def _plant_words(path: Path, patience: Patience) -> tuple[str, ...]:
+    waits = (str(patience.boot_s), str(patience.answer_s))
+    return ("sim.flight.plant_process", str(path), "--patience", *waits)
 
 
 def _start_nodes(
@@ -179,7 +223,7 @@ def _start_nodes(
     ends = socket.socketpair()
     with listener, ends[0], ends[1]:
         hosted, joined = (listener.fileno(), ends[0].fileno()), (ends[1].fileno(),)
-        host, end = ("--host", *map(str, hosted)), ("--end", *map(str, joined))
+        host, end = ("--host", str(hosted[0]), "--host", str(hosted[1])), ("--end", *map(str, joined))
         started = start_node(*plant, *common, *host, pass_fds=hosted)
         return started, start_node(*fsw, *common, *end, pass_fds=joined)
 

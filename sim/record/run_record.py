@@ -73,12 +73,23 @@ class LawRecord(TypedDict):
 
 
 @with_config(_OPEN)
+class SoftwareRecord(TypedDict):
+    """A flight software of one's own: what was started, and what it answers by its profile.
+
+    ``command``: None where it ran already.
+    """
+
+    command: Text | None
+    profile: Text
+
+
+@with_config(_OPEN)
 class RunRecord(FlightRecord):
     """run.json.
 
     ``code``: whether the flight code ran compiled; ``algebra``: what computed the filter's matrices;
     ``ended``: why a flight was not completed, where the plant knows; ``law_object``: only whoever has that
-    law can replay the run.
+    law can replay the run; ``flight_software``: another one than this project's has flown.
     """
 
     schema_version: int
@@ -99,6 +110,7 @@ class RunRecord(FlightRecord):
     second_senders: NotRequired[list[SenderRecord]]
     ended: NotRequired[Text]
     law_object: NotRequired[LawRecord]
+    flight_software: NotRequired[SoftwareRecord]
 
 
 _RECORD = TypeAdapter(RunRecord)

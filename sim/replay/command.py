@@ -110,6 +110,11 @@ def locate(
 
 def through_flight_software(log: Path, run: LoggedRun) -> ReplayReport:
     """Compare the answers of the flight software; the log must be complete."""
+    if run.record is not None and "flight_software" in run.record:
+        raise HarnessError(
+            f"{log}: another flight software has flown, whose answers this one cannot give again: "
+            "--plant replays the plant"
+        )
     scenario, note = with_law_named(run.scenario, run.law, of_run=False)
     config = flight_config(flight_table(scenario))
     with progress("replaying", run.ticks) as watch:

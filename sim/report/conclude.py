@@ -1,6 +1,7 @@
 """Conclude a run: audit, replay, summary and report; only then is the run complete."""
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from sim.audit.findings import AuditReport
 from sim.errors import HarnessError
 from sim.faults.section import forge_answers
 from sim.record import binding, run_dir
-from sim.record.candump import LogEntry, More, read_log
+from sim.record.candump import LogEntry, LogTruncatedError, More, read_log
 from sim.record.destination import check_folder
 from sim.record.estimates import Estimates
 from sim.record.log_index import check_against_index
@@ -21,6 +22,7 @@ from sim.report.charts.lines import Lines
 from sim.report.figures.performance import Performance
 from sim.report.flight_audit import audit_flight
 from sim.report.history_blocks import HistoryBlocks, TruthBlocks
+from sim.report.observed import observed_estimates
 from sim.report.page import write_report
 from sim.report.summary import BusTally, summarise
 from sim.report.verdict import Verdict, failures
@@ -41,7 +43,7 @@ def conclude(
     """Write summary.json and report.html of a run, complete or not; bind a whole one and mark it complete.
 
     The log is replayed through the flight software: that gives its estimates at full precision, and checks
-    each time that the replay is exact.
+    each time that the replay is exact. Of a flight software of one's own the estimates are those on the bus.
 
     Args:
         path: the run directory.
@@ -58,7 +60,8 @@ def conclude(
     check_folder(path, run_dir.RESULTS)
     with TruthReader(path / run_dir.TRUTH) as truth:
         _check_rows(path, truth.complete)
-        replayed = _replay(path, scenario, truth, watch)
+        own = "flight_software" in run_dir.read_run(path)
+        replayed = (_observe if own else _replay)(path, scenario, truth, watch)
     return _write_results(path, scenario, replayed, draw)
 
 
@@ -98,9 +101,9 @@ def conclude_flight(path: Path, more: More, watch: Watch = lambda tick: None, la
 
 @dataclass(frozen=True, slots=True)
 class _Replayed:
-    """What one pass over log and histories has gathered."""
+    """What one pass over log and histories has gathered; ``result`` None: nothing can be replayed."""
 
-    result: ReplayResult
+    result: ReplayResult | None
     performance: Performance
     lines: Lines
 
@@ -129,6 +132,26 @@ def _replay(
     return _Replayed(result, performance, lines)
 
 
+def _observe(path: Path, scenario: Scenario, truth: TruthReader, watch: Watch) -> _Replayed:
+    """The same where the flight software is not this project's, which cannot be replayed."""
+    performance = Performance(scenario, truth.complete, own_software=False)
+    lines = Lines(truth.complete, scenario)
+    first = 0
+    for estimates in observed_estimates(_whole(run_dir.bus_log(path)), truth.complete):
+        histories = truth.rows(first, first + len(estimates.valid))
+        performance.take(histories, estimates)
+        lines.take(histories, estimates)
+        first += len(estimates.valid)
+        watch(first)
+    return _Replayed(None, performance, lines)
+
+
+def _whole(log: Path) -> Iterator[LogEntry]:
+    """The whole entries of a log that may be cut."""
+    with suppress(LogTruncatedError):
+        yield from read_log(log)
+
+
 def _write_results(path: Path, scenario: Scenario, replayed: _Replayed, draw: Draw | None = None) -> Json:
     """Audit, summary and page; the run is then marked complete, if it is."""
     run, log = run_dir.read_run(path), run_dir.bus_log(path)
@@ -137,7 +160,8 @@ def _write_results(path: Path, scenario: Scenario, replayed: _Replayed, draw: Dr
     assert limits is not None
     report = audit_flight(_tally_entries(read_log(log), tally), limits, scenario, expect_end=True)
     summary = summarise(scenario, run, replayed.performance, report, tally)
-    summary["replay"] = _replay_json(replayed.result)
+    if replayed.result is not None:
+        summary["replay"] = _replay_json(replayed.result)
     failed_checks = failures(
         run,
         summary["ticks"],

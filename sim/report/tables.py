@@ -69,7 +69,8 @@ def _attitude(summary: Json) -> Iterator[tuple[str, str]]:
         for words, figure in _ATTITUDE:
             if figure in summary[key]:
                 yield f"{name}{words.format(window=window)}", f"{summary[key][figure]:.3f}°"
-    yield "Final mode", summary["mode_final"]
+    if "mode_final" in summary:
+        yield "Final mode", summary["mode_final"]
 
 
 def coil_table(summary: Json, audit: AuditReport) -> Table:

@@ -27,7 +27,7 @@ def failures(
     run: RunRecord,
     ticks: int,
     audit_report: AuditReport,
-    replay_result: ReplayResult,
+    replay_result: ReplayResult | None,
     voucher: IndexCheck,
     requirements: Sequence[Json] = (),
 ) -> dict[str, str]:
@@ -37,7 +37,7 @@ def failures(
         run: content of run.json.
         ticks: number of ticks of the flight.
         audit_report: the audit of the whole log.
-        replay_result: the result of the replay.
+        replay_result: the result of the replay; None where there is none.
         voucher: the check of the log against its index.
         requirements: of the scenario, as in summary.json.
     """
@@ -64,8 +64,12 @@ def _limits(missing: str, violations: Sequence[Violation]) -> str:
     return f"the limits cannot be judged: the log has no {missing}" if missing else ""
 
 
-def _replay(replay_result: ReplayResult, same_platform: bool) -> str:
-    if replay_result.bit_exact or (replay_result.command_exact and not same_platform):
+def _replay(replay_result: ReplayResult | None, same_platform: bool) -> str:
+    if (
+        replay_result is None
+        or replay_result.bit_exact
+        or (replay_result.command_exact and not same_platform)
+    ):
         return ""
     return f"the replay is not exact: {replay_result.first_bit_difference}"
 

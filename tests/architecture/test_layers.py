@@ -275,6 +275,7 @@ PLANTED = {
         "sim/commissioning/recorded/columns.py",
         "import sim.commissioning.telemetry.follow",
     ),
+    "sim.judge: the command over pages": ("sim/judge/profile.py", "import sim.judge.invariants"),
     "sim.campaign: commands over their workers": ("sim/campaign/flight.py", "import sim.campaign.one_run"),
     "sim.plant: boards and physics over": ("sim/plant/rotation.py", "import sim.plant.hardware.coils"),
     "the plant knows the wire": (

@@ -49,6 +49,9 @@ GROUPS = {
         "faults": "Inject every fault of the table: a verdict per row.",
         "validate": "Check every published figure and reference.",
     },
+    "Your own flight software": {
+        "judge": "Fly SCENARIO against any flight software, and judge it.",
+    },
     "Other tools": {
         "export": "Write a run for Foxglove, CANalyzer, SavvyCAN, pandas or xarray.",
         "dbc": "Write the messages of the bus as a DBC with cycle times.",

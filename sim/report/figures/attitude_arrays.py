@@ -29,6 +29,15 @@ def law_vector(v_body: Array, axes: LawAxes | None) -> Array:
     return v_body if axes is None else v_body[:, axes.place] * np.array(axes.sign, dtype=np.float64)
 
 
+def rotated(q: Array, v: Array) -> Array:
+    """C(q) v of each row: components of vectors in the frame that the attitude leads to, (n, 3)."""
+    q0, qv = q[:, :1], q[:, 1:]
+    along = np.sum(qv * v, axis=1, keepdims=True)
+    size = np.sum(qv * qv, axis=1, keepdims=True)
+    result: Array = (q0 * q0 - size) * v + 2.0 * along * qv - 2.0 * q0 * np.cross(qv, v)
+    return result
+
+
 def angle_rad(turn: Array) -> Array:
     """The angle of each rotation, 0 to pi, (n,)."""
     result: Array = 2.0 * np.arctan2(np.linalg.norm(turn[:, 1:], axis=1), np.abs(turn[:, 0]))

@@ -31,6 +31,7 @@ from sim.value_types import Array, Json
 BLOCK_TICKS = 4096
 """Sums are taken over blocks of this many ticks, however a flight is handed over: so they are bit-exact."""
 SPIN_SETTLED_RADPS = 1e-3
+_MODES = frozenset(Mode)
 
 
 @dataclass(slots=True)
@@ -183,9 +184,10 @@ class Performance:
     Args:
         scenario: that was flown.
         ticks: of the whole flight.
+        own_software: it was flown by the flight software of this project.
     """
 
-    def __init__(self, scenario: Scenario, ticks: int) -> None:
+    def __init__(self, scenario: Scenario, ticks: int, own_software: bool = True) -> None:
         self._scenario = scenario
         self._hz, self._orbit_s = scenario.time.tick_hz, orbit_period_s(scenario)
         self._last_orbit_from = max(0, ticks - round(self._orbit_s * self._hz))
@@ -197,7 +199,7 @@ class Performance:
         self._spin = _Spin(Settling(held))
         self._tumble = _Tumble(Settling(held), Settling(held))
         self._controlled = ControlledError(controlled(scenario), scenario, Settling(held))
-        self.judgement = Judgement(scenario, ticks)
+        self.judgement = Judgement(scenario, ticks, own_software)
         """By the requirements of the scenario."""
         self._last: tuple[Histories, Estimates] | None = None
         self.last_estimate: Estimate | None = None
@@ -240,7 +242,8 @@ class Performance:
             result |= self._convergence.consistency.figures()
             result["converged_at_s"] = self._convergence.first / self._hz
         result["parameters"] = parameters.parameter_figures(self._scenario, truth, self.last_estimate)
-        result["mode_final"] = Mode(int(estimates.mode[len(truth["t_s"]) - 1])).name
+        if (mode := int(estimates.mode[len(truth["t_s"]) - 1])) in _MODES:
+            result["mode_final"] = Mode(mode).name
         return result
 
     def spin(self) -> Json | None:

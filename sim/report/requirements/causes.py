@@ -176,16 +176,22 @@ class Reason(NamedTuple):
 def reasons(missed: Missed, evidence: FlightEvidence) -> list[Reason]:
     """All causes that are found, in the order of the table; one that says so if there is none."""
     found: list[Reason] = []
-    for cause in CAUSES:
-        if missed.name not in cause.indices or cause.unless & {reason.cause for reason in found}:
+    for cause in _applicable(missed, evidence):
+        if cause.unless & {reason.cause for reason in found}:
             continue
         if text := cause.find(missed, evidence):
             found.append(Reason(cause.name, text))
-    return found or [_unknown(missed)]
+    return found or [_unknown(missed, evidence)]
 
 
-def _unknown(missed: Missed) -> Reason:
-    ruled_out = [cause.name.replace("_", " ") for cause in CAUSES if missed.name in cause.indices]
+def _applicable(missed: Missed, evidence: FlightEvidence) -> list[Diagnosis]:
+    """The causes that may make a flight miss this; of another flight software none that lies in this one."""
+    others = frozenset() if evidence.own_software else OF_OWN_SOFTWARE
+    return [cause for cause in CAUSES if missed.name in cause.indices and cause.name not in others]
+
+
+def _unknown(missed: Missed, evidence: FlightEvidence) -> Reason:
+    ruled_out = [cause.name.replace("_", " ") for cause in _applicable(missed, evidence)]
     return Reason(
         "unknown", f"none of the causes that can be told from the flight; ruled out: {', '.join(ruled_out)}"
     )
@@ -218,10 +224,8 @@ def _tumbling(missed: Missed, evidence: FlightEvidence) -> str:
     if evidence.rate_degps <= modes.fast_degps or slow <= LATE * evidence.orbits:
         return ""
     last = f"still {number(evidence.rate_last_degps)} deg/s" if slow == inf else f"slow since {orbits(slow)}"
-    return (
-        f"tumbling: {number(evidence.rate_degps)} deg/s at the start, {last}; "
-        f"ACQUIRE begins under {modes.slow_degps:g} deg/s"
-    )
+    acquires = f"; ACQUIRE begins under {modes.slow_degps:g} deg/s" if evidence.own_software else ""
+    return f"tumbling: {number(evidence.rate_degps)} deg/s at the start, {last}{acquires}"
 
 
 def _shadow(missed: Missed, evidence: FlightEvidence) -> str:
@@ -234,7 +238,8 @@ def _shadow(missed: Missed, evidence: FlightEvidence) -> str:
 
 
 def _estimate(missed: Missed, evidence: FlightEvidence) -> str:
-    if evidence.scenario.knowledge != "filter":
+    gives_none = not evidence.own_software and evidence.first_valid is None
+    if evidence.scenario.knowledge != "filter" or gives_none:
         return ""
     if evidence.first_valid is None:
         return "the estimate never converged: no attitude was called valid"
@@ -363,7 +368,8 @@ def _has_settled(missed: Missed) -> bool:
 
 def _short(missed: Missed, evidence: FlightEvidence) -> str:
     near = sum(evidence.in_mode.get(mode, 0.0) for mode in (Mode.ACQUIRE, Mode.POINT))
-    if len(evidence.trend) >= TREND or near < 0.5 or _has_settled(missed):
+    elsewhere = evidence.own_software and near < 0.5
+    if len(evidence.trend) >= TREND or elsewhere or _has_settled(missed):
         return ""
     flown = orbits(evidence.orbits)
     return f"too early to say: a flight of {flown} is too short to settle, or to tell when it would"
@@ -392,6 +398,11 @@ ALL = KNOWING | {"duty", "energy"}
 BEFORE_POINTING = frozenset(("safe", "dark", "tumbling", "shadow", "estimate"))
 CANNOT_POINT = frozenset(("isolated", "gravity", "unstable", "disturbance", "any_law"))
 POINT_IS_LOST = BEFORE_POINTING | CANNOT_POINT | {"coarse", "weak", "not_settled"}
+
+OF_OWN_SOFTWARE = frozenset(
+    ("isolated", "safe", "dark", "mismatch", "unstable", "never_in_point", "fell_back")
+)
+"""What lies in modes, events, table or laws of this project's flight software."""
 
 CAUSES: Sequence[Diagnosis] = (
     Diagnosis("isolated", ALL, _isolated),

@@ -55,6 +55,8 @@ def _coils(of: Controlled, settled: float | None, evidence: FlightEvidence) -> s
 def _estimate(of: Controlled, settled: float | None, evidence: FlightEvidence) -> str:
     if evidence.scenario.knowledge == "perfect":
         return "none: the attitude is known"
+    if evidence.first_valid is None and not evidence.own_software:
+        return "none is given on the bus"
     if evidence.first_valid is None or evidence.estimate_deg is None:
         return "never valid" if evidence.first_valid is None else "not valid in the last orbit"
     honest = evidence.within_3sigma

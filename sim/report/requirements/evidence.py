@@ -68,6 +68,7 @@ class FlightEvidence:
         fell_back: since when and for how long the controller was in SAFE or DETUMBLE after a better mode.
         unsure_dark: part of the ticks in the Earth's shadow, after the first valid one, in which the filter
             is less certain than the control can use.
+        own_software: the flight software is this project's, whose modes, table and laws are known.
     """
 
     scenario: Scenario
@@ -91,13 +92,15 @@ class FlightEvidence:
     pulses: tuple[tuple[float, int], ...] = ()
     fell_back: tuple[tuple[Mode, float, float], ...] = ()
     unsure_dark: float = 0.0
+    own_software: bool = True
 
 
 class EvidenceGatherer:
     """Gathers the evidence block by block, in constant memory."""
 
-    def __init__(self, scenario: Scenario, what: str, ticks: int) -> None:
+    def __init__(self, scenario: Scenario, what: str, ticks: int, own_software: bool = True) -> None:
         self._scenario, self._what, self._ticks = scenario, what, ticks
+        self._own_software = own_software
         self._orbit = orbit_period_s(scenario) * scenario.time.tick_hz
         self._last_from = max(0, ticks - round(self._orbit))
         self._halves = [Mean() for _ in range(min(HALF_ORBITS, int(2.0 * ticks / self._orbit)))]
@@ -123,8 +126,9 @@ class EvidenceGatherer:
         recent = slice(max(0, self._last_from - first), rows)
         self._take_trend(first, magnitudes(error_vectors(self._what, truth, self._scenario)))
         self._take_rate(first, magnitudes(error_vectors("rate", truth, self._scenario)), recent)
-        self._take_mode(first, estimates.mode[:rows])
-        self._modes += np.bincount(estimates.mode[:rows], minlength=len(self._modes))
+        if self._own_software:
+            self._take_mode(first, estimates.mode[:rows])
+            self._modes += np.bincount(estimates.mode[:rows], minlength=len(self._modes))
         self._note("valid", first, estimates.valid[:rows])
         self._note("lit", first, truth["lit"] > 0.5)
         self._note("point", first, estimates.mode[:rows] == Mode.POINT)
@@ -161,8 +165,9 @@ class EvidenceGatherer:
             saturated_part=self._saturated / last,
             course=tuple(half.rms for half in self._course),
             pulses=tuple((float(pulse.start_s) / orbit_s, abs(pulse.level)) for pulse in audit.pulses),
-            fell_back=tuple(self._fell_back()),
+            fell_back=tuple(self._fell_back()) if self._own_software else (),
             unsure_dark=self._unsure_dark / self._dark if self._dark else 0.0,
+            own_software=self._own_software,
         )
 
     def _take_trend(self, first: int, error: Array) -> None:

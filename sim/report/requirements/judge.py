@@ -201,14 +201,17 @@ class Judgement:
     Args:
         scenario: that was flown.
         ticks: of the whole flight.
+        own_software: it was flown by the flight software of this project.
     """
 
-    def __init__(self, scenario: Scenario, ticks: int) -> None:
+    def __init__(self, scenario: Scenario, ticks: int, own_software: bool = True) -> None:
         self._scenario = scenario
         self._gathered = [Gathered(section, scenario, ticks) for section in scenario.requirement]
         self._controlled = controlled(scenario)
         judged = {one.what for one in self._gathered if one.judged} | {self._controlled.what}
-        self._evidence = {what: EvidenceGatherer(scenario, what, ticks) for what in sorted(judged)}
+        self._evidence = {
+            what: EvidenceGatherer(scenario, what, ticks, own_software) for what in sorted(judged)
+        }
 
     def take(self, truth: Histories, estimates: Estimates) -> None:
         """The next block; not an empty one."""

@@ -171,3 +171,11 @@ def test_it_is_described_by_message_identifier_and_tick():
     assert describe_senders(found) == (
         "a second sender is on the bus: TICK_DONE (280) at tick 57, SYNC (180) from tick 60 on"
     )
+
+
+@pytest.mark.parametrize("lockstep", [True, False])
+def test_a_boot_in_flight_may_be_a_restart_where_that_is_judged_elsewhere(lockstep):
+    boot = FswBoot(0, 1, 0).encode()
+    ticks = [*quiet(3), ([], [boot, *answer(3)])]
+    assert [one.can_id for one in heard(*ticks, lockstep=lockstep)] == [FswBoot.ID]
+    assert heard(*ticks, lockstep=lockstep, may_boot=True) == []

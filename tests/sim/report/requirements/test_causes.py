@@ -295,3 +295,14 @@ def test_what_leads_to_another_cause_is_told_alone():
         estimate_deg=None, valid_part=0.0, within_3sigma=None, trend=(120.0, 130.0, 125.0), levels=(0, 0, 50),
     )  # fmt: skip
     assert names(fallen) == ["tumbling"]
+
+
+def test_of_another_flight_software_nothing_is_told_that_lies_in_this_one():
+    lost = replace(sound(), isolated={"coil 1": 0.2}, first_in_point=None, first_valid=None)
+    assert "isolated" in names(lost)
+    assert not {"isolated", "never_in_point", "estimate"} & set(names(replace(lost, own_software=False)))
+
+
+def test_of_another_flight_software_a_wrong_estimate_is_told():
+    wrong = replace(sound(), estimate_deg=1.7, own_software=False)
+    assert "estimate" in names(wrong)

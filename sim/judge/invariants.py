@@ -1,0 +1,288 @@
+"""What every flight software must keep, whatever it is for: each rule a function that says so in words."""
+
+from collections.abc import Callable, Sequence
+from itertools import groupby
+from typing import NamedTuple
+
+from fsw.wire.messages import CoilRefusedReason
+from sim.console import counted
+from sim.judge.answers import AnswerRecord, CoilRequest, crc_as_sent
+from sim.judge.profile import Profile
+from sim.record.run_record import RunRecord
+from sim.report.requirements.judge import Outcome
+from sim.report.verdict import Verdict
+from sim.scenario.coil_limits import coil_limits
+from sim.scenario.schema import Scenario
+from sim.value_types import Json
+
+
+class JudgedFlightRecord(NamedTuple):
+    """What a flight is judged by.
+
+    Attributes:
+        scenario: that was flown.
+        profile: of the flight software.
+        run: its run.json.
+        summary: its summary.json.
+        answers: what the flight software sent.
+        said: the last line that its command printed.
+        faulty: the scenario injects faults, by which requests may come to be refused and answers be lost.
+    """
+
+    scenario: Scenario
+    profile: Profile
+    run: RunRecord
+    summary: Json
+    answers: AnswerRecord
+    said: str = ""
+    faulty: bool = False
+
+    @property
+    def tick_hz(self) -> int:
+        """Ticks a second."""
+        return self.scenario.time.tick_hz
+
+    @property
+    def paced(self) -> bool:
+        """Flown in real time."""
+        return self.run["pace"] == "realtime"
+
+
+class InvariantVerdict(NamedTuple):
+    """The verdict of a rule: its name, the outcome, and a sentence without its full stop."""
+
+    name: str
+    outcome: Outcome
+    text: str
+
+
+Found = tuple[Outcome, str]
+
+
+def _kept(text: str) -> Found:
+    return Outcome.MET, text
+
+
+def _broken(text: str) -> Found:
+    return Outcome.FAILED, text
+
+
+def _unjudged(text: str) -> Found:
+    return Outcome.NOT_JUDGED, text
+
+
+def _flies_to_its_end(flight: JudgedFlightRecord) -> Found:
+    """It boots, answers to the last tick and does not end before."""
+    why = flight.summary.get("failures", {}).get(Verdict.COMPLETE.value)
+    if why is None:
+        return _kept(f"all {counted(flight.answers.ticks, 'tick')} flown")
+    said = f", the last that it printed is: {flight.said}" if flight.said else ""
+    return _broken(f"{why}{said}")
+
+
+def _answers(flight: JudgedFlightRecord) -> Found:
+    """Every tick is answered, and in real time in its own time."""
+    record = flight.answers
+    swapped = [(at, named) for at, named in record.odd_done if _swapped(named, 4) in (at, at - 1) and named]
+    if swapped:
+        at, named = swapped[0]
+        return _broken(
+            f"the byte order is wrong: TICK_DONE names tick {named} in tick {at}, "
+            f"which is {_swapped(named, 4)} with its bytes the other way round"
+        )
+    if record.odd_done:
+        at, named = record.odd_done[0]
+        return _broken(f"TICK_DONE names tick {named} in tick {at}")
+    if hang := _longest_hang(record):
+        first, ticks = hang
+        least_s, most_s = ticks / flight.tick_hz, (ticks + 1) / flight.tick_hz
+        late = sum(done != tick for tick, done in enumerate(record.answered_in))
+        if flight.paced:
+            ends = record.answered_in[first]
+            when = f"tick {first} was answered in tick {ends}" if ends >= 0 else f"tick {first} never was"
+            return _broken(
+                f"it hung for {least_s:.3g} to {most_s:.3g} s at tick {first}: {when}, and "
+                f"{counted(late, 'tick')} of {record.ticks} had no answer in time"
+            )
+    missing = [tick for tick, done in enumerate(record.answered_in) if done < 0]
+    if missing:
+        return _broken(f"no TICK_DONE to tick {missing[0]}, and {len(missing)} of {record.ticks} unanswered")
+    if record.repeats and not flight.faulty:
+        tick, times = record.repeats.most_common(1)[0]
+        return _kept(
+            f"each tick is answered, that of {tick} after {counted(times, 'repetition')} of SYNC, every 2 s: "
+            "in lockstep time is not judged, --paced judges it"
+        )
+    return _kept(f"each of {counted(record.ticks, 'tick')} is answered")
+
+
+def _longest_hang(record: AnswerRecord) -> tuple[int, int] | None:
+    """First tick and number of ticks of the longest time without an answer in time; None: there is none."""
+    slips = [
+        (tick, done - tick if done >= 0 else 0)
+        for tick, done in enumerate(record.answered_in)
+        if done != tick
+    ]
+    runs = []
+    for _, run in groupby(enumerate(slips), key=lambda one: one[1][0] - one[0]):
+        ticks = [slip for _, slip in run]
+        runs.append((ticks[0][0], max(len(ticks), ticks[0][1])))
+    return max(runs, key=lambda run: run[1], default=None)
+
+
+def _stays_up(flight: JudgedFlightRecord) -> Found:
+    """It does not restart in flight."""
+    again = [tick for tick in flight.answers.boots[1:] if tick > 0]  # in tick 0 it may be asked twice
+    if not again:
+        return _kept("one FSW_BOOT, before the flight")
+    more = f", and {len(again) - 1} more" if len(again) > 1 else ""
+    at_s = again[0] / flight.tick_hz
+    return _broken(f"it restarted in flight: FSW_BOOT in tick {again[0]}, after {at_s:.0f} s{more}")
+
+
+def _speaks_whole(flight: JudgedFlightRecord) -> Found:
+    """Each of its frames has the length, CRC and counter of the contract."""
+    record = flight.answers
+    if record.broken:
+        name, number = record.broken.most_common(1)[0]
+        tick, frame = record.first_broken[name]
+        how = crc_as_sent(frame)
+        why = f": {how}" if how else ""
+        data = frame.data.hex().upper()
+        return _broken(f"{counted(number, 'frame')} of {name} not whole, first {data} in tick {tick}{why}")
+    if record.counters and not flight.faulty:
+        name, number = record.counters.most_common(1)[0]
+        return _broken(f"the counter of {name} does not rise by one, {counted(number, 'time')}")
+    return _kept("length, CRC and counter of each frame are right")
+
+
+def _asks_properly(flight: JudgedFlightRecord) -> Found:
+    """No request breaks a limit: what a board refuses must not be asked for."""
+    if flight.scenario.coils.driver == "continuous":
+        refused = flight.answers.refused_dipoles + len(flight.answers.requests)
+        if refused and not flight.faulty:
+            return _broken(f"{counted(refused, 'request')} refused by the continuous driver")
+        return _kept(f"{counted(flight.answers.dipoles, 'COIL_DIPOLE')}, none refused")
+    requests = flight.answers.requests
+    wrong = [one for one in requests if one.refused not in (0, CoilRefusedReason.LOCKOUT) and not one.stuck]
+    if flight.faulty:  # it is asked of what does not come of a fault
+        wrong = [one for one in wrong if one.refused in _OF_THE_REQUEST]
+    if not wrong:
+        return _kept(f"{counted(len(requests), 'request')}, each within the limits")
+    why = _why_improper(flight, wrong[0])
+    return _broken(f"{counted(len(wrong), 'request')} of {len(requests)} against the limits, first {why}")
+
+
+_OF_THE_REQUEST = frozenset(
+    (CoilRefusedReason.BAD_COIL, CoilRefusedReason.BAD_LEVEL, CoilRefusedReason.BAD_DURATION)
+)
+
+
+def _why_improper(flight: JudgedFlightRecord, request: CoilRequest) -> str:
+    limits, fire = coil_limits(flight.scenario.coils, flight.tick_hz), request.fire
+    at, name = f"in tick {request.tick}", CoilRefusedReason(request.refused).name.lower()
+    if request.refused == CoilRefusedReason.BAD_DURATION:
+        swapped = _swapped(fire.duration_ms, 2)
+        order = (
+            f": the byte order is wrong, it is {swapped} ms with its bytes the other way round"
+            if 0 < swapped <= limits.pulse_ms and fire.duration_ms > 10 * limits.pulse_ms
+            else ""
+        )
+        longest = f"the longest pulse is {limits.pulse_ms / 1000.0:g} s"
+        return f"{at} a pulse of {fire.duration_ms / 1000.0:g} s, {longest}{order}"
+    values = {
+        CoilRefusedReason.WRONG_TICK: f"it names tick {fire.tick} and not {request.tick & 0xFF}",
+        CoilRefusedReason.REPEATED_SEQ: f"seq {fire.seq} is that of the last accepted one",
+        CoilRefusedReason.BAD_COIL: f"there is no coil {fire.coil}",
+        CoilRefusedReason.BAD_LEVEL: f"there is no level {fire.level}",
+        CoilRefusedReason.COIL_ON: "a coil is on",
+    }
+    told = values.get(CoilRefusedReason(request.refused), name)
+    return f"{at}: {told} ({name})"
+
+
+def _waits(flight: JudgedFlightRecord) -> Found:
+    """It waits out the back-off, from boot and after each pulse."""
+    if flight.scenario.coils.driver == "continuous":
+        return _unjudged("a continuous driver has no back-off")
+    requests = flight.answers.requests
+    early = [place for place, one in enumerate(requests) if one.refused == CoilRefusedReason.LOCKOUT]
+    if not early or flight.faulty:
+        return _kept("no request comes in a back-off" if not early else f"{len(early)} refused under faults")
+    limits, first = coil_limits(flight.scenario.coils, flight.tick_hz), requests[early[0]]
+    wanted = f"the back-off is {limits.backoff_ms / 1000.0:g} s"
+    fired = [one for one in requests[: early[0]] if not one.refused]
+    if not limits.shared:
+        fired = [one for one in fired if one.fire.coil == first.fire.coil]
+    at_s = first.tick / flight.tick_hz
+    if fired:
+        gap_s = at_s - fired[-1].tick / flight.tick_hz - fired[-1].fire.duration_ms / 1000.0
+        since = f"{gap_s:g} s after the end of a pulse"
+    else:
+        since = f"{at_s:g} s after the board's boot"
+    return _broken(
+        f"{counted(len(early), 'request')} of {len(requests)} in the back-off, first in tick {first.tick}, "
+        f"{since}: {wanted}"
+    )
+
+
+def _limits(flight: JudgedFlightRecord) -> Found:
+    """The coils kept their limits, by the audit of the log."""
+    why = flight.summary.get("failures", {}).get(Verdict.LIMITS.value)
+    return _kept("pulses and back-off kept by the board") if why is None else _broken(why)
+
+
+def _heeds_the_board(flight: JudgedFlightRecord) -> Found:
+    """It asks for nothing while the board reports a current that it does not drive."""
+    record = flight.answers
+    if record.stuck_at < 0:
+        return _unjudged("no coil was stuck")
+    grace = record.stuck_at + flight.tick_hz
+    late = [one for one in record.requests if one.stuck and one.tick > grace]
+    if not late:
+        return _kept(f"no request after the board reported a stuck coil in tick {record.stuck_at}")
+    return _broken(
+        f"it goes on firing with a stuck coil: the board reported a current while all coils are off in tick "
+        f"{record.stuck_at}, and {counted(len(late), 'request')} came after it, first in tick {late[0].tick}"
+    )
+
+
+def _alone(flight: JudgedFlightRecord) -> Found:
+    """No other node sends in its place, or it in another's."""
+    why = flight.summary.get("failures", {}).get(Verdict.SECOND_SENDERS.value)
+    return _kept("nobody else sends its frames, or it those of others") if why is None else _broken(why)
+
+
+def _tells_its_estimate(flight: JudgedFlightRecord) -> Found:
+    """Of the profile attitude: NAV_ATTITUDE in every answer."""
+    if flight.profile is not Profile.ATTITUDE:
+        return _unjudged(f"not asked of the profile {flight.profile.value}")
+    record = flight.answers
+    if record.estimates >= record.ticks - len(record.repeats) or flight.faulty:
+        return _kept("NAV_ATTITUDE in every answer")
+    return _broken(f"NAV_ATTITUDE in {record.estimates} of {record.ticks} answers")
+
+
+Rule = Callable[[JudgedFlightRecord], Found]
+RULES: dict[str, Rule] = {
+    "flies to its end": _flies_to_its_end,
+    "answers each tick": _answers,
+    "does not restart": _stays_up,
+    "sends whole frames": _speaks_whole,
+    "asks within limits": _asks_properly,
+    "waits out the back-off": _waits,
+    "limits kept": _limits,
+    "heeds a stuck coil": _heeds_the_board,
+    "alone on the bus": _alone,
+    "tells its estimate": _tells_its_estimate,
+}
+
+
+def judge_invariants(flight: JudgedFlightRecord) -> Sequence[InvariantVerdict]:
+    """Every rule, in the order of the table."""
+    return [InvariantVerdict(name, *rule(flight)) for name, rule in RULES.items()]
+
+
+def _swapped(value: int, size: int) -> int:
+    """The number with its bytes the other way round."""
+    return int.from_bytes(value.to_bytes(size, "little"), "big")

@@ -1,0 +1,39 @@
+"""A command is started with the address of the bus; one that cannot be is told before anything is flown."""
+
+import sys
+
+import pytest
+
+from sim.errors import HarnessError
+from sim.flight.flight_command import OUTPUT, FlightCommand, last_words, parse_command
+
+PRINT = "import os, sys; print(*sys.argv[1:], os.environ['TORQUER_BUS'], os.environ['TORQUER_PORT'])"
+
+
+def test_the_bus_stands_in_its_words_and_in_its_environment(tmp_path):
+    command = FlightCommand((sys.executable, "-c", PRINT, "--bus={bus}", "{port}", "{else}"))
+    command.start("loop:1234", tmp_path, tmp_path / "scenario.toml").wait()
+    assert last_words(tmp_path) == "--bus=loop:1234 1234 {else} loop:1234 1234"
+
+
+def test_a_quoted_word_is_one_word():
+    assert parse_command("sh -c 'exit 3'", "--flight-software").words == ("sh", "-c", "exit 3")
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "the command is empty"),
+        ("sh -c 'x", "no closing quotation"),
+        ("no-such-program-here 1", "there is no program 'no-such-program-here' that can be executed"),
+    ],
+)
+def test_what_is_no_command_is_told(text, says):
+    with pytest.raises(HarnessError, match=says):
+        parse_command(text, "--flight-software")
+
+
+def test_last_words_are_short_and_none_of_a_silent_one(tmp_path):
+    assert last_words(tmp_path) == ""
+    (tmp_path / OUTPUT).write_bytes(b"one\n" + b"x" * 5000 + b"\n\n")
+    assert last_words(tmp_path) == "x" * 200

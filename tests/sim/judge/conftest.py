@@ -1,0 +1,34 @@
+"""Flights of the planted firmwares, which are programs of their own and know the wire by its bytes alone."""
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from sim.flight.flight_command import FlightCommand
+from sim.flight.fsw_answers import Patience
+from sim.judge.flight import SoftwareUnderTest, fly_and_judge
+from sim.judge.profile import Profile
+from sim.record.pace import parse_pace
+from sim.scenario.schema import load
+
+FIRMWARE = Path(__file__).with_name("firmware.py")
+TUMBLER = str(Path(__file__).with_name("tumbler.toml"))
+
+
+def firmware(mistake="", profile=Profile.DETUMBLE, pace="lockstep", answer_s=20.0):
+    command = FlightCommand((sys.executable, str(FIRMWARE), "{port}", *filter(None, [mistake])))
+    return SoftwareUnderTest(command, "loop", profile, parse_pace(pace), Patience(30.0, answer_s, answer_s))
+
+
+@pytest.fixture
+def flown(tmp_path):
+    """A judged flight of the firmware with a mistake, of ``tumbler`` with settings."""
+
+    def fly(mistake="", orbits=None, hang_s="0", settings=None, **options):
+        os.environ["HANG_S"] = hang_s
+        scenario = load(TUMBLER, settings or {})
+        return fly_and_judge(firmware(mistake, **options), scenario, 1, tmp_path / "run", orbits)
+
+    return fly

@@ -1,0 +1,139 @@
+"""A sound firmware passes, and ten planted mistakes are told, each in words and by the rule it breaks."""
+
+import pytest
+
+from sim.judge.profile import Profile
+from sim.judge.render import failed_text, verdict_json, verdict_page, verdict_text
+from sim.report.requirements.judge import Outcome
+
+pytestmark = pytest.mark.long
+
+STUCK = {"fault": [{"kind": "coil_stuck_on", "at_s": 1500.0, "parameters": {"axis": 1.0, "ampere": 0.4}}]}
+
+
+def broken(flight):
+    return {one.name: one.text for one in flight.invariants if one.outcome is Outcome.FAILED}
+
+
+def missed(flight):
+    return [one["id"] for one in flight.requirements if one["verdict"] == "failed"]
+
+
+@pytest.mark.parametrize("mistake", ["", "modelled"])
+def test_a_sound_one_passes(flown, mistake):
+    flight = flown(mistake)
+    assert flight.ok
+    assert broken(flight) == {}
+    assert [one["verdict"] for one in flight.requirements] == ["met"]
+    assert flight.reasons == []
+    assert flight.law.brakes > 0.6
+    assert failed_text(flight) == ""
+
+
+def test_a_sign_error_is_named(flown):
+    flight = flown("sign")
+    assert missed(flight) == ["RATE"]
+    assert list(broken(flight)) == ["brakes the body"]
+    assert flight.law.work_j > 0.0
+    (why,) = flight.reasons
+    assert why.startswith("a sign error: its dipoles speed the body up instead of braking it")
+    assert why in failed_text(flight)
+    assert why in verdict_text(flight)
+    assert why in verdict_page(flight)
+    assert verdict_json(flight)["reasons"] == [why]
+
+
+def test_swapped_axes_are_named(flown):
+    flight = flown("axes")
+    assert missed(flight) == ["RATE"]
+    (why,) = flight.reasons
+    assert why.startswith("the axes x and y are swapped: ")
+
+
+def test_a_wrong_epoch_of_its_field_model_is_named(flown):
+    flight = flown("epoch")
+    assert missed(flight) == ["RATE"]
+    (why,) = flight.reasons
+    assert why.startswith("a wrong epoch: its field is the one of about 1834 s later")  # it was 1800
+
+
+def test_a_pulse_of_3_1_s_is_told(flown):
+    flight = flown("long", orbits=0.1)
+    text = broken(flight)["asks within limits"]
+    assert text.endswith("a pulse of 3.1 s, the longest pulse is 3 s")
+    assert list(broken(flight)) == ["asks within limits"]
+
+
+def test_a_back_off_of_99_s_is_told(flown):
+    flight = flown("early", orbits=0.3)
+    assert list(broken(flight)) == ["waits out the back-off"]
+    assert "99 s after the board's boot: the back-off is 100 s" in broken(flight)["waits out the back-off"]
+
+
+def test_a_wrong_byte_order_is_told(flown):
+    flight = flown("order", orbits=0.1)
+    text = broken(flight)["asks within limits"]
+    assert "the byte order is wrong, it is 3000 ms with its bytes the other way round" in text
+
+
+def test_a_stuck_coil_that_goes_on_being_fired_is_told(flown):
+    flight = flown("stuck", orbits=0.5, settings=STUCK)
+    assert list(broken(flight)) == ["heeds a stuck coil"]
+    assert "it goes on firing with a stuck coil" in broken(flight)["heeds a stuck coil"]
+
+
+def test_one_that_heeds_it_is_not_blamed(flown):
+    flight = flown("", orbits=0.5, settings=STUCK)
+    assert broken(flight) == {}
+    heeds = next(one for one in flight.invariants if one.name == "heeds a stuck coil")
+    assert heeds.outcome is Outcome.MET
+
+
+@pytest.mark.paced
+def test_a_hang_of_10_s_is_told_where_time_counts(flown):
+    flight = flown("hang", orbits=0.04, hang_s="0.52", pace="realtime:20")
+    text = broken(flight)["answers each tick"]
+    assert text.startswith("it hung for 10 to 11 s at tick 150: tick 150 was answered in tick 16")
+
+
+def test_in_lockstep_a_hang_is_noted_and_not_blamed(flown):
+    flight = flown("hang", orbits=0.04, hang_s="2.5")
+    assert broken(flight) == {}
+    answers = next(one for one in flight.invariants if one.name == "answers each tick")
+    assert "that of 150 after 1 repetition of SYNC" in answers.text
+
+
+def test_a_restart_is_told(flown):
+    flight = flown("restart", orbits=0.2)
+    assert broken(flight) == {"does not restart": "it restarted in flight: FSW_BOOT in tick 700, after 700 s"}
+
+
+def test_a_bus_that_is_dead_after_an_hour_is_told(flown):
+    flight = flown("dead", answer_s=3.0)
+    assert list(broken(flight)) == ["flies to its end"]
+    end = broken(flight)["flies to its end"]
+    assert "3600 of 6052 ticks were flown: no answer from the flight software to tick 3600 within 3 s" in end
+    assert [one["verdict"] for one in flight.requirements] == ["not judged"]
+
+
+def test_one_that_ends_is_told_with_its_last_words(flown):
+    flight = flown("hang", orbits=0.05, hang_s="soon")
+    end = broken(flight)["flies to its end"]
+    assert "the flight software ended with exit code 1 at tick 149" in end
+    assert end.endswith("ValueError: could not convert string to float: 'soon'")
+
+
+def test_what_a_profile_does_not_give_is_not_asked(flown):
+    pointing = [{"index": "ape", "at_most_deg": 1.0, "last_orbits": 0.1, "by_orbit": 0.1}]
+    knowing = [{"index": "ake", "at_most_deg": 1.0, "last_orbits": 0.1, "by_orbit": 0.1}]
+    flight = flown("", orbits=0.1, settings={"requirement": pointing + knowing})
+    assert [one["text"] for one in flight.requirements] == [
+        "APE: not judged, the profile detumble does not point",
+        "AKE: not judged, the profile detumble gives no estimate",
+    ]
+    assert flight.ok
+
+
+def test_one_that_promises_an_estimate_must_give_it(flown):
+    flight = flown("", orbits=0.05, profile=Profile.ATTITUDE)
+    assert broken(flight) == {"tells its estimate": "NAV_ATTITUDE in 0 of 303 answers"}
