@@ -15,7 +15,7 @@ from fsw.node import TICKS_MODULO
 from fsw.table.config import flight_config
 from fsw.wire.candump_line import format_time
 from fsw.wire.frame import Frame
-from fsw.wire.messages import NAMES, Sync
+from fsw.wire.messages import NAMES, Sync, TickDone
 from sim.errors import HarnessError
 from sim.faults.section import forge_answers, make_plant
 from sim.flight.fsw_answers import has_answer
@@ -131,6 +131,8 @@ def through_flight_software(log: Path, run: LoggedRun) -> ReplayReport:
     exact = result.bit_exact or (result.command_exact and not same_platform)
     holds, binding_lines = _binding(log, run)
     lines = [*([f"note: {note}"] if note else []), *_found(result, _needed(run.record)), *binding_lines]
+    if not result.bit_exact:
+        lines += _without_state(log, run.channel)
     if result.command_exact and not result.ended:
         how = "inside a line" if result.cut else "without its end mark"
         end = f"after line {result.end_line}, at tick {max(result.last_tick, 0)}"
@@ -162,6 +164,16 @@ def _found(result: ReplayResult, needed: str) -> list[str]:
     if result.first_command_difference != result.first_bit_difference:
         lines.append(f"first command that differs: {result.first_command_difference}")
     return lines
+
+
+def _without_state(log: Path, channel: str | None) -> list[str]:
+    """That the log is of a flight software which gives no CRC of its state, where it is."""
+    entries = read_log(log, channel=channel)
+    dones = (one.frame for one in entries if one.frame.can_id == TickDone.ID)
+    first = next((frame for frame in dones if len(frame.data) == TickDone.LENGTH), None)
+    if first is None or TickDone.decode(first.data).state_crc:
+        return []
+    return ["its TICK_DONE gives no CRC of the state (0): another flight software has flown"]
 
 
 def through_plant(log: Path, run: LoggedRun) -> ReplayReport:

@@ -51,6 +51,8 @@ GROUPS = {
     },
     "Your own flight software": {
         "judge": "Fly SCENARIO against any flight software, and judge it.",
+        "header": "Write the messages of the bus, and the limits of SCENARIO, as C.",
+        "vectors": "Write a flight as golden vectors: what comes in and goes out, tick by tick.",
     },
     "Other tools": {
         "export": "Write a run for Foxglove, CANalyzer, SavvyCAN, pandas or xarray.",

@@ -6,7 +6,7 @@ import shutil
 import pytest
 
 from fsw.wire.candump_line import format_line, format_time
-from fsw.wire.messages import PlantEnd, Sync
+from fsw.wire.messages import PlantEnd, Sync, TickDone
 from sim.errors import HarnessError
 from sim.record import run_dir
 from sim.record.binding import Binding
@@ -75,3 +75,29 @@ def test_a_log_without_a_frame_of_the_flight_software_is_not_replayed(run):
     sync = format_line(format_time(0), "vcan0", Sync(0, 0).encode())
     with pytest.raises(HarnessError, match="no frame of the flight software in it: nothing to compare"):
         through_flight_software(*run(sync))
+
+
+def test_of_one_that_gives_no_state_crc_it_is_said(run, recorded_run):
+    """A state CRC of 0 says that there is none: the replay differs, and says why no CRC can agree."""
+    log, flown = run("".join(_without_state_crc(recorded_run / run_dir.BUS_LOG)))
+    report = through_flight_software(log, flown)
+    assert not report.ok
+    assert "its TICK_DONE gives no CRC of the state (0): another flight software has flown" in report.lines
+    assert not any(
+        "no CRC" in line for line in through_flight_software(recorded_run / run_dir.BUS_LOG, flown).lines
+    )
+
+
+def _without_state_crc(log):
+    for entry in read_log(log):
+        frame = entry.frame
+        if frame.can_id == TickDone.ID:
+            frame = TickDone(TickDone.decode(frame.data).tick, 0).encode()
+        yield format_line(format_time(entry.timestamp_us), entry.channel, frame)
+
+
+def test_a_run_of_another_flight_software_is_not_replayed_through_this_one(run):
+    log, flown = run(flight_software={"command": "./firmware", "profile": "actuator"})
+    with pytest.raises(HarnessError, match="another flight software has flown, .* --plant replays the plant"):
+        through_flight_software(log, flown)
+    assert through_plant(log, flown).ok
