@@ -1,18 +1,35 @@
-"""The command ``torquer judge``."""
+"""The command ``torquer judge``: one flight, the rows of the fault table, or a campaign."""
 
+import sys
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
+from sim.campaign.definition.campaign import Campaign
+from sim.campaign.report.verdicts import CampaignVerdict
 from sim.console import answer, fail, say
+from sim.errors import HarnessError
+from sim.fault_table.row import FaultRow
 from sim.flight.record_flight import ticks_of
-from sim.judge.flight import JudgedFlight, SoftwareUnderTest, fly_and_judge
-from sim.judge.render import failed_text, verdict_json, verdict_page, verdict_suites, verdict_text
+from sim.judge.faults import fault_cases
+from sim.judge.flight import SoftwareUnderTest, fly_and_judge
+from sim.judge.population import population_cases, population_verdicts
+from sim.judge.render import (
+    PAGE,
+    VERDICT,
+    failed_text,
+    verdict_json,
+    verdict_suites,
+    verdict_text,
+    write_judgement,
+)
+from sim.judge.series import JudgedCase, KeptFiles, SeriesCase, fly_series
+from sim.judge.series_render import case_line, series_json, series_page, series_suites, tally_line
 from sim.junit import write_junit
-from sim.progress import progress
+from sim.progress import note, progress
 from sim.record import run_dir
+from sim.report.requirements.judge import Outcome
 from sim.result_files import write_result
 from sim.scenario.schema import Scenario
-
-PAGE, VERDICT = "judge.html", "judge.json"
 
 
 def judge_scenario(
@@ -41,7 +58,101 @@ def judge_scenario(
     return int(not flight.ok)
 
 
-def write_judgement(flight: JudgedFlight) -> None:
-    """Write page and verdicts into the run directory."""
-    write_result(flight.path / PAGE, verdict_page(flight))
-    run_dir.write_json(flight.path / VERDICT, {**verdict_json(flight), "run": str(flight.path)})
+def judge_faults(
+    software: SoftwareUnderTest,
+    scenario: Scenario,
+    rows: Sequence[FaultRow],
+    phases: int,
+    seed: int,
+    out: Path | None,
+    keep: KeptFiles,
+    junit: Path | None,
+) -> int:
+    """Fly the rows of the fault table that apply, and say what is judged of each: the exit code.
+
+    Raises:
+        HarnessError: nothing can be flown.
+        BusError: the bus cannot be used.
+    """
+    cases = list(fault_cases(scenario, rows, phases, seed))
+    return _judge_series(software, f"{scenario.name}, faults", cases, scenario, out, keep, junit)
+
+
+def judge_campaign(
+    software: SoftwareUnderTest, campaign: Campaign, out: Path | None, keep: KeptFiles, junit: Path | None
+) -> int:
+    """Fly the runs of a campaign, and say what is judged of all of them: the exit code.
+
+    Raises:
+        HarnessError: nothing can be flown.
+        BusError: the bus cannot be used.
+    """
+    cases = list(population_cases(campaign))
+    first = cases[0].scenario
+    assert first is not None
+    return _judge_series(
+        software,
+        campaign.name,
+        cases,
+        first,
+        out,
+        keep,
+        junit,
+        lambda flown: population_verdicts(campaign, flown),
+    )
+
+
+def _judge_series(
+    software: SoftwareUnderTest,
+    name: str,
+    cases: Sequence[SeriesCase],
+    scenario: Scenario,
+    out: Path | None,
+    keep: KeptFiles,
+    junit: Path | None,
+    conclude: Callable[[Sequence[JudgedCase]], Sequence[CampaignVerdict]] = lambda flown: (),
+) -> int:
+    folder = out or run_dir.new_folder(scenario)
+    if (folder / VERDICT).exists():
+        raise HarnessError(f"{folder} already holds a judgement: choose another --out")
+    flown = _flown(name, fly_series(software, cases, folder, keep), len(cases))
+    verdicts = conclude(flown)
+    for one in verdicts:
+        say(f"  {one}", failed=one.met is False)
+    say(tally_line(flown))
+    command = software.command
+    told = software.bus if command is None else command.text
+    write_result(folder / PAGE, series_page(name, told, flown, verdicts))
+    run_dir.write_json(folder / VERDICT, series_json(flown, verdicts))
+    say(f"page: {folder / PAGE}")
+    answer({**series_json(flown, verdicts), "folder": folder, "page": folder / PAGE})
+    write_junit(junit, "torquer judge", series_suites(flown, verdicts))
+    return _exit_code(flown, verdicts)
+
+
+def _flown(name: str, judged: Iterable[JudgedCase], total: int) -> list[JudgedCase]:
+    """The cases as they are judged, each said at once where no bar is shown."""
+    bar = sys.stderr.isatty()
+    flown = []
+    with progress(f"flying {name}", total) as watch:
+        for one in judged:
+            flown.append(one)
+            watch(len(flown))
+            if not bar:
+                say(case_line(one), failed=one.outcome is Outcome.FAILED)
+    for one in flown if bar else ():
+        say(case_line(one), failed=one.outcome is Outcome.FAILED)
+    if not any(one.outcome is not Outcome.NOT_JUDGED for one in flown):
+        note("note: nothing applies, so that nothing was flown")
+    return flown
+
+
+def _exit_code(flown: Sequence[JudgedCase], verdicts: Sequence[CampaignVerdict]) -> int:
+    """1 where a verdict of the population is missed, or, where there are none, a flight is."""
+    missed = [str(one) for one in verdicts if one.met is False]
+    if not verdicts:
+        missed = [f"{one.name}: {one.text}" for one in flown if one.outcome is Outcome.FAILED]
+    if missed:
+        more = f", and {len(missed) - 1} more" if len(missed) > 1 else ""
+        fail(f"the flight software failed: {missed[0]}{more}")
+    return int(bool(missed))

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from fsw.bus.open_bus import open_bus, resolve
 from sim.errors import FlightError
+from sim.fault_table.wrong_estimates import WRONG_DEG
 from sim.flight.bus_in_use import refuse_bus_in_use
 from sim.flight.flight_command import FlightCommand, last_words
 from sim.flight.flight_loop import ProgressCallback
@@ -16,11 +17,12 @@ from sim.flight.fsw_answers import Patience
 from sim.flight.record_flight import check_plant, ticks_of
 from sim.flight.sil import fly_against, serve_bus
 from sim.judge.answers import AnswerRecord, read_answers
+from sim.judge.honesty import wrong_attitude
 from sim.judge.invariants import InvariantVerdict, JudgedFlightRecord, judge_invariants
 from sim.judge.law_fit import LawFit, fit_law
 from sim.judge.profile import Profile, asked_of, not_asked
 from sim.record import run_dir
-from sim.record.candump import LogEntry, LogTruncatedError, read_log
+from sim.record.candump import whole_entries
 from sim.record.pace import Pace
 from sim.record.truth import read_truth
 from sim.report.conclude import conclude
@@ -105,6 +107,9 @@ class JudgedFlight:
         if self.record.profile is not Profile.DETUMBLE:
             return
         name, law = "brakes the body", self.law
+        if self.record.faulty:
+            yield InvariantVerdict(name, Outcome.NOT_JUDGED, "faults act on what it senses or drives")
+            return
         if not law.pulses:
             yield InvariantVerdict(name, Outcome.NOT_JUDGED, "it never turned fast for long enough to tell")
             return
@@ -120,6 +125,7 @@ def fly_and_judge(
     path: Path | None,
     orbits: float | None = None,
     watch: ProgressCallback = lambda tick: None,
+    honest_deg: float | None = WRONG_DEG,
 ) -> JudgedFlight:
     """Fly a scenario against the flight software, and judge it.
 
@@ -132,6 +138,7 @@ def fly_and_judge(
         path: the run directory; None: a new one.
         orbits: how long; None: as the scenario says.
         watch: called with the tick now and then.
+        honest_deg: the error from which on an attitude that is called valid is wrong; None: none is.
 
     Raises:
         HarnessError: nothing can be flown: the command does not start, the run cannot be written.
@@ -153,26 +160,30 @@ def fly_and_judge(
             fly_against(path, flown, spec, listener, watch, software.patience, start)
         except FlightError as error:
             _note_end(path, str(error))
-    return judged(path, scenario, software.profile)
+    return judged(path, scenario, software.profile, honest_deg)
 
 
-def judged(path: Path, asked: Scenario, profile: Profile) -> JudgedFlight:
+def judged(path: Path, asked: Scenario, profile: Profile, honest_deg: float | None) -> JudgedFlight:
     """Judge the flight of a run directory, as far as it went.
 
     Args:
         path: the run directory.
         asked: the scenario with all of its requirements.
         profile: of the flight software.
+        honest_deg: as for ``fly_and_judge``.
     """
     run = run_dir.read_run(path)
     scenario, log = asked_of(asked, profile), run_dir.bus_log(path)
     if log.is_file() and log.stat().st_size:
-        summary, answers = conclude(path), read_answers(_whole(log))
+        summary, answers = conclude(path), read_answers(whole_entries(log))
     else:
         summary, answers = _nothing(scenario, run.get("ended", "nothing was flown")), AnswerRecord()
     run = run_dir.read_run(path)
     said = "" if "flown" in run else last_words(path)
-    record = JudgedFlightRecord(scenario, profile, run, summary, answers, said, bool(scenario.fault))
+    wrong = None
+    if profile is Profile.ATTITUDE and honest_deg is not None and answers.ticks:
+        wrong = wrong_attitude(path, scenario.time.tick_hz, honest_deg)
+    record = JudgedFlightRecord(scenario, profile, run, summary, answers, said, bool(scenario.fault), wrong)
     return JudgedFlight(path, record, asked)
 
 
@@ -202,13 +213,6 @@ def _note_end(path: Path, sentence: str) -> None:
     """Note why the flight ended, where the plant could not."""
     if "ended" not in run_dir.read_run(path):
         run_dir.update(path, ended=sentence.partition(": the run is not complete")[0][:1000])
-
-
-def _whole(log: Path) -> Iterator[LogEntry]:
-    try:
-        yield from read_log(log)
-    except LogTruncatedError:
-        return
 
 
 def _unasked(one: RequirementSection, why: str) -> Json:

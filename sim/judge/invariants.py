@@ -6,7 +6,10 @@ from typing import NamedTuple
 
 from fsw.wire.messages import CoilRefusedReason
 from sim.console import counted
+from sim.fault_table.wrong_estimates import WRONG_S
+from sim.faults.section import forge_answers, forge_sync
 from sim.judge.answers import AnswerRecord, CoilRequest, crc_as_sent
+from sim.judge.honesty import WrongAttitude
 from sim.judge.profile import Profile
 from sim.record.run_record import RunRecord
 from sim.report.requirements.judge import Outcome
@@ -27,6 +30,7 @@ class JudgedFlightRecord(NamedTuple):
         answers: what the flight software sent.
         said: the last line that its command printed.
         faulty: the scenario injects faults, by which requests may come to be refused and answers be lost.
+        wrong: attitudes that were called valid and were wrong; None: none is judged.
     """
 
     scenario: Scenario
@@ -36,6 +40,7 @@ class JudgedFlightRecord(NamedTuple):
     answers: AnswerRecord
     said: str = ""
     faulty: bool = False
+    wrong: WrongAttitude | None = None
 
     @property
     def tick_hz(self) -> int:
@@ -84,13 +89,13 @@ def _answers(flight: JudgedFlightRecord) -> Found:
     """Every tick is answered, and in real time in its own time."""
     record = flight.answers
     swapped = [(at, named) for at, named in record.odd_done if _swapped(named, 4) in (at, at - 1) and named]
-    if swapped:
+    if swapped and not flight.faulty:
         at, named = swapped[0]
         return _broken(
             f"the byte order is wrong: TICK_DONE names tick {named} in tick {at}, "
             f"which is {_swapped(named, 4)} with its bytes the other way round"
         )
-    if record.odd_done:
+    if record.odd_done and not flight.faulty:
         at, named = record.odd_done[0]
         return _broken(f"TICK_DONE names tick {named} in tick {at}")
     if hang := _longest_hang(record):
@@ -249,6 +254,9 @@ def _heeds_the_board(flight: JudgedFlightRecord) -> Found:
 
 def _alone(flight: JudgedFlightRecord) -> Found:
     """No other node sends in its place, or it in another's."""
+    faults = flight.scenario.fault
+    if forge_answers(faults) or forge_sync(faults):
+        return _unjudged("the scenario forges frames")
     why = flight.summary.get("failures", {}).get(Verdict.SECOND_SENDERS.value)
     return _kept("nobody else sends its frames, or it those of others") if why is None else _broken(why)
 
@@ -263,6 +271,20 @@ def _tells_its_estimate(flight: JudgedFlightRecord) -> Found:
     return _broken(f"NAV_ATTITUDE in {record.estimates} of {record.ticks} answers")
 
 
+def _is_honest(flight: JudgedFlightRecord) -> Found:
+    """Of the profile attitude: none is called valid for long that is wrong."""
+    wrong = flight.wrong
+    if wrong is None:
+        return _unjudged(f"not asked of the profile {flight.profile.value}, or of this fault")
+    worst = f"at most {wrong.worst_deg:.2g} deg wrong when called valid"
+    if wrong.longest_s <= WRONG_S:
+        return _kept(worst)
+    return _broken(
+        f"an attitude is called valid that is more than {wrong.limit_deg:g} deg wrong, for "
+        f"{wrong.longest_s:.0f} s on end and up to {wrong.worst_deg:.3g} deg"
+    )
+
+
 Rule = Callable[[JudgedFlightRecord], Found]
 RULES: dict[str, Rule] = {
     "flies to its end": _flies_to_its_end,
@@ -275,6 +297,7 @@ RULES: dict[str, Rule] = {
     "heeds a stuck coil": _heeds_the_board,
     "alone on the bus": _alone,
     "tells its estimate": _tells_its_estimate,
+    "is honest": _is_honest,
 }
 
 

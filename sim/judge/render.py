@@ -10,8 +10,10 @@ from sim.junit import JunitCase
 from sim.record import run_dir
 from sim.report.requirements.documents import requirement_cases
 from sim.report.requirements.judge import Outcome
+from sim.result_files import write_result
 from sim.value_types import Json
 
+PAGE, VERDICT = "judge.html", "judge.json"
 _HEADS = {Outcome.MET: "kept", Outcome.FAILED: "BROKEN", Outcome.NOT_JUDGED: "not judged"}
 _OF_REQUIREMENTS = {Outcome.MET: "met", Outcome.FAILED: "FAILED", Outcome.NOT_JUDGED: "not judged"}
 
@@ -142,6 +144,12 @@ def _requirement_table(flight: JudgedFlight) -> Table:
         for one in flight.requirements
     ]
     return Table(("verdict", "requirement", "why"), rows)
+
+
+def write_judgement(flight: JudgedFlight) -> None:
+    """Write page and verdicts into the run directory."""
+    write_result(flight.path / PAGE, verdict_page(flight))
+    run_dir.write_json(flight.path / VERDICT, {**verdict_json(flight), "run": str(flight.path)})
 
 
 def _count_failed(flight: JudgedFlight) -> int:

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
@@ -63,6 +64,12 @@ def read_log(path: Path, more: More | None = None, channel: str | None = None) -
             yield from _entries(path, file.readline if more is None else _growing(file, more), channel)
     except OSError as error:
         raise LogError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+def whole_entries(path: Path) -> Iterator[LogEntry]:
+    """The whole entries of a log that may be cut."""
+    with suppress(LogTruncatedError):
+        yield from read_log(path)
 
 
 def last_lines(path: Path) -> list[bytes]:

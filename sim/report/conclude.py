@@ -1,7 +1,6 @@
 """Conclude a run: audit, replay, summary and report; only then is the run complete."""
 
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from sim.audit.findings import AuditReport
 from sim.errors import HarnessError
 from sim.faults.section import forge_answers
 from sim.record import binding, run_dir
-from sim.record.candump import LogEntry, LogTruncatedError, More, read_log
+from sim.record.candump import LogEntry, More, read_log, whole_entries
 from sim.record.destination import check_folder
 from sim.record.estimates import Estimates
 from sim.record.log_index import check_against_index
@@ -137,19 +136,13 @@ def _observe(path: Path, scenario: Scenario, truth: TruthReader, watch: Watch) -
     performance = Performance(scenario, truth.complete, own_software=False)
     lines = Lines(truth.complete, scenario)
     first = 0
-    for estimates in observed_estimates(_whole(run_dir.bus_log(path)), truth.complete):
+    for estimates in observed_estimates(whole_entries(run_dir.bus_log(path)), truth.complete):
         histories = truth.rows(first, first + len(estimates.valid))
         performance.take(histories, estimates)
         lines.take(histories, estimates)
         first += len(estimates.valid)
         watch(first)
     return _Replayed(None, performance, lines)
-
-
-def _whole(log: Path) -> Iterator[LogEntry]:
-    """The whole entries of a log that may be cut."""
-    with suppress(LogTruncatedError):
-        yield from read_log(log)
 
 
 def _write_results(path: Path, scenario: Scenario, replayed: _Replayed, draw: Draw | None = None) -> Json:

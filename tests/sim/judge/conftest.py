@@ -17,7 +17,7 @@ FIRMWARE = Path(__file__).with_name("firmware.py")
 TUMBLER = str(Path(__file__).with_name("tumbler.toml"))
 
 
-def firmware(mistake="", profile=Profile.DETUMBLE, pace="lockstep", answer_s=20.0):
+def under_test(mistake="", profile=Profile.DETUMBLE, pace="lockstep", answer_s=20.0):
     command = FlightCommand((sys.executable, str(FIRMWARE), "{port}", *filter(None, [mistake])))
     return SoftwareUnderTest(command, "loop", profile, parse_pace(pace), Patience(30.0, answer_s, answer_s))
 
@@ -29,6 +29,12 @@ def flown(tmp_path):
     def fly(mistake="", orbits=None, hang_s="0", settings=None, **options):
         os.environ["HANG_S"] = hang_s
         scenario = load(TUMBLER, settings or {})
-        return fly_and_judge(firmware(mistake, **options), scenario, 1, tmp_path / "run", orbits)
+        return fly_and_judge(under_test(mistake, **options), scenario, 1, tmp_path / "run", orbits)
 
     return fly
+
+
+@pytest.fixture
+def firmware():
+    """The firmware with a mistake, as it is judged."""
+    return under_test

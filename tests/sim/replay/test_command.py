@@ -98,6 +98,8 @@ def _without_state_crc(log):
 
 def test_a_run_of_another_flight_software_is_not_replayed_through_this_one(run):
     log, flown = run(flight_software={"command": "./firmware", "profile": "actuator"})
-    with pytest.raises(HarnessError, match="another flight software has flown, .* --plant replays the plant"):
+    with pytest.raises(
+        HarnessError, match=r"another flight software has flown, .* --plant replays the plant"
+    ):
         through_flight_software(log, flown)
     assert through_plant(log, flown).ok
