@@ -10,6 +10,15 @@ from sim.console import answer, fail, say
 from sim.errors import HarnessError
 from sim.fault_table.row import FaultRow
 from sim.flight.record_flight import ticks_of
+from sim.judge.board import (
+    BoardVerdict,
+    CoilBoardUnderTest,
+    board_json,
+    board_page,
+    board_suites,
+    check_board,
+    fly_with_board,
+)
 from sim.judge.faults import fault_cases
 from sim.judge.flight import SoftwareUnderTest, fly_and_judge
 from sim.judge.population import population_cases, population_verdicts
@@ -100,6 +109,47 @@ def judge_campaign(
         junit,
         lambda flown: population_verdicts(campaign, flown),
     )
+
+
+def judge_board(
+    board: CoilBoardUnderTest,
+    scenario: Scenario,
+    seconds: float | None,
+    seed: int,
+    out: Path | None,
+    junit: Path | None,
+) -> int:
+    """Check a coil board, fly with it, and say what is judged: the exit code.
+
+    Raises:
+        HarnessError: nothing could be checked.
+        BusError: the bus cannot be used.
+    """
+    folder = out or run_dir.new_folder(scenario)
+    if (folder / VERDICT).exists():
+        raise HarnessError(f"{folder} already holds a judgement: choose another --out")
+    found = check_board(board, scenario, folder, _say_check)
+    flown = fly_with_board(board, scenario, folder, seconds, seed)
+    for one in flown:
+        _say_check(one)
+    found += flown
+    command = board.command
+    about = board.bus if command is None else command.text
+    write_result(folder / PAGE, board_page(scenario.name, about, found))
+    run_dir.write_json(folder / VERDICT, board_json(found))
+    say(f"page: {folder / PAGE}")
+    answer({**board_json(found), "folder": folder, "page": folder / PAGE})
+    write_junit(junit, "torquer judge", board_suites(found))
+    failed = [one for one in found if one.failure]
+    if failed:
+        more = f", and {len(failed) - 1} more" if len(failed) > 1 else ""
+        fail(f"the board failed: {failed[0].name}: {failed[0].failure}{more}")
+    return int(bool(failed))
+
+
+def _say_check(one: BoardVerdict) -> None:
+    mark = "FAILED" if one.failure else "not run" if one.skipped else "ok"
+    say(f"{mark:<8}{one.name:<20} {one.failure or one.what}", failed=bool(one.failure))
 
 
 def _judge_series(

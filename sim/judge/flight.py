@@ -11,9 +11,9 @@ from fsw.bus.open_bus import open_bus, resolve
 from sim.errors import FlightError
 from sim.fault_table.wrong_estimates import WRONG_DEG
 from sim.flight.bus_in_use import refuse_bus_in_use
-from sim.flight.flight_command import FlightCommand, last_words
 from sim.flight.flight_loop import ProgressCallback
 from sim.flight.fsw_answers import Patience
+from sim.flight.node_command import NodeCommand, last_words
 from sim.flight.record_flight import check_plant, ticks_of
 from sim.flight.sil import fly_against, serve_bus
 from sim.judge.answers import AnswerRecord, read_answers
@@ -32,6 +32,8 @@ from sim.scenario.requirements import RequirementSection, in_words
 from sim.scenario.schema import Scenario
 from sim.value_types import Json
 
+OUTPUT = "flight-software.log"
+"""In the run directory: what the command of the flight software printed."""
 PLANT_AND_BOARDS = frozenset(("PLANT", "COIL", "MAG", "SUN", "WHEEL"))
 
 
@@ -47,7 +49,7 @@ class SoftwareUnderTest:
         patience: for its boot and for an answer.
     """
 
-    command: FlightCommand | None
+    command: NodeCommand | None
     bus: str
     profile: Profile
     pace: Pace
@@ -155,7 +157,8 @@ def fly_and_judge(
             "profile": software.profile.value,
         }
         run_dir.update(path, flight_software=told)
-        start = None if command is None else partial(command.start, spec, path, path / run_dir.SCENARIO)
+        given = {"scenario": str((path / run_dir.SCENARIO).absolute())}
+        start = None if command is None else partial(command.start, spec, given, path / OUTPUT)
         try:
             fly_against(path, flown, spec, listener, watch, software.patience, start)
         except FlightError as error:
@@ -179,7 +182,7 @@ def judged(path: Path, asked: Scenario, profile: Profile, honest_deg: float | No
     else:
         summary, answers = _nothing(scenario, run.get("ended", "nothing was flown")), AnswerRecord()
     run = run_dir.read_run(path)
-    said = "" if "flown" in run else last_words(path)
+    said = "" if "flown" in run else last_words(path / OUTPUT)
     wrong = None
     if profile is Profile.ATTITUDE and honest_deg is not None and answers.ticks:
         wrong = wrong_attitude(path, scenario.time.tick_hz, honest_deg)

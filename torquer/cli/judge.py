@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -18,6 +19,9 @@ from torquer.cli.options import (
     scenario_argument,
     sentences,
 )
+
+if TYPE_CHECKING:
+    from sim.judge.board import CoilBoardUnderTest
 
 EXAMPLES = examples(
     "torquer judge microsat --flight-software './firmware {port}' --profile detumble",
@@ -80,6 +84,14 @@ EXAMPLES = examples(
     show_default=True,
     help="Of many flights, those whose files stay.",
 )
+@click.option(
+    "--board",
+    metavar="COMMAND|BUS",
+    help="Judge a coil board instead: started on a loop bus, or there already; checks, then a flight.",
+)
+@click.option("--arm", is_flag=True, help="With --board: let coils be driven.")
+@click.option("--seconds", type=Number(1.0, 1e6), help="With --board: of the flight. Default: three pulses.")
+@click.option("--deadman-s", type=Number(0.1, 3600.0), help="With --board: its dead-man. Default: 5.")
 @SETTINGS
 @JUNIT
 @JSON
@@ -100,6 +112,10 @@ def judge(
     phases: int | None,
     runs: int | None,
     keep: str,
+    board: str | None,
+    arm: bool,
+    seconds: float | None,
+    deadman_s: float | None,
     settings: tuple[str, ...],
     junit: Path | None,
 ) -> int:
@@ -110,10 +126,10 @@ def judge(
     """
     from sim.campaign.definition.campaign_file import load_campaign
     from sim.fault_table.rows.table import choose_rows
-    from sim.flight.flight_command import parse_command
     from sim.flight.fsw_answers import Patience
+    from sim.flight.node_command import parse_command
     from sim.flight.record_flight import ticks_of
-    from sim.judge.command import judge_campaign, judge_faults, judge_scenario
+    from sim.judge.command import judge_board, judge_campaign, judge_faults, judge_scenario
     from sim.judge.flight import SoftwareUnderTest
     from sim.judge.profile import Profile
     from sim.judge.series import KeptFiles
@@ -121,6 +137,15 @@ def judge(
     from sim.record.pace import parse_pace
     from sim.scenario.schema import parse_settings
 
+    of_board = {"--arm": arm, "--seconds": seconds, "--deadman-s": deadman_s}
+    if board is not None:
+        others = {"--flight-software": software, "--bus": bus, "--faults": faults, "--orbits": orbits}
+        _refuse("--board", others)
+        chosen = load_scenario(scenario, settings)
+        tested_board = _coil_board(board, arm, 5.0 if deadman_s is None else deadman_s)
+        prepare_junit(junit)
+        return judge_board(tested_board, chosen, seconds, 1 if seed is None else seed, out, junit)
+    _refuse("without --board a judgement", of_board)
     if software is None and bus is None:
         raise HarnessError("which flight software? --flight-software COMMAND starts it, --bus BUS has it")
     command = None if software is None else parse_command(software, "--flight-software")
@@ -146,6 +171,17 @@ def judge(
     chosen = load_scenario(scenario, settings, lambda chosen: ticks_of(chosen, orbits))
     prepare_junit(junit)
     return judge_scenario(tested, chosen, seed, orbits, out, junit)
+
+
+def _coil_board(board: str, arm: bool, deadman_s: float) -> "CoilBoardUnderTest":
+    """The board of a command, or of a bus."""
+    from fsw.bus.open_bus import resolve
+    from sim.flight.node_command import parse_command
+    from sim.judge.board import CoilBoardUnderTest
+
+    if board.partition(":")[0] in ("loop", "socketcan", "slcan", "can"):
+        return CoilBoardUnderTest(None, resolve(board), arm, deadman_s)
+    return CoilBoardUnderTest(parse_command(board, "--board"), "loop", arm, deadman_s)
 
 
 def _is_campaign(source: str) -> bool:

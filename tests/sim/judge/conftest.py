@@ -1,13 +1,16 @@
 """Flights of the planted firmwares, which are programs of their own and know the wire by its bytes alone."""
 
+import dataclasses
 import os
+import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from sim.flight.flight_command import FlightCommand
+from sim.bench.processes import hub_of
 from sim.flight.fsw_answers import Patience
+from sim.flight.node_command import NodeCommand
 from sim.judge.flight import SoftwareUnderTest, fly_and_judge
 from sim.judge.profile import Profile
 from sim.record.pace import parse_pace
@@ -18,7 +21,7 @@ TUMBLER = str(Path(__file__).with_name("tumbler.toml"))
 
 
 def under_test(mistake="", profile=Profile.DETUMBLE, pace="lockstep", answer_s=20.0):
-    command = FlightCommand((sys.executable, str(FIRMWARE), "{port}", *filter(None, [mistake])))
+    command = NodeCommand((sys.executable, str(FIRMWARE), "{port}", *filter(None, [mistake])))
     return SoftwareUnderTest(command, "loop", profile, parse_pace(pace), Patience(30.0, answer_s, answer_s))
 
 
@@ -38,3 +41,20 @@ def flown(tmp_path):
 def firmware():
     """The firmware with a mistake, as it is judged."""
     return under_test
+
+
+@pytest.fixture
+def running():
+    """The firmware with a mistake, which runs already, on a loop bus that another process serves."""
+    with hub_of("loop") as (spec, _):
+        started = []
+
+        def run(mistake=""):
+            port = spec.partition(":")[2]
+            started.append(subprocess.Popen([sys.executable, str(FIRMWARE), port, *filter(None, [mistake])]))
+            return dataclasses.replace(under_test(mistake), command=None, bus=spec)
+
+        yield run
+        for process in started:
+            process.kill()
+            process.wait()

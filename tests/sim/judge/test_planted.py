@@ -1,13 +1,18 @@
 """A sound firmware passes, and ten planted mistakes are told, each in words and by the rule it breaks."""
 
+from pathlib import Path
+
 import pytest
 
+from sim.judge.flight import fly_and_judge
 from sim.judge.profile import Profile
 from sim.judge.render import failed_text, verdict_json, verdict_page, verdict_text
 from sim.report.requirements.judge import Outcome
+from sim.scenario.schema import load
 
 pytestmark = pytest.mark.long
 
+TUMBLER = str(Path(__file__).with_name("tumbler.toml"))
 STUCK = {"fault": [{"kind": "coil_stuck_on", "at_s": 1500.0, "parameters": {"axis": 1.0, "ampere": 0.4}}]}
 
 
@@ -137,3 +142,12 @@ def test_what_a_profile_does_not_give_is_not_asked(flown):
 def test_one_that_promises_an_estimate_must_give_it(flown):
     flight = flown("", orbits=0.05, profile=Profile.ATTITUDE)
     assert broken(flight) == {"tells its estimate": "NAV_ATTITUDE in 0 of 303 answers"}
+
+
+@pytest.mark.parametrize("mistake", ["", "long"])
+def test_one_that_runs_already_is_judged_where_it_is(running, tmp_path, mistake):
+    software = running(mistake)
+    flight = fly_and_judge(software, load(TUMBLER), 1, tmp_path / "run", 0.1)
+    assert flight.ok is (mistake == "")
+    assert flight.record.run["flight_software"] == {"command": None, "profile": "detumble"}
+    assert "what runs on loop" in verdict_text(flight)

@@ -1,0 +1,246 @@
+"""A coil driver board of one's own: checked against docs/icd.md, then flown with, in real time."""
+
+import json
+import signal
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from math import ceil
+from pathlib import Path
+from subprocess import Popen
+from typing import NamedTuple
+
+from fsw.bus.interface import Bus
+from fsw.bus.open_bus import open_bus
+from fsw.wire.messages import CoilBoot, PlantBoot, intact
+from sim.audit.check import check
+from sim.bench.budgets import Budgets
+from sim.bench.command import NUMBERS, HilSettings, hil
+from sim.bench.processes import hub_of, wait_or_kill
+from sim.conformance.board_link import BOARD_KINDS, BoardLink
+from sim.conformance.board_under_test import BoardLimits
+from sim.conformance.command import CheckResult, run_checks
+from sim.console import counted
+from sim.drawing.page_parts import PageHeader, PageSection, Table, sections_page
+from sim.errors import HarnessError
+from sim.flight.node_command import NodeCommand, last_words
+from sim.junit import JunitCase
+from sim.record.destination import check_folder
+from sim.scenario.coil_limits import coil_limits
+from sim.scenario.schema import Scenario
+from sim.value_types import Json
+
+OUTPUT, FLIGHT = "board.log", "flight"
+BOOT_S, ASK_S = 30.0, 0.5
+PULSES = 3
+"""For which a flight lasts long enough, where no time is given."""
+NEVER_WARM_S = 1e9
+"""Memory is not judged: it is this computer's."""
+LATE_PART = 0.02
+"""Part of the ticks in which this computer, and not the board, may have been late."""
+
+
+@dataclass(frozen=True, slots=True)
+class CoilBoardUnderTest:
+    """A coil driver board, and how it is tested.
+
+    Attributes:
+        command: started for each test, on a loop bus of its own; None: it runs already.
+        bus: on which it runs.
+        armed: coils may be driven.
+        deadman_s: its dead-man.
+        boot_s: how long to wait for it.
+    """
+
+    command: NodeCommand | None
+    bus: str
+    armed: bool
+    deadman_s: float = 5.0
+    boot_s: float = BOOT_S
+
+
+class BoardVerdict(NamedTuple):
+    """A check of the board, or what a flight shows of it: ``failure`` empty: kept; ``skipped``: not run."""
+
+    name: str
+    what: str
+    failure: str = ""
+    skipped: str = ""
+
+
+def check_board(
+    board: CoilBoardUnderTest,
+    scenario: Scenario,
+    folder: Path,
+    report: Callable[[BoardVerdict], None] = lambda verdict: None,
+) -> list[BoardVerdict]:
+    """Check a board against docs/icd.md, its limits being those of the scenario.
+
+    Raises:
+        HarnessError: it does not boot, or the scenario has another board.
+        BusError: the bus cannot be used.
+    """
+    if scenario.coils.driver == "continuous":
+        raise HarnessError(f"{scenario.name}: coils.driver is continuous: a pulsed board is judged")
+    hz = scenario.time.tick_hz
+    of_table = coil_limits(scenario.coils, hz)
+    limits = BoardLimits(of_table.pulse_ms, of_table.backoff_ms, of_table.shared, board.deadman_s)
+    found = []
+
+    def take(result: CheckResult) -> None:
+        skipped = "" if result.ran else "it drives coils, and nothing is armed"
+        found.append(BoardVerdict(result.name, result.what, result.failure or "", skipped))
+        report(found[-1])
+
+    with _running(board, scenario, folder) as bus:
+        run_checks(BoardLink(bus, BOARD_KINDS["coil"], hz), limits, board.armed, take)
+    return found
+
+
+def fly_with_board(
+    board: CoilBoardUnderTest, scenario: Scenario, folder: Path, seconds: float | None, seed: int
+) -> list[BoardVerdict]:
+    """Fly in real time with a board, this project's flight software and plant; the log is in ``FLIGHT``.
+
+    Args:
+        board: the board.
+        scenario: what is flown.
+        folder: of the judgement.
+        seconds: how long; None: for some pulses.
+        seed: of the plant.
+
+    Raises:
+        HarnessError: a node does not boot, or the scenario does not fit a bench.
+        BusError: the bus cannot be used.
+    """
+    coils, path = scenario.coils, folder / FLIGHT
+    length_s = PULSES * (coils.pulse_s + coils.backoff_s) + 10.0 if seconds is None else seconds
+    late = ceil(LATE_PART * length_s * scenario.time.tick_hz)
+    budgets = Budgets(1e9, 1e9, late, 1e9, 1e9)
+    with _running(board, scenario, folder) as bus:
+        settings = HilSettings(
+            scenario,
+            _spec_of(bus, board),
+            frozenset(("coil",)),
+            board.armed,
+            length_s,
+            "plant",
+            board.deadman_s,
+            budgets,
+            NEVER_WARM_S,
+            seed,
+            path,
+        )
+        hil(settings)
+    numbers = json.loads((path / NUMBERS).read_text(encoding="utf-8"))
+    return flight_verdicts(path, numbers, late, board.armed)
+
+
+def flight_verdicts(path: Path, numbers: Json, late: int, armed: bool) -> list[BoardVerdict]:
+    """What a flight on the bench shows of the coil board.
+
+    Where this computer was late, as flight software and sensors show, neither the clock of the recorder nor a
+    missing status says anything of the board.
+
+    Args:
+        path: its run directory.
+        numbers: of the bench.
+        late: the most ticks in which a sample may be missing.
+        armed: coils could be driven.
+    """
+    missing = dict(numbers["missing_samples"])
+    of_board = missing.pop("coil")
+    busy = "this computer was late" if max(numbers["slips"], *missing.values()) > late else ""
+    audit = check(path, None, ticks_alone=bool(busy))
+    broken = str(audit.violations[0]) if audit.violations else f"no {audit.missing}" * bool(audit.missing)
+    pulses = counted(len(audit.pulses), "pulse")
+    idle = "" if audit.pulses else "no pulse was flown, so that nothing shows it"
+    absent = f"in {counted(of_board, 'tick')} of {numbers['ticks']} there is no status" * (of_board > late)
+    ended = numbers["ended"].get("coil", "")
+    return [
+        BoardVerdict("limits in flight", f"{pulses}, limits kept", broken),
+        BoardVerdict("pulses in flight", f"{pulses} flown", idle if armed else "", idle if not armed else ""),
+        BoardVerdict("in time", "a status in every tick", (ended or absent) if not busy else "", busy),
+    ]
+
+
+@contextmanager
+def _running(board: CoilBoardUnderTest, scenario: Scenario, folder: Path) -> Iterator[Bus]:
+    """The bus with the board on it, which has booted."""
+    check_folder(folder)
+    with hub_of(board.bus) as (spec, _):
+        process = None
+        if board.command is not None:
+            process = board.command.start(spec, board_values(scenario, board.deadman_s), folder / OUTPUT)
+        bus = open_bus(spec)
+        try:
+            _await_board(bus, board, process, folder)
+            yield bus
+        finally:
+            bus.close()
+            if process is not None:
+                with suppress(ProcessLookupError):
+                    process.send_signal(signal.SIGTERM)
+                wait_or_kill(process)
+
+
+def _spec_of(bus: Bus, board: CoilBoardUnderTest) -> str:
+    return str(getattr(bus, "spec", board.bus))
+
+
+def board_values(scenario: Scenario, deadman_s: float) -> dict[str, str]:
+    """What the words of a board's command may name."""
+    coils = scenario.coils
+    limits = coil_limits(coils, scenario.time.tick_hz)
+    return {
+        "tick_hz": str(scenario.time.tick_hz),
+        "pulse_ms": str(limits.pulse_ms),
+        "backoff_ms": str(limits.backoff_ms),
+        "backoff": coils.backoff,
+        "levels_ma": ",".join(f"{level_ma:g}" for level_ma in coils.levels_ma),
+        "deadman_ms": str(round(1000.0 * deadman_s)),
+    }
+
+
+def _await_board(bus: Bus, board: CoilBoardUnderTest, process: Popen[bytes] | None, folder: Path) -> None:
+    """Ask for COIL_BOOT until it comes.
+
+    Raises:
+        HarnessError: it does not, or the board has ended.
+    """
+    deadline, asked = time.monotonic() + board.boot_s, 0.0
+    while (now := time.monotonic()) < deadline:
+        if process is not None and process.poll() is not None:
+            said = last_words(folder / OUTPUT) or "it said nothing"
+            raise HarnessError(f"the board ended with exit code {process.returncode}: {said}")
+        if now - asked > ASK_S:
+            bus.send([PlantBoot(reason=0, version=1, table_crc=0).encode()])
+            asked = now
+        frame = bus.receive(0.1)
+        if frame is not None and frame.can_id == CoilBoot.ID and intact(frame):
+            return
+    raise HarnessError(f"the board sends no COIL_BOOT within {board.boot_s:g} s of PLANT_BOOT")
+
+
+def board_suites(found: list[BoardVerdict]) -> dict[str, list[JunitCase]]:
+    """The verdicts as tests of JUnit."""
+    return {"board": [JunitCase("board", one.name, 0.0, one.failure, one.skipped) for one in found]}
+
+
+def board_json(found: list[BoardVerdict]) -> Json:
+    """The verdicts as values."""
+    return {"ok": not any(one.failure for one in found), "checks": [one._asdict() for one in found]}
+
+
+def board_page(name: str, about: str, found: list[BoardVerdict]) -> str:
+    """The page of a board."""
+    failed = sum(bool(one.failure) for one in found)
+    badge = ("bad", f"✗ {failed} failed") if failed else ("good", "✓ as it should be")
+    rows = [
+        ("FAILED" if one.failure else "not run" if one.skipped else "kept", one.name, one.failure or one.what)
+        for one in found
+    ]
+    table = Table(("verdict", "check", "demands, or what is wrong"), rows)
+    sections = [PageSection("checks", "The coil board", tables=(table,))]
+    return sections_page(PageHeader("Judgement of a board", name, (about,), [badge]), sections)
