@@ -4,6 +4,9 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from fsw.wire.frame import Frame, crc8
 from fsw.wire.messages import (
     CLASSES,
@@ -15,6 +18,7 @@ from fsw.wire.messages import (
     CoilRefused,
     CoilStatus,
     FswBoot,
+    MagField,
     NavAttitude,
     Sync,
     TickDone,
@@ -83,8 +87,10 @@ _STEP = 16
 class _Reader:
     """Reads the log frame by frame."""
 
-    def __init__(self) -> None:
+    def __init__(self, forged: bool) -> None:
         self.record = AnswerRecord()
+        self._forged = forged
+        self._open = False
         self._counter: dict[int, int] = {}
         self._stuck = False
         self._refusable: dict[tuple[int, int], int] = {}
@@ -98,7 +104,8 @@ class _Reader:
     def take(self, frame: Frame) -> None:
         """The next frame."""
         if frame.can_id in FROM_FSW:
-            self._take_answer(frame)
+            if self._open or not self._forged or self.record.ticks == 0:
+                self._take_answer(frame)
         elif intact(frame):
             self._take_other(frame)
 
@@ -107,6 +114,7 @@ class _Reader:
         if frame.can_id == Sync.ID:
             tick = Sync.decode(frame.data).tick
             if tick == record.ticks:
+                self._open = True
                 record.ticks += 1
                 record.answered_in.append(-1)
             elif tick == self._tick:
@@ -159,6 +167,7 @@ class _Reader:
             if len(record.odd_done) < MOST_ODD:
                 record.odd_done.append((self._tick, done.tick))
         elif record.answered_in[done.tick] < 0:
+            self._open &= done.tick != self._tick
             record.answered_in[done.tick] = self._tick
             record.state_crcs += done.state_crc != 0
 
@@ -175,12 +184,31 @@ class _Reader:
         self.record.requests.append(CoilRequest(self._tick, fire, self._stuck))
 
 
-def read_answers(entries: Iterable[LogEntry]) -> AnswerRecord:
-    """The record of a flight, from the entries of its log."""
-    reader = _Reader()
+def read_answers(entries: Iterable[LogEntry], forged: bool = False) -> AnswerRecord:
+    """The record of a flight, from the entries of its log.
+
+    Args:
+        entries: the log.
+        forged: a fault of the scenario sends under identifiers of the flight software, before SYNC: what
+            comes between two answers is not its own.
+    """
+    reader = _Reader(forged)
     for entry in entries:
         reader.take(entry.frame)
     return reader.record
+
+
+def field_samples(entries: Iterable[LogEntry], ticks: int) -> NDArray[np.int16]:
+    """The numbers of MAG_FIELD by tick as they are on the bus, (n, 3); 0 where none came."""
+    samples = np.zeros((ticks, 3), dtype=np.int16)
+    tick = 0
+    for entry in entries:
+        frame = entry.frame
+        if frame.can_id == Sync.ID and intact(frame):
+            tick = Sync.decode(frame.data).tick + 1
+        elif frame.can_id == MagField.ID and intact(frame) and tick < ticks:
+            samples[tick] = np.frombuffer(frame.data[1:7], dtype="<i2")
+    return samples
 
 
 def crc_as_sent(frame: Frame) -> str:

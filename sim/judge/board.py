@@ -170,12 +170,11 @@ def _running(board: CoilBoardUnderTest, scenario: Scenario, folder: Path) -> Ite
     """The bus with the board on it, which has booted."""
     check_folder(folder)
     with hub_of(board.bus) as (spec, _):
-        process = None
-        if board.command is not None:
-            process = board.command.start(spec, board_values(scenario, board.deadman_s), folder / OUTPUT)
-        bus = open_bus(spec)
+        bus, process = open_bus(spec), None
         try:
-            _await_board(bus, board, process, folder)
+            if board.command is not None:  # its boot message is sent once, and the bus is open for it
+                process = board.command.start(spec, board_values(scenario, board.deadman_s), folder / OUTPUT)
+                _await_board(bus, board.boot_s, process, folder)
             yield bus
         finally:
             bus.close()
@@ -203,15 +202,15 @@ def board_values(scenario: Scenario, deadman_s: float) -> dict[str, str]:
     }
 
 
-def _await_board(bus: Bus, board: CoilBoardUnderTest, process: Popen[bytes] | None, folder: Path) -> None:
-    """Ask for COIL_BOOT until it comes.
+def _await_board(bus: Bus, boot_s: float, process: Popen[bytes], folder: Path) -> None:
+    """Wait for COIL_BOOT of a board that was started; one that booted earlier is asked for it.
 
     Raises:
-        HarnessError: it does not, or the board has ended.
+        HarnessError: it does not come, or the board has ended.
     """
-    deadline, asked = time.monotonic() + board.boot_s, 0.0
+    deadline, asked = time.monotonic() + boot_s, 0.0
     while (now := time.monotonic()) < deadline:
-        if process is not None and process.poll() is not None:
+        if process.poll() is not None:
             said = last_words(folder / OUTPUT) or "it said nothing"
             raise HarnessError(f"the board ended with exit code {process.returncode}: {said}")
         if now - asked > ASK_S:
@@ -220,7 +219,7 @@ def _await_board(bus: Bus, board: CoilBoardUnderTest, process: Popen[bytes] | No
         frame = bus.receive(0.1)
         if frame is not None and frame.can_id == CoilBoot.ID and intact(frame):
             return
-    raise HarnessError(f"the board sends no COIL_BOOT within {board.boot_s:g} s of PLANT_BOOT")
+    raise HarnessError(f"the board sends no COIL_BOOT within {boot_s:g} s of its start")
 
 
 def board_suites(found: list[BoardVerdict]) -> dict[str, list[JunitCase]]:

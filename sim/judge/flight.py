@@ -10,13 +10,15 @@ from pathlib import Path
 from fsw.bus.open_bus import open_bus, resolve
 from sim.errors import FlightError
 from sim.fault_table.wrong_estimates import WRONG_DEG
+from sim.faults.section import forge_answers
 from sim.flight.bus_in_use import refuse_bus_in_use
 from sim.flight.flight_loop import ProgressCallback
 from sim.flight.fsw_answers import Patience
 from sim.flight.node_command import NodeCommand, last_words
 from sim.flight.record_flight import check_plant, ticks_of
 from sim.flight.sil import fly_against, serve_bus
-from sim.judge.answers import AnswerRecord, read_answers
+from sim.judge.answers import AnswerRecord, field_samples, read_answers
+from sim.judge.driven import ALTER_REPORTS, limits_as_driven
 from sim.judge.honesty import wrong_attitude
 from sim.judge.invariants import InvariantVerdict, JudgedFlightRecord, judge_invariants
 from sim.judge.law_fit import LawFit, fit_law
@@ -91,7 +93,8 @@ class JudgedFlight:
         """What its dipoles show of its law; nothing of one that is to spin the body, or of no flight."""
         if self.record.scenario.control.spin_radps or not self.record.answers.ticks:
             return LawFit(0)
-        return fit_law(self.record.scenario, read_truth(self.path / run_dir.TRUTH))
+        truth, entries = read_truth(self.path / run_dir.TRUTH), whole_entries(run_dir.bus_log(self.path))
+        return fit_law(self.record.scenario, truth, field_samples(entries, len(truth["t_s"])))
 
     @property
     def ok(self) -> bool:
@@ -178,7 +181,7 @@ def judged(path: Path, asked: Scenario, profile: Profile, honest_deg: float | No
     run = run_dir.read_run(path)
     scenario, log = asked_of(asked, profile), run_dir.bus_log(path)
     if log.is_file() and log.stat().st_size:
-        summary, answers = conclude(path), read_answers(whole_entries(log))
+        summary, answers = conclude(path), read_answers(whole_entries(log), forge_answers(scenario.fault))
     else:
         summary, answers = _nothing(scenario, run.get("ended", "nothing was flown")), AnswerRecord()
     run = run_dir.read_run(path)
@@ -186,7 +189,11 @@ def judged(path: Path, asked: Scenario, profile: Profile, honest_deg: float | No
     wrong = None
     if profile is Profile.ATTITUDE and honest_deg is not None and answers.ticks:
         wrong = wrong_attitude(path, scenario.time.tick_hz, honest_deg)
-    record = JudgedFlightRecord(scenario, profile, run, summary, answers, said, bool(scenario.fault), wrong)
+    driven = None
+    if answers.ticks and any(fault.kind in ALTER_REPORTS for fault in scenario.fault):
+        driven = limits_as_driven(scenario, read_truth(path / run_dir.TRUTH))
+    faulty = bool(scenario.fault)
+    record = JudgedFlightRecord(scenario, profile, run, summary, answers, said, faulty, wrong, driven)
     return JudgedFlight(path, record, asked)
 
 

@@ -31,6 +31,8 @@ class JudgedFlightRecord(NamedTuple):
         said: the last line that its command printed.
         faulty: the scenario injects faults, by which requests may come to be refused and answers be lost.
         wrong: attitudes that were called valid and were wrong; None: none is judged.
+        driven: what the dipole that flowed shows of a broken limit, where a fault alters what the board
+            reports; None: the audit of the log counts.
     """
 
     scenario: Scenario
@@ -41,6 +43,7 @@ class JudgedFlightRecord(NamedTuple):
     said: str = ""
     faulty: bool = False
     wrong: WrongAttitude | None = None
+    driven: str | None = None
 
     @property
     def tick_hz(self) -> int:
@@ -234,7 +237,13 @@ def _waits(flight: JudgedFlightRecord) -> Found:
 def _limits(flight: JudgedFlightRecord) -> Found:
     """The coils kept their limits, by the audit of the log."""
     why = flight.summary.get("failures", {}).get(Verdict.LIMITS.value)
-    return _kept("pulses and back-off kept by the board") if why is None else _broken(why)
+    if why is None:
+        return _kept("pulses and back-off kept by the board")
+    if flight.driven is None:
+        return _broken(why)
+    if flight.driven:
+        return _broken(flight.driven)
+    return _kept("by the dipole that flowed, as the fault alters what the board reports")
 
 
 def _heeds_the_board(flight: JudgedFlightRecord) -> Found:

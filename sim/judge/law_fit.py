@@ -3,7 +3,8 @@
 The torque m x B does work m . (B x w) on a body that turns at w against the orbital frame, so that the dipole
 that brakes it most points along d = w x B. Where the body turns fast, a law that brakes has a large cosine
 between its dipoles and d. If it has not, the dipoles are compared with those that a mistake would make of d:
-each of the 48 signed permutations of the axes, and a field of another time.
+each of the 48 signed permutations of the axes, and a field of another time; and with the change of the field
+that a law sees which takes the bytes of the samples the other way round.
 """
 
 from collections.abc import Iterator
@@ -28,6 +29,8 @@ EVERY_S = 30.0
 LEAST_PART = 0.02
 """Of the largest dipole: a smaller one is not counted."""
 SHIFT_S = 60.0
+SPANS = range(1, 31)
+"""Ticks over which a law may take the change of the field."""
 AXES = "xyz"
 Rows = NDArray[np.intp]
 
@@ -49,8 +52,14 @@ class LawFit:
     mistake: str = ""
 
 
-def fit_law(scenario: Scenario, truth: Histories) -> LawFit:
-    """Compare the dipoles of a flight with those that brake."""
+def fit_law(scenario: Scenario, truth: Histories, samples: NDArray[np.int16] | None = None) -> LawFit:
+    """Compare the dipoles of a flight with those that brake.
+
+    Args:
+        scenario: that was flown.
+        truth: the plant's histories.
+        samples: by tick the numbers of MAG_FIELD, (n, 3), raw; None: they are not known.
+    """
     rows = _rows(scenario, truth)
     if len(rows) < LEAST_PULSES:
         return LawFit(0)
@@ -59,7 +68,11 @@ def fit_law(scenario: Scenario, truth: Histories) -> LawFit:
     braking = _unit(np.cross(omega, b))
     as_is = np.sum(m * braking, axis=1)
     work_j = _work_j(scenario, truth)
-    found = [*_as_signed_axes(m, braking, as_is), *_as_other_time(scenario, truth, rows, m, omega, as_is)]
+    found = [
+        *_as_signed_axes(m, braking, as_is),
+        *_as_other_time(scenario, truth, rows, m, omega, as_is),
+        *(() if samples is None else _as_swapped_bytes(samples, rows, m, as_is)),
+    ]
     # of those that explain it about as well the simplest, which comes first
     best = max((one.mean for one in found), default=0.0)
     mistake = next((one.words for one in found if one.mean > 0.95 * best), "")
@@ -169,6 +182,24 @@ def _as_other_time(
             "orbits more",
             mean,
         )
+
+
+def _as_swapped_bytes(
+    samples: NDArray[np.int16], rows: Rows, m: Array, as_is: Array
+) -> Iterator[_Explanation]:
+    """The change of the samples, over some ticks, with the bytes of each number the other way round."""
+    read = samples.byteswap().astype(float)
+    best = 0.0
+    for span in SPANS:
+        known = rows >= span
+        if known.sum() < LEAST_PULSES:
+            continue
+        seen = _unit(read[rows[known] - span] - read[rows[known]])
+        fit = np.sum(m[known] * seen, axis=1)
+        if _is_better(fit, as_is[known]):
+            best = max(best, float(fit.mean()))
+    if best:
+        yield _Explanation("the byte order of MAG_FIELD is wrong: it is read the other way round", best)
 
 
 def _is_better(fit: Array, as_is: Array) -> bool:

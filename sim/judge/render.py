@@ -117,7 +117,8 @@ def verdict_page(flight: JudgedFlight) -> str:
         PageSection("requirements", "Requirements", tables=(_requirement_table(flight),)),
     ]
     if flight.reasons:
-        sections.insert(0, PageSection("why", "Why", text="\n".join(flight.reasons)))
+        why = " ".join(f"{reason[:1].upper()}{reason[1:]}." for reason in flight.reasons)
+        sections.insert(0, PageSection("why", "Why", note=why))
     if (flight.path / run_dir.REPORT).is_file():
         note = f"Charts of the flight are in {run_dir.REPORT} beside this page."
         sections.append(PageSection("more", "The flight", note=note))

@@ -60,7 +60,7 @@ class Firmware:
             can_id, _, data = RECORD.unpack(record)
             word = int.from_bytes(data[:7], "little")
             if can_id == MAG_FIELD:
-                self.field = struct.unpack("<3h", data[1:7])
+                self.field = struct.unpack(">3h" if self.mistake == "bytes" else "<3h", data[1:7])
             elif can_id == REF_ATTITUDE:
                 self.attitude = [signed(word, first, 17) / 65536.0 for first in (5, 22, 39)]
             elif can_id == REF_RATE:

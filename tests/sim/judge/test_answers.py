@@ -17,8 +17,9 @@ from sim.judge.answers import crc_as_sent, read_answers
 from sim.record.candump import LogEntry
 
 
-def record(*frames):
-    return read_answers(LogEntry(line, 0, "loop", frame) for line, frame in enumerate(frames, 1))
+def record(*frames, **options):
+    entries = (LogEntry(line, 0, "loop", frame) for line, frame in enumerate(frames, 1))
+    return read_answers(entries, **options)
 
 
 def sync(tick):
@@ -109,3 +110,11 @@ def test_how_a_wrong_crc_was_made_is_found():
     for way, crc in ways.items():
         assert crc_as_sent(Frame(0x80, body + bytes([crc]))) == f"its CRC is made {way}"
     assert crc_as_sent(Frame(0x80, body + bytes([crc8(b"\x00\x80" + body) ^ 0x40]))) == ""
+
+
+def test_what_is_forged_before_a_sync_is_not_its_own():
+    frames = (BOOT, sync(0), done(0), BOOT, fire(0), done(0), sync(1), fire(1), done(1))
+    own = record(*frames, forged=True)
+    assert (own.boots, len(own.requests), own.answered_in) == ([-1], 1, [0, 1])
+    taken = record(*frames)
+    assert (taken.boots, len(taken.requests)) == ([-1, 0], 2)

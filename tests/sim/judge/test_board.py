@@ -90,7 +90,7 @@ def test_one_that_does_not_boot_is_told(scenario, tmp_path):
     with pytest.raises(HarnessError, match="the board ended with exit code 4: burnt"):
         check_board(dead, scenario, tmp_path)
     mute = CoilBoardUnderTest(parse_command("sleep 30", "--board"), "loop", False, boot_s=1.0)
-    with pytest.raises(HarnessError, match="the board sends no COIL_BOOT within 1 s"):
+    with pytest.raises(HarnessError, match="the board sends no COIL_BOOT within 1 s of its start"):
         check_board(mute, scenario, tmp_path)
 
 

@@ -68,6 +68,20 @@ def test_dipoles_at_random_are_no_mistake_that_has_a_name():
     assert abs(found.brakes) < 0.4
 
 
+def test_samples_that_are_read_the_wrong_way_round_are_told():
+    rng = np.random.default_rng(7)
+    samples = rng.integers(-20_000, 20_000, size=(TICKS, 3)).astype(np.int16)
+    read = samples.byteswap().astype(float)
+    truth = flight()
+    truth["m_body_am2"][:] = 0.0
+    for tick in PULSES:
+        seen = read[tick - 4] - read[tick]
+        axis = int(np.abs(seen).argmax())
+        truth["m_body_am2"][tick + 1 : tick + 4, axis] = 30.0 * np.sign(seen[axis])
+    assert "the byte order of MAG_FIELD" in fit_law(load("microsat"), truth, samples).mistake
+    assert fit_law(load("microsat"), flight(), samples).mistake == ""
+
+
 def test_a_body_that_hardly_turns_tells_nothing():
     assert fit(lambda d: -d, rate_degps=0.1).pulses == 0
 

@@ -81,6 +81,13 @@ def test_a_wrong_byte_order_is_told(flown):
     assert "the byte order is wrong, it is 3000 ms with its bytes the other way round" in text
 
 
+def test_a_field_that_is_read_in_the_wrong_byte_order_is_named(flown):
+    flight = flown("bytes")
+    assert missed(flight) == ["RATE"]
+    (why,) = flight.reasons
+    assert why.startswith("the byte order of MAG_FIELD is wrong: it is read the other way round: ")
+
+
 def test_a_stuck_coil_that_goes_on_being_fired_is_told(flown):
     flight = flown("stuck", orbits=0.5, settings=STUCK)
     assert list(broken(flight)) == ["heeds a stuck coil"]
