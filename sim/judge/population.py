@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.definition.columns import cells
-from sim.campaign.report.verdicts import CampaignVerdict, meets, proportion
+from sim.campaign.report.verdicts import CampaignVerdict, meets, proportion, requirement_words
 from sim.judge.series import JudgedCase, SeriesCase
 from sim.report.requirements.judge import Outcome
 from sim.scenario.requirements import in_words
@@ -27,12 +27,13 @@ def population_verdicts(campaign: Campaign, flown: Sequence[JudgedCase]) -> list
         if outcomes:
             broken = outcomes.count(Outcome.FAILED)
             told = f"broken in {broken} of {len(outcomes)} runs" if broken else f"in {len(outcomes)} runs"
-            found.append(CampaignVerdict("rule", rule, not broken, told))
+            found.append(CampaignVerdict("rule", rule, rule, not broken, told))
     wanted = f"to be {100.0 * campaign.statistics.probability:g} %"
+    words = {str(entry): requirement_words(entry) for entry in campaign.requirements}
     for name, met in _by_requirement(campaign, flown).items():
         part = clopper_pearson(sum(met), len(met), campaign.statistics.confidence)
         told = f"{proportion(part, campaign)}, {wanted}"
-        found.append(CampaignVerdict("requirement", name, meets(part, campaign), told))
+        found.append(CampaignVerdict("requirement", name, words.get(name, name), meets(part, campaign), told))
     return found
 
 
