@@ -15,7 +15,12 @@ EXAMPLES = examples(
 @click.command(epilog=EXAMPLES)
 @scenario_argument()
 @click.option(
-    "--out", required=True, metavar="DIR", type=click.Path(path_type=Path), help="The folder to write into."
+    "--out",
+    "-o",
+    required=True,
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="The folder to write into.",
 )
 @click.option("--force", is_flag=True, help="Replace files that are there.")
 @SETTINGS

@@ -65,7 +65,7 @@ EXAMPLES = examples(
 )
 @click.option("--orbits", type=Number(min=0.0, min_open=True), help="Default: those of the scenario.")
 @click.option("--seed", type=SEEDS, help="Of all random streams. Default: 1, or a campaign's own.")
-@click.option("--out", type=click.Path(path_type=Path), help="Default: runs/<scenario>-<UTC time>.")
+@click.option("--out", "-o", type=click.Path(path_type=Path), help="Default: runs/<scenario>-<UTC time>.")
 @click.option("--faults", is_flag=True, help="Fly the rows of the fault table that apply.")
 @click.option(
     "--row",
