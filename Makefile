@@ -91,7 +91,7 @@ test-interpreted: environment
 test-long: test-unpaced test-paced
 
 test-unpaced: venv
-	$(bin)/pytest $(PYTEST_FLAGS) --durations=15 -m "long and not paced"
+	$(bin)/pytest $(PYTEST_FLAGS) -n 3 --durations=30 -m "long and not paced"
 	$(interpreted) -m "interpreted and long"
 
 test-paced: venv
