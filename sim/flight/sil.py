@@ -1,12 +1,13 @@
 """Software in the loop: plant and flight software as two processes on a bus."""
 
 import os
+import signal
 import socket
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -277,6 +278,14 @@ def _end(processes: Sequence[subprocess.Popen[bytes]]) -> None:
     for process in processes:
         process.kill()
         process.wait()
+        _end_group(process.pid)
+
+
+def _end_group(pid: int) -> None:
+    """End what a node has left behind in its group, such as the program that a shell has started."""
+    if os.name == "posix":
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(pid, signal.SIGKILL)
 
 
 def exit_text(code: int | None) -> str:

@@ -3,6 +3,7 @@
 import ast
 import json
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -84,3 +85,21 @@ def test_one_that_ends_at_once_is_judged_with_its_last_words(tmp_path):
     assert done.exit_code == 1
     assert "the flight software ended with exit code 3" in done.stderr
     assert "no bus here" in done.stderr
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs /proc")
+def test_what_a_shell_has_started_is_ended_with_it(tmp_path):
+    command = "sh -c 'sleep 300 & echo $!; wait'"
+    words = ("--flight-software", command, "--boot-s", "1", "--out", str(tmp_path / "run"))
+    assert CliRunner().invoke(main, ["judge", "microsat", *words]).exit_code == 1
+    child = int((tmp_path / "run" / "flight-software.log").read_text())
+    deadline = time.monotonic() + 10.0
+    while Path(f"/proc/{child}").exists() and _state(child) != "Z" and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not Path(f"/proc/{child}").exists() or _state(child) == "Z"
+
+
+def _state(pid):
+    """That of a process of Linux: Z, it has ended and waits to be noticed."""
+    return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
