@@ -4,15 +4,17 @@ import random
 import re
 import shutil
 import subprocess
+from pathlib import Path
 
 import pytest
 
 from fsw.wire.frame import crc8
 from fsw.wire.messages import CLASSES, NAMES, CoilFire, Sync, TickDone
-from sim.export.c_source import CONSTANTS, CRC, HEADER, SOURCE, c_files
+from sim.export.c_source import CONSTANTS, CRC, HEADER, LIMITS, SOURCE, board_limits, c_files
 from sim.export.dictionary import messages
 from sim.scenario.schema import load, parse_settings
 
+ROOT = Path(__file__).resolve().parents[3]
 needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
 FLAGS = ("-std=c99", "-Wall", "-Wextra", "-Werror")
 UNSEALED = (Sync.ID, TickDone.ID)
@@ -114,7 +116,7 @@ def test_a_broken_crc_is_not_intact(program):
 def test_every_message_is_there_and_the_files_do_not_change_with_the_time():
     first, second = (c_files(load("posat1")) for _ in range(2))
     assert first == second
-    assert set(first) == {HEADER, SOURCE, CRC, CONSTANTS}
+    assert set(first) == {HEADER, SOURCE, CRC, CONSTANTS, LIMITS}
     ids = {int(text, 16) for text in re.findall(r"_FRAME_ID \((0x[0-9a-f]+)u\)", first[HEADER])}
     assert ids == set(NAMES) == set(CLASSES)
 
@@ -124,3 +126,25 @@ def test_a_circular_orbit_and_given_attitude_are_told():
     assert "#define TORQUER_REFERENCE_GIVEN 1 " in constants
     assert "#define TORQUER_ALTITUDE_KM 800.0 " in constants
     assert "TLE" not in constants
+
+
+class TestBoardLimits:
+    def test_those_of_microsat_are_what_the_board_in_c_ships_with(self):
+        shipped = ROOT / "examples" / "firmware" / "coil_board" / "limits" / LIMITS
+        assert board_limits(load("microsat")) == shipped.read_text(encoding="utf-8")
+
+    def test_others_are_those_of_the_scenario(self):
+        settings = ("coils.pulse_s=2.5", "coils.backoff_s=90", "coils.backoff=per_coil", "time.tick_hz=10")
+        text = board_limits(load("microsat", parse_settings(settings)))
+        for line in ("TICK_HZ 10U", "PULSE_MS 2500U", "BACKOFF_MS 90000U", "SHARED 0", "LEVEL_2_MA 100"):
+            assert f"#define LIMITS_{line}\n" in text
+
+    def test_there_are_none_of_a_continuous_driver(self):
+        driven = load("microsat", parse_settings(("coils.driver=continuous", "coils.max_dipole_am2=8")))
+        assert LIMITS not in c_files(driven)
+
+
+def test_the_axes_of_the_nominal_attitude_are_those_that_look_up_and_ahead():
+    turned = load("microsat", parse_settings(("body.up=z", "body.ahead=-x")))
+    rows = "{{0.0, 0.0, 1.0}, {(-1.0), 0.0, 0.0}, {0.0, (-1.0), 0.0}}"
+    assert f"#define TORQUER_NOMINAL_AXES {rows}" in c_files(turned)[CONSTANTS]

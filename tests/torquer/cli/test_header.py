@@ -13,7 +13,7 @@ def call(*words):
 def test_header_writes_its_files_and_replaces_them_by_force_alone(tmp_path):
     out = tmp_path / "include"
     done = call("header", "microsat", "--out", out, "--set", "coils.backoff_s=50")
-    names = "torquer.h, torquer.c, torquer_crc.h, torquer_scenario.h"
+    names = "torquer.h, torquer.c, torquer_crc.h, torquer_scenario.h, coil_limits.h"
     assert (done.exit_code, done.stdout) == (0, f"written: {names} in {out}\n")
     assert "#define TORQUER_BACKOFF_MS 50000u " in (out / "torquer_scenario.h").read_text()
     refused = call("header", "microsat", "--out", out)

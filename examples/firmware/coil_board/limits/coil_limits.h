@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The limits of one satellite's coil driver board: the only file that differs from satellite to satellite.
  *
- * These are those of the default scenario, microsat. Nothing on the bus can change them.
+ * These are those of the scenario microsat. Nothing on the bus can change them.
  */
 #ifndef COIL_LIMITS_H
 #define COIL_LIMITS_H
