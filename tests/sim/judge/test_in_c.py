@@ -13,7 +13,7 @@ from sim.judge.flight import fly_and_judge
 from sim.judge.render import failed_text
 from sim.scenario.schema import load
 
-EXAMPLE = Path(__file__).parents[3] / "examples" / "c_firmware" / "main.c"
+EXAMPLE = Path(__file__).parents[3] / "examples" / "tiny_firmware.c"
 TUMBLER = str(Path(__file__).with_name("tumbler.toml"))
 FLAGS = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-D_POSIX_C_SOURCE=200809L")
 
