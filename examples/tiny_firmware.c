@@ -1,7 +1,7 @@
 /* A flight software in C99 and POSIX: B-dot with one self-ending pulse at a time, on the loop bus.
  *
  *     torquer header microsat --out torquer
- *     cc -std=c99 -D_POSIX_C_SOURCE=200809L -Itorquer main.c torquer/torquer.c -lm -o firmware
+ *     cc -std=c99 -D_POSIX_C_SOURCE=200809L -Itorquer examples/tiny_firmware.c torquer/torquer.c -lm -o firmware
  *     torquer judge microsat --flight-software './firmware {port}' --profile detumble
  */
 #include <arpa/inet.h>
