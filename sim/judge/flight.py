@@ -21,7 +21,7 @@ from sim.judge.answers import AnswerRecord, field_samples, read_answers
 from sim.judge.driven import ALTER_REPORTS, limits_as_driven
 from sim.judge.honesty import wrong_attitude
 from sim.judge.invariants import InvariantVerdict, JudgedFlightRecord, judge_invariants
-from sim.judge.law_fit import LawFit, fit_law
+from sim.judge.law_fit import LawFit, fit_law, least_degps
 from sim.judge.profile import Profile, asked_of, not_asked
 from sim.record import run_dir
 from sim.record.candump import whole_entries
@@ -116,7 +116,11 @@ class JudgedFlight:
             yield InvariantVerdict(name, Outcome.NOT_JUDGED, "faults act on what it senses or drives")
             return
         if not law.pulses:
-            yield InvariantVerdict(name, Outcome.NOT_JUDGED, "it never turned fast for long enough to tell")
+            why = (
+                f"it never turned at more than {least_degps(self.record.scenario):.2g} deg/s for long "
+                "enough to tell: --set initial.rate_degps=[1,1,1] begins with a tumble"
+            )
+            yield InvariantVerdict(name, Outcome.NOT_JUDGED, why)
             return
         told = f"mean cosine to the braking dipole {law.brakes:.2f} over {law.pulses} dipoles"
         outcome = Outcome.MET if law.brakes > 0.0 else Outcome.FAILED

@@ -65,6 +65,10 @@ class InvariantVerdict(NamedTuple):
 
 
 Found = tuple[Outcome, str]
+LEAST_S = 300.0
+"""Time after the back-off of boot in which a law that acts asks for something."""
+SLIGHT = 0.01
+"""Part of the longest pulse that moves no body."""
 
 
 def _kept(text: str) -> Found:
@@ -234,6 +238,35 @@ def _waits(flight: JudgedFlightRecord) -> Found:
     )
 
 
+def _acts(flight: JudgedFlightRecord) -> Found:
+    """It asks the coils for something that moves a body, once they may be driven."""
+    record, pulsed = flight.answers, flight.scenario.coils.driver == "pulsed"
+    if flight.faulty:
+        return _unjudged("faults act on what it senses or drives")
+    flown_s, asked = record.ticks / flight.tick_hz, len(record.requests) if pulsed else record.dipoles
+    if not asked:
+        boot_s = flight.scenario.coils.backoff_s if pulsed else 0.0
+        if flown_s < boot_s + LEAST_S:
+            return _unjudged(f"in {flown_s:.0f} s it need not have asked for anything")
+        return _broken(f"it asked the coils for nothing in {flown_s:.0f} s")
+    return _pulses(flight) if pulsed else _kept(f"{counted(asked, 'dipole')} asked for")
+
+
+def _pulses(flight: JudgedFlightRecord) -> Found:
+    accepted = [one for one in flight.answers.requests if not one.refused]
+    if not accepted:
+        return _unjudged("each of its requests was refused")
+    if not flight.summary["pulses"]["total"]:
+        return _broken(
+            f"{counted(len(accepted), 'request')}, none refused, and no pulse: does it ask in time?"
+        )
+    longest_ms = max(one.fire.duration_ms for one in accepted)
+    allowed_ms = coil_limits(flight.scenario.coils, flight.tick_hz).pulse_ms
+    if longest_ms < SLIGHT * allowed_ms:
+        return _broken(f"its longest pulse lasts {longest_ms} ms of {allowed_ms}: is it in ms, not in s?")
+    return _kept(f"{counted(flight.summary['pulses']['total'], 'pulse')} driven")
+
+
 def _limits(flight: JudgedFlightRecord) -> Found:
     """The coils kept their limits, by the audit of the log."""
     why = flight.summary.get("failures", {}).get(Verdict.LIMITS.value)
@@ -302,6 +335,7 @@ RULES: dict[str, Rule] = {
     "sends whole frames": _speaks_whole,
     "asks within limits": _asks_properly,
     "waits out the back-off": _waits,
+    "drives the coils": _acts,
     "limits kept": _limits,
     "heeds a stuck coil": _heeds_the_board,
     "alone on the bus": _alone,
@@ -310,9 +344,20 @@ RULES: dict[str, Rule] = {
 }
 
 
+OF_NOTHING = ("flies to its end", "sends whole frames")
+"""Rules that a flight without a tick may break; it keeps none."""
+
+
 def judge_invariants(flight: JudgedFlightRecord) -> Sequence[InvariantVerdict]:
     """Every rule, in the order of the table."""
-    return [InvariantVerdict(name, *rule(flight)) for name, rule in RULES.items()]
+    if flight.answers.ticks:
+        return [InvariantVerdict(name, *rule(flight)) for name, rule in RULES.items()]
+    found = [InvariantVerdict(name, *RULES[name](flight)) for name in OF_NOTHING]
+    broken = [one for one in found if one.outcome is Outcome.FAILED]
+    judged = {one.name for one in broken}
+    return broken + [
+        InvariantVerdict(name, *_unjudged("no tick was flown")) for name in RULES if name not in judged
+    ]
 
 
 def _swapped(value: int, size: int) -> int:

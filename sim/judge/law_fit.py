@@ -79,8 +79,8 @@ def fit_law(scenario: Scenario, truth: Histories, samples: NDArray[np.int16] | N
     mean = float(as_is.mean())
     if mistake:
         mistake += (
-            f": over {len(rows)} dipoles at more than {_degps(scenario):.2g} deg/s the mean cosine to the "
-            f"one that brakes is {mean:.2f}, and {best:.2f} with that mistake"
+            f": over {len(rows)} dipoles at more than {least_degps(scenario):.2g} deg/s the mean cosine to "
+            f"the one that brakes is {mean:.2f}, and {best:.2f} with that mistake"
         )
     return LawFit(len(rows), mean, work_j, mistake)
 
@@ -96,7 +96,7 @@ def _rows(scenario: Scenario, truth: Histories) -> Rows:
     m = np.linalg.norm(truth["m_body_am2"], axis=1)
     flows = m > LEAST_PART * max(float(m.max(initial=0.0)), 1e-30)
     rate = np.linalg.norm(truth["omega_body_orbit_radps"], axis=1)
-    fast = rate > np.radians(_degps(scenario))
+    fast = rate > np.radians(least_degps(scenario))
     if scenario.coils.driver == "continuous":
         begins = np.zeros(len(m), dtype=bool)
         begins[:: max(1, round(EVERY_S * scenario.time.tick_hz))] = True
@@ -109,7 +109,8 @@ def _rows(scenario: Scenario, truth: Histories) -> Rows:
     return np.flatnonzero(begins[1:] & fast[:-1])
 
 
-def _degps(scenario: Scenario) -> float:
+def least_degps(scenario: Scenario) -> float:
+    """The rate above which a body turns fast against its orbit, deg/s."""
     return FAST * 360.0 / orbit_period_s(scenario)
 
 

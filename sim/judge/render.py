@@ -37,9 +37,8 @@ def _lines(flight: JudgedFlight) -> Iterator[tuple[str, str]]:
         yield "required", f"{_OF_REQUIREMENTS[Outcome(one['verdict'])]}: {one['text']}"
         for reason in one["reasons"]:
             yield "", f"- {reason['text']}"
-    for rule in others:
-        if rule.outcome is Outcome.MET:
-            yield rule.name, f"{_HEADS[rule.outcome]}: {rule.text}"
+    for rule in sorted(others, key=lambda one: one.outcome is Outcome.NOT_JUDGED):
+        yield rule.name, f"{_HEADS[rule.outcome]}: {rule.text}"
 
 
 def software_text(flight: JudgedFlight) -> str:

@@ -18,13 +18,15 @@ TICKS = 400
 
 def record(pace="lockstep", settings=(), profile=Profile.ACTUATOR, failures=None, said="", **answers):
     sound = {"ticks": TICKS, "boots": [-1], "answered_in": list(range(TICKS)), "estimates": TICKS}
+    sound |= {"requests": [request(100)]}
+    pulses = answers.pop("pulses", sum(not one.refused for one in (sound | answers)["requests"]))
     faulty = answers.pop("faulty", False)
     wrong, driven = answers.pop("wrong", None), answers.pop("driven", None)
     return JudgedFlightRecord(
         load("microsat", parse_settings(settings)),
         profile,
         {"pace": pace},
-        {"failures": failures or {}},
+        {"failures": failures or {}, "pulses": {"total": pulses}},
         AnswerRecord(**sound | answers),
         said,
         faulty,
@@ -55,6 +57,35 @@ def test_a_sound_one_breaks_none():
     found = judge_invariants(record(requests=[request(100), request(203)]))
     assert [one.name for one in found] == list(RULES)
     assert not [one for one in found if one.outcome is Outcome.FAILED]
+
+
+@pytest.mark.parametrize(
+    ("answers", "words"),
+    [
+        ({"requests": [], "ticks": 400}, "it asked the coils for nothing in 400 s"),
+        ({"requests": [request(100)], "pulses": 0}, "1 request, none refused, and no pulse"),
+        ({"requests": [request(100, duration_ms=3)]}, "its longest pulse lasts 3 ms of 3000: is it in ms"),
+    ],
+)
+def test_one_that_moves_nothing_is_told(answers, words):
+    assert words in broken("drives the coils", **answers)
+
+
+def test_what_cannot_be_asked_of_it_is_not():
+    short = {"ticks": 390, "answered_in": list(range(390)), "requests": []}
+    assert told("drives the coils", **short)[0] is Outcome.NOT_JUDGED
+    assert told("drives the coils", requests=[], faulty=True)[0] is Outcome.NOT_JUDGED
+    silent = record(dipoles=0, requests=[])._replace(scenario=load("detumble3u"))
+    assert {one.name: one for one in judge_invariants(silent)}["drives the coils"].outcome is Outcome.FAILED
+
+
+def test_of_no_tick_nothing_is_kept():
+    found = judge_invariants(
+        record(ticks=0, answered_in=[], requests=[], failures={"complete": "not booted"})
+    )
+    assert {one.name for one in found} == set(RULES)
+    assert [one.name for one in found if one.outcome is Outcome.FAILED] == ["flies to its end"]
+    assert not [one for one in found if one.outcome is Outcome.MET]
 
 
 def test_every_rule_says_what_it_demands():
