@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fsw.core.algebra.quaternion import IDENTITY, Quaternion
 from fsw.core.algebra.vector import Vec3, cross
 from sim.drawing.cuboid import sides
 from sim.scenario.schema import Scenario
@@ -18,17 +19,21 @@ class Craft:
         levels_am2: dipoles of levels 1, 2, 3.
         full_am2: the full dipole of a continuous driver.
         sides: of the body as it is drawn.
+        q_law_from_body: the turn to the axes that look up, ahead and along the orbit's normal.
     """
 
     levels_am2: Vec3
     full_am2: float
     sides: Vec3
+    q_law_from_body: Quaternion
 
 
 def craft_of(scenario: Scenario) -> Craft:
     """That of a scenario."""
     one, two, three = sides(np.array(scenario.body.inertia)).tolist()
-    return Craft(scenario.coils.levels_am2, scenario.coils.largest_am2, (one, two, three))
+    axes = scenario.body.law_axes
+    turn = IDENTITY if axes is None else axes.q_law_from_body
+    return Craft(scenario.coils.levels_am2, scenario.coils.largest_am2, (one, two, three), turn)
 
 
 @dataclass(frozen=True, slots=True)

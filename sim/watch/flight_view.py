@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import acos, degrees, sqrt
 
-from fsw.core.algebra.quaternion import Quaternion, rotate
+from fsw.core.algebra.quaternion import IDENTITY, Quaternion, multiply, rotate
 from fsw.core.algebra.vector import Vec3, norm
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
@@ -98,9 +98,10 @@ MOST_UNKNOWN = 64
 class SecondSample:
     """One second of the flight, for the time series; None where nothing is known.
 
-    ``turn_deg``: angle between body and orbit axes, as estimated; ``sigma3_deg``: three standard deviations
-    of it; ``rate_degps``: of the body against the orbit; ``field_off_deg``, ``sun_off_deg``: angle between
-    what a sensor measures and what the estimate predicts, if the orbit is known.
+    ``turn_deg``: angle of the estimated attitude from nominal, or from the orbit axes where the satellite is
+    not known; ``sigma3_deg``: three standard deviations of it; ``rate_degps``: of the body against the orbit;
+    ``field_off_deg``, ``sun_off_deg``: angle between what a sensor measures and what the estimate predicts,
+    if the orbit is known.
     """
 
     unix_s: int
@@ -324,10 +325,11 @@ class FlightView:
 
     def _sample(self, unix_s: int) -> SecondSample:
         q, omega, quality = self.attitude, self.omega_body_orbit_radps, self.quality
+        nominal = IDENTITY if self.craft is None else self.craft.q_law_from_body
         known = q is not None
         return SecondSample(
             unix_s,
-            None if q is None else degrees(2.0 * acos(min(1.0, q[0]))),
+            None if q is None else degrees(2.0 * acos(min(1.0, abs(multiply(q, nominal)[0])))),
             degrees(quality.sigma3_attitude) if quality is not None and known else None,
             degrees(norm(omega)) if omega is not None and known else None,
             self.field_off_deg(),

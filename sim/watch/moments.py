@@ -24,7 +24,7 @@ class WatchedMoment:
         mode: of the flight software.
         q_body_from_orbit: attitude as estimated, scalar first; None while it is not valid.
         omega_body_orbit_radps: estimated rate relative to the orbital frame, body axes.
-        turn_deg: angle between body and orbit axes, as estimated.
+        turn_deg: angle of the estimated attitude from nominal.
         sigma3_deg: three standard deviations of it.
         rate_degps: size of the estimated rate.
         field_off_deg: angle between the measured field and that which the estimate predicts.

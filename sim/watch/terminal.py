@@ -245,7 +245,7 @@ def _estimate(view: FlightView, wide: bool) -> Table:
     samples = list(view.samples)
     latest = samples[-1] if samples else None
     rows: tuple[tuple[str, str, str], ...] = (
-        ("off the orbit axes", "turn_deg", "deg"),
+        ("off nominal", "turn_deg", "deg"),
         ("3 sigma", "sigma3_deg", "deg"),
         ("rate", "rate_degps", "deg/s"),
         ("field off prediction", "field_off_deg", "deg"),

@@ -55,7 +55,7 @@ const watch = (() => {
       if (last.broken) badges.push(["bad", `${last.broken} broken frames`]);
       if (last.ended) badges.push(["plain", "the flight is over"]);
       text("numbers", [
-        `${number(state.turn_deg, "°")} off the orbit axes`, `3σ ${number(state.sigma3_deg, "°")}`,
+        `${number(state.turn_deg, "°")} off nominal`, `3σ ${number(state.sigma3_deg, "°")}`,
         `rate ${number(state.rate_degps, "°/s", 3)}`, `field off prediction ${number(state.field_off_deg, "°")}`,
         `Sun off prediction ${number(state.sun_off_deg, "°")}`,
       ].join(" · "));
@@ -129,7 +129,7 @@ const watch = (() => {
 (() => {
   const place = document.getElementById("charts");
   const CHARTS = [
-    ["Attitude", "angle [deg]", [[1, "off the orbit axes", "#0072b2"], [2, "3 sigma", "#8a97a5"]]],
+    ["Attitude", "angle [deg]", [[1, "off nominal", "#0072b2"], [2, "3 sigma", "#8a97a5"]]],
     ["Rate", "rate [deg/s]", [[3, "rate", "#d55e00"]]],
     ["Measured against predicted", "angle [deg]", [[4, "field", "#7b3fa0"], [5, "Sun", "#e69f00"]]],
   ];

@@ -4,6 +4,7 @@ from math import cos, radians, sin
 
 import pytest
 
+from fsw.core.algebra.quaternion import conjugate
 from fsw.core.events import Event
 from fsw.core.fdir.faults import CoilFault
 from fsw.wire.frame import Frame
@@ -29,6 +30,8 @@ from fsw.wire.messages import (
     Sync,
     WheelBoot,
 )
+from sim.scenario.schema import load
+from sim.watch.coil_torque import craft_of
 from sim.watch.directions import Around
 from sim.watch.flight_view import MOST_HAPPENINGS, MOST_UNKNOWN, FlightView
 from sim.watch.happening import Weight
@@ -91,6 +94,16 @@ class TestAttitude:
         assert sample.sigma3_deg == pytest.approx(0.4, abs=0.01)
         assert sample.rate_degps == pytest.approx(0.2865, abs=1e-3)
         assert seen.mode is Mode.POINT
+
+    def test_where_another_axis_looks_up_the_angle_counts_from_there(self):
+        """z up, x ahead: in the nominal attitude the orbit's axes are turned by 120 deg in the body."""
+        scenario = load("microsat", {"body": {"up": "z", "ahead": "x"}})
+        q1, q2, q3 = conjugate(scenario.body.law_axes.q_law_from_body)[1:]
+        nominal = NavAttitude(1, q1, q2, q3)
+        for craft, expected_deg in ((craft_of(scenario), 0.0), (None, 120.0)):
+            view = FlightView(craft=craft)
+            take(view, Sync(0, UNIX_S), nominal, Sync(1, UNIX_S + 1))
+            assert view.samples[-1].turn_deg == pytest.approx(expected_deg, abs=0.3)
 
     def test_what_is_not_valid_is_not_shown(self, seen):
         take(seen, Sync(0, UNIX_S), turned(30.0, valid=0), NavRate(0, 0.003, 0.004, 0.0), quality())

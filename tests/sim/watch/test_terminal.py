@@ -86,7 +86,7 @@ def test_a_terminal_of_80_columns_shows_every_number_and_whole_pulses(flying):
         "125 kbit/s used",
         "coil 2",
         "refused",
-        "off the orbit axes",
+        "off nominal",
         "Sun off prediction",
         "36.1 uT",
     ):
