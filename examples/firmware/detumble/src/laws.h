@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Control laws: from field, attitude and rate to the dipole that is wanted. All in body axes and SI. */
+#ifndef LAWS_H
+#define LAWS_H
+
+#include "vector.h"
+
+/* m = -k_w db/dt, by the difference of two samples interval_s apart. It brakes, and needs nothing but the field.
+ *
+ * Ovchinnikov, Roldugin 2019, eq. 2. b_t, before_t [T], interval_s > 0 [s], k_w [N m s / T^2]; returns A m^2. */
+vec3 bdot_dipole(vec3 b_t, vec3 before_t, float interval_s, float k_w);
+
+/* E = 4 qv of the shorter turn: about twice the angle near zero, largest at 180 deg.
+ *
+ * q: vector part of the unit quaternion from orbital frame to body axes whose scalar part is not negative. */
+vec3 attitude_error(vec3 q);
+
+/* m = -k_w b x Omega - k_a b x E: it brakes against the orbital frame, and turns the body into it.
+ *
+ * Ovchinnikov, Roldugin, Ivanov, Penkov 2015, eq. 3. omega_radps [rad/s], k_a [N m / T^2]; returns A m^2. */
+vec3 pd_dipole(vec3 b_t, vec3 omega_radps, vec3 error, float k_w, float k_a);
+
+#endif
