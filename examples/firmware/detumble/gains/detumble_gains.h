@@ -11,6 +11,11 @@
 #define GAINS_K_W 6.2694e6F
 #define GAINS_K_A 1614.9F
 
+/* Of the integral of the attitude, against a constant torque [N m / (T^2 s)]. It grows while the error is less
+ * than this [rad]: 20 deg. */
+#define GAINS_K_I 0.2F
+#define GAINS_NEAR_RAD 0.34907F
+
 /* Time constant with which an owed impulse is forgotten [s]. */
 #define GAINS_LEAK_S 300.0F
 

@@ -18,14 +18,18 @@
 #error "the longest pulse of the scenario is shorter than a tick"
 #endif
 
+#define TICK_HZ ((uint32_t)TORQUER_TICK_HZ)
+
 /* The pulse rounded down, the back-off rounded up: never longer, never shorter. */
-#define PULSE_TICKS ((TORQUER_PULSE_MS * TORQUER_TICK_HZ) / 1000U)
-#define BACKOFF_TICKS (((TORQUER_BACKOFF_MS * TORQUER_TICK_HZ) + 999U) / 1000U)
-#define DURATION_MS ((PULSE_TICKS * 1000U) / TORQUER_TICK_HZ)
+#define PULSE_TICKS ((TORQUER_PULSE_MS * TICK_HZ) / 1000U)
+#define BACKOFF_TICKS (((TORQUER_BACKOFF_MS * TICK_HZ) + 999U) / 1000U)
+#define DURATION_MS ((PULSE_TICKS * 1000U) / TICK_HZ)
+#define CYCLE_TICKS (PULSE_TICKS + BACKOFF_TICKS)
 
 typedef struct {
     vec3 axis[COILS];         /* dipole for 1 A m^2 of that coil, body axes */
     float level_am2[LEVELS];  /* of levels 1, 2, 3 */
+    float mean_am2;           /* of the strongest pulses, one after the other */
     float pulse_s;
     float tick_s;
     mat3 metric; /* J^-2: what an impulse that is left costs is the square of the rate it leaves */

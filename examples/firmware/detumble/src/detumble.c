@@ -8,8 +8,8 @@
 #define CONTRACT_VERSION 1U
 #define COUNTER_MASK 0x0FU
 #define LOW_BYTE 0xFFU
-#define LEAP_TICKS (60U * TORQUER_TICK_HZ) /* a SYNC no further ahead is believed: those between were lost */
-#define OLD_TICKS (10U * TORQUER_TICK_HZ)  /* a field sample that is older gives neither rate nor torque */
+#define LEAP_TICKS (60U * TICK_HZ) /* a SYNC no further ahead is believed: those between were lost */
+#define OLD_TICKS (10U * TICK_HZ)  /* a field sample that is older gives neither rate nor torque */
 
 static void post(outbox *out, const bus_frame *frame)
 {
@@ -66,6 +66,7 @@ static void begin_count(detumble *fsw)
     scheduler_boot(&fsw->pulses);
     board_boot(&fsw->board);
     fsw->mode = MODE_DETUMBLE;
+    fsw->integral_s = VEC3_ZERO;
     fsw->sample.is_known = false;
     fsw->before.is_known = false;
     fsw->has_tick = false;
@@ -92,23 +93,36 @@ static void update_mode(detumble *fsw)
         fsw->mode = MODE_POINT;
     } else {
         fsw->mode = MODE_DETUMBLE;
+        fsw->integral_s = VEC3_ZERO;
     }
 }
 
 /* --- what is to be done */
 
-static vec3 demand_am2(const detumble *fsw)
+/* PD, and what its integral holds against a constant torque. Far from the goal it is frozen. */
+static vec3 pointing_am2(detumble *fsw, vec3 b_t)
+{
+    const gate_readings *readings = &fsw->gate.readings;
+    const vec3 error = attitude_error(readings->q);
+    vec3 integral_s = fsw->integral_s;
+    if (vec3_norm(error) < (2.0F * GAINS_NEAR_RAD)) {
+        integral_s = vec3_add(integral_s, vec3_scale(fsw->coils.tick_s, error));
+    }
+    fsw->integral_s = bounded_integral(b_t, integral_s, GAINS_K_I, fsw->coils.mean_am2);
+    const vec3 held_am2 = holding_dipole(b_t, fsw->integral_s, GAINS_K_I);
+    return vec3_add(pd_dipole(b_t, readings->omega_radps, error, GAINS_K_W, GAINS_K_A), held_am2);
+}
+
+static vec3 demand_am2(detumble *fsw)
 {
     const field_sample *now = &fsw->sample;
     const field_sample *before = &fsw->before;
-    const gate_readings *readings = &fsw->gate.readings;
     const uint32_t apart_ticks = now->tick - before->tick;
     vec3 m_am2 = VEC3_ZERO;
     if ((!now->is_known) || ((fsw->tick - now->tick) > OLD_TICKS)) {
         /* no field: no torque */
     } else if (fsw->mode == MODE_POINT) {
-        const vec3 error = attitude_error(readings->q);
-        m_am2 = pd_dipole(now->b_t, readings->omega_radps, error, GAINS_K_W, GAINS_K_A);
+        m_am2 = pointing_am2(fsw, now->b_t);
     } else if (before->is_known && (apart_ticks > 0U) && (apart_ticks <= OLD_TICKS)) {
         m_am2 = bdot_dipole(now->b_t, before->b_t, (float)apart_ticks * fsw->coils.tick_s, GAINS_K_W);
     } else {
@@ -198,6 +212,16 @@ void detumble_boot(detumble *fsw, outbox *out)
     send_boot(out);
 }
 
+/* The plant has begun, and asks who is there. Before its first tick there is nothing to begin anew. */
+static void take_plant_boot(detumble *fsw, outbox *out)
+{
+    if (fsw->has_tick) {
+        detumble_boot(fsw, out);
+    } else {
+        send_boot(out);
+    }
+}
+
 void detumble_step(detumble *fsw, const bus_frame *in, uint32_t count, outbox *out)
 {
     for (uint32_t place = 0U; place < count; place++) {
@@ -209,7 +233,7 @@ void detumble_step(detumble *fsw, const bus_frame *in, uint32_t count, outbox *o
             }
         } else if ((frame->can_id == TORQUER_PLANT_BOOT_FRAME_ID) &&
                    frame_is_intact(frame, TORQUER_PLANT_BOOT_LENGTH)) {
-            detumble_boot(fsw, out);
+            take_plant_boot(fsw, out);
         } else {
             gate_take(&fsw->gate, frame);
         }

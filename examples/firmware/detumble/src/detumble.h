@@ -38,6 +38,7 @@ typedef struct {
     scheduler pulses;
     board_view board;
     control_mode mode;
+    vec3 integral_s; /* of the attitude's error, while it points */
     field_sample sample; /* the last one, */
     field_sample before; /* and the last one of the tick before */
     bool has_tick;

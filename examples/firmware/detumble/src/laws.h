@@ -20,4 +20,10 @@ vec3 attitude_error(vec3 q);
  * Ovchinnikov, Roldugin, Ivanov, Penkov 2015, eq. 3. omega_radps [rad/s], k_a [N m / T^2]; returns A m^2. */
 vec3 pd_dipole(vec3 b_t, vec3 omega_radps, vec3 error, float k_w, float k_a);
 
+/* m = -k_i b x I, against a torque that lasts. integral_s: of the error [s], k_i [N m / (T^2 s)]; returns A m^2. */
+vec3 holding_dipole(vec3 b_t, vec3 integral_s, float k_i);
+
+/* The integral, shortened to where the dipole that it demands is at most most_am2: it must not wind up. */
+vec3 bounded_integral(vec3 b_t, vec3 integral_s, float k_i, float most_am2);
+
 #endif

@@ -46,8 +46,9 @@ void scheduler_forget(scheduler *state)
 
 void scheduler_owe(scheduler *state, const coil_set *coils, vec3 torque_nm, vec3 b_t)
 {
-    const float keep = 1.0F - (coils->tick_s / GAINS_LEAK_S);
-    const vec3 kept = vec3_scale(keep, state->owed_nms);
+    /* what is forgotten is subtracted: a factor just below 1 would be rounded, alike in each tick */
+    const vec3 forgotten = vec3_scale(coils->tick_s / GAINS_LEAK_S, state->owed_nms);
+    const vec3 kept = vec3_sub(state->owed_nms, forgotten);
     const vec3 owed = vec3_add(kept, vec3_scale(coils->tick_s, torque_nm));
     state->owed_nms = within_a_pulse(coils, owed, b_t);
 }
@@ -55,7 +56,8 @@ void scheduler_owe(scheduler *state, const coil_set *coils, vec3 torque_nm, vec3
 /* What a pulse fired now is to pay: the demand is taken to last until the next. */
 static vec3 due_nms(const scheduler *state, const coil_set *coils, vec3 torque_nm, vec3 b_t)
 {
-    const float half_s = 0.5F * coils->tick_s * (float)(PULSE_TICKS + BACKOFF_TICKS);
+    const uint32_t cycle_ticks = CYCLE_TICKS;
+    const float half_s = 0.5F * coils->tick_s * (float)cycle_ticks;
     return within_a_pulse(coils, vec3_add(state->owed_nms, vec3_scale(half_s, torque_nm)), b_t);
 }
 
@@ -69,15 +71,17 @@ coil_pulse scheduler_choose(const scheduler *state, const coil_set *coils, vec3 
             const vec3 gain = vec3_scale(coils->pulse_s, vec3_cross(coils->axis[coil], b_t));
             const float along = vec3_dot(weighted, gain);
             const float square = vec3_dot(gain, mat3_transform(&coils->metric, gain));
+            int8_t level = (along > 0.0F) ? 1 : -1;
+            const int8_t step = level;
             for (uint32_t place = 0U; place < LEVELS; place++) {
                 const float level_am2 = coils->level_am2[place];
                 const float change = level_am2 * ((level_am2 * square) - (2.0F * fabsf(along)));
                 if (change < least) {
-                    const int8_t level = (int8_t)(place + 1U);
                     least = change;
                     best.coil = (uint8_t)coil;
-                    best.level = (int8_t)((along > 0.0F) ? level : -level);
+                    best.level = level;
                 }
+                level = (int8_t)(level + step);
             }
         }
     }
@@ -88,7 +92,7 @@ void scheduler_fire(scheduler *state, coil_pulse pulse, vec3 paid_nms)
 {
     for (uint32_t coil = 0U; coil < COILS; coil++) {
         if ((TORQUER_BACKOFF_SHARED == 1) || (coil == pulse.coil)) {
-            state->wait_ticks[coil] = PULSE_TICKS + BACKOFF_TICKS;
+            state->wait_ticks[coil] = CYCLE_TICKS;
         }
     }
     state->busy_ticks = PULSE_TICKS;

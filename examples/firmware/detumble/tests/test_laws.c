@@ -40,6 +40,16 @@ static void the_error_of_pd_is_turned_back(void)
     CHECK(vec3_dot(torque_of(m_am2), q) < 0.0F);
 }
 
+static void the_integral_holds_against_what_lasts_and_does_not_wind_up(void)
+{
+    const vec3 integral_s = {2000.0F, -1000.0F, 500.0F};
+    const vec3 bounded_s = bounded_integral(B_T, integral_s, 0.08F, 1.0e-3F);
+    const vec3 held_am2 = holding_dipole(B_T, bounded_s, 0.08F);
+    CHECK(vec3_dot(torque_of(held_am2), integral_s) < 0.0F);
+    CHECK(vec3_norm(held_am2) <= 1.0e-3F);
+    CHECK(vec3_norm(vec3_sub(bounded_integral(B_T, integral_s, 0.08F, 1.0F), integral_s)) == 0.0F);
+}
+
 static void no_dipole_lies_along_the_field(void)
 {
     const vec3 q = {0.1F, -0.2F, 0.05F};
@@ -53,6 +63,7 @@ int main(void)
     bdot_brakes();
     the_rate_of_pd_brakes();
     the_error_of_pd_is_turned_back();
+    the_integral_holds_against_what_lasts_and_does_not_wind_up();
     no_dipole_lies_along_the_field();
     return failed_checks;
 }
