@@ -9,6 +9,7 @@ from detumble_bench import COMPILER, FIRMWARE, NO_COMPILER, has_compiler, write_
 from detumble_reference import gains_that_ship
 
 from fsw.table.config import flight_config
+from fsw.wire.coil_current import OFF_PART
 from sim.scenario.schema import flight_table, load
 
 CORE = sorted((FIRMWARE / "src").glob("*.[ch]"))
@@ -90,9 +91,11 @@ def test_the_core_is_in_memory_of_its_own(path):
 
 
 def test_the_gains_that_ship_are_those_of_the_default_scenario():
-    config, gains = flight_config(flight_table(load("microsat"))), gains_that_ship()
+    scenario = load("microsat")
+    config, gains = flight_config(flight_table(scenario)), gains_that_ship()
     setpoint = config.control.setpoint
     assert (gains.k_w, gains.k_a) == (setpoint.k_w, setpoint.k_a)
+    assert gains.off_ma == int(OFF_PART * scenario.coils.levels_ma[0])
     assert gains.leak_s == config.coils.pulses.leak_s
     assert gains.slow_radps == pytest.approx(config.modes.slow_radps, rel=1e-4)
     assert gains.fast_radps == pytest.approx(config.modes.fast_radps, rel=1e-4)

@@ -23,8 +23,8 @@
 #define GAINS_SLOW_RADPS 5.236e-3F
 #define GAINS_FAST_RADPS 1.0472e-2F
 
-/* Largest read-back of coils that are off; above it one is stuck [mA]. */
-#define GAINS_OFF_MA 10
+/* Largest read-back of coils that are off, a tenth of the current of level 1; above it one is stuck [mA]. */
+#define GAINS_OFF_MA 2
 
 /* How old a sample of the magnetometer may be: for so many ticks after a pulse none is used. */
 #define GAINS_BLANK_TICKS 0U
