@@ -47,22 +47,31 @@ def write_contract(folder, scenario):
     return folder
 
 
-def compile_program(folder, scenario):
-    """The flight software as a program of this machine, for the satellite of this scenario."""
-    return _compile(folder / "detumble", scenario, ("main.c", "record.c"))
+def compile_program(folder, scenario, planted=()):
+    """The flight software as a program of this machine, for the satellite of this scenario.
+
+    ``planted``: an error: file of the core, what stands there, and what is to stand there instead.
+    """
+    core = folder / "src"
+    shutil.copytree(FIRMWARE / "src", core)
+    if planted:
+        name, right, wrong = planted
+        text = (core / name).read_text()
+        assert text.count(right) == 1, planted
+        (core / name).write_text(text.replace(right, wrong))
+    return _compile(folder / "detumble", scenario, ("main.c", "record.c"), core=core)
 
 
 def compile_library(folder, scenario):
     """The flight software in a test's hands, for the satellite of this scenario."""
-    return _compile(folder / "detumble.so", scenario, ("harness.c", "record.c"), "-shared", "-fPIC")
+    flags = ("-shared", "-fPIC")
+    return _compile(folder / "detumble.so", scenario, ("harness.c", "record.c"), flags=flags)
 
 
-def _compile(product, scenario, host, *flags):
+def _compile(product, scenario, host, core=FIRMWARE / "src", flags=()):
     contract = write_contract(product.parent / "contract", scenario)
-    sources = [*sorted((FIRMWARE / "src").glob("*.c")), *(FIRMWARE / "host" / name for name in host)]
-    includes = [
-        f"-I{folder}" for folder in (FIRMWARE / "src", FIRMWARE / "host", FIRMWARE / "gains", contract)
-    ]
+    sources = [*sorted(core.glob("*.c")), *(FIRMWARE / "host" / name for name in host)]
+    includes = [f"-I{folder}" for folder in (core, FIRMWARE / "host", FIRMWARE / "gains", contract)]
     words = [COMPILER, *STRICT, "-O2", *flags, *includes, *sources, contract / SOURCE, "-o", product, "-lm"]
     done = subprocess.run([str(word) for word in words], check=False, capture_output=True, text=True)
     if done.returncode:

@@ -55,3 +55,9 @@ def flight(request, tmp_path_factory):
     done = CliRunner().invoke(main, words)
     assert done.stdout, done.output
     return scenario, json.loads(done.stdout), folder / "run"
+
+
+@pytest.fixture
+def tumbler():
+    """The scenario of a tumble."""
+    return str(TUMBLER)
