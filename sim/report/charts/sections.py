@@ -132,7 +132,7 @@ _TRACK: tuple[Drawing, ...] = (
 _ATTITUDE: tuple[Drawing, ...] = (
     (
         over_time.pointing,
-        "True angle from the nominal attitude, and of body axis 1 from the local vertical. Grey bands, here "
+        "True angle from the nominal attitude, and of axis 1, which looks up, from the local vertical. Grey bands, here "
         "and in all charts against time, are eclipses. A long history is drawn as the span between its least "
         "and largest values.",
     ),
