@@ -132,8 +132,8 @@ _TRACK: tuple[Drawing, ...] = (
 _ATTITUDE: tuple[Drawing, ...] = (
     (
         over_time.pointing,
-        "True angle from the nominal attitude, and of axis 1, which looks up, from the local vertical. Grey bands, here "
-        "and in all charts against time, are eclipses. A long history is drawn as the span between its least "
+        "True angle from the nominal attitude, and of axis 1, which looks up, from the local vertical. Grey "
+        "bands, here and in all charts against time, are eclipses. A long history is drawn as the span between its least "
         "and largest values.",
     ),
     (over_time.modes, "Mode of the controller."),
