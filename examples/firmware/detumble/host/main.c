@@ -20,7 +20,6 @@
 
 #include "detumble.h"
 #include "record.h"
-#include "torquer.h"
 
 #define GREETING "torquer-loop/1\r\n"
 #define PATIENCE_MS 10000 /* for a hub to come up */
@@ -68,7 +67,7 @@ static void send_answers(int descriptor)
 static bool take_record(int descriptor, const uint8_t *record)
 {
     const bus_frame frame = record_to_frame(record);
-    const bool ends = frame.can_id == TORQUER_PLANT_END_FRAME_ID;
+    const bool ends = detumble_is_end(&fsw, &frame);
     if (!ends) {
         detumble_step(&fsw, &frame, 1U, &answers);
         send_answers(descriptor);

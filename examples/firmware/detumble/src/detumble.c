@@ -71,6 +71,7 @@ static void begin_count(detumble *fsw)
     fsw->before.is_known = false;
     fsw->has_tick = false;
     fsw->has_strange = false;
+    fsw->is_asked = false;
 }
 
 /* A sample counts only while no coil adds a field of its own. */
@@ -179,21 +180,33 @@ static void enter(detumble *fsw, uint32_t tick, outbox *out)
     }
     fsw->has_tick = true;
     fsw->has_strange = false;
+    fsw->is_asked = false;
     fsw->tick = tick;
     answer(fsw, out);
+}
+
+/* Enter a tick that does not follow: where the SYNC was forged, the true count goes on from the one before. */
+static void leap(detumble *fsw, uint32_t tick, outbox *out)
+{
+    const uint32_t abandoned_tick = fsw->tick;
+    enter(fsw, tick, out);
+    fsw->has_strange = true;
+    fsw->strange_tick = abandoned_tick;
 }
 
 static void take_sync(detumble *fsw, uint32_t tick, outbox *out)
 {
     const uint32_t ahead = tick - fsw->tick;
-    if ((!fsw->has_tick) || ((ahead > 0U) && (ahead <= LEAP_TICKS))) {
+    if ((!fsw->has_tick) || (ahead == 1U)) {
         enter(fsw, tick, out);
     } else if (ahead == 0U) { /* the plant has not received the answer */
         send_done(tick, out);
+    } else if (ahead <= LEAP_TICKS) { /* those between were lost */
+        leap(fsw, tick, out);
     } else if (fsw->has_strange && ((tick - fsw->strange_tick) <= 1U)) { /* it counts anew */
         begin_count(fsw);
         gate_clear(&fsw->gate);
-        enter(fsw, tick, out);
+        leap(fsw, tick, out);
     } else {
         fsw->has_strange = true;
         fsw->strange_tick = tick;
@@ -212,13 +225,15 @@ void detumble_boot(detumble *fsw, outbox *out)
     send_boot(out);
 }
 
-/* The plant has begun, and asks who is there. Before its first tick there is nothing to begin anew. */
+/* The plant has begun, and asks who is there. In flight one alone is noise: it asks again until it is answered. */
 static void take_plant_boot(detumble *fsw, outbox *out)
 {
-    if (fsw->has_tick) {
+    if (!fsw->has_tick) {
+        send_boot(out);
+    } else if (fsw->is_asked) {
         detumble_boot(fsw, out);
     } else {
-        send_boot(out);
+        fsw->is_asked = true;
     }
 }
 
@@ -238,4 +253,13 @@ void detumble_step(detumble *fsw, const bus_frame *in, uint32_t count, outbox *o
             gate_take(&fsw->gate, frame);
         }
     }
+}
+
+bool detumble_is_end(const detumble *fsw, const bus_frame *frame)
+{
+    struct torquer_plant_end_t end;
+    bool is_end = (frame->can_id == TORQUER_PLANT_END_FRAME_ID) &&
+                  frame_is_intact(frame, TORQUER_PLANT_END_LENGTH) && fsw->has_tick;
+    is_end = is_end && (torquer_plant_end_unpack(&end, frame->data, frame->length) == 0);
+    return is_end && ((end.ticks - (fsw->tick + 1U)) <= LEAP_TICKS);
 }

@@ -44,7 +44,8 @@ typedef struct {
     bool has_tick;
     uint32_t tick; /* answered last */
     bool has_strange;
-    uint32_t strange_tick; /* of the last SYNC, if it was a strange one */
+    uint32_t strange_tick; /* of the last SYNC, if it was a strange one, or abandoned for it */
+    bool is_asked;         /* by PLANT_BOOT, since the last SYNC */
     uint8_t fire_counter;
 } detumble;
 
@@ -53,5 +54,8 @@ void detumble_boot(detumble *fsw, outbox *out);
 
 /* Frames of the bus, in their order, as many as have come; each SYNC among them is answered. */
 void detumble_step(detumble *fsw, const bus_frame *in, uint32_t count, outbox *out);
+
+/* Whether this frame is a PLANT_END that fits the ticks that were answered: a false one ends no flight. */
+bool detumble_is_end(const detumble *fsw, const bus_frame *frame);
 
 #endif

@@ -47,6 +47,31 @@ static void it_boots_and_boots_again_when_asked(void)
     CHECK((out.count == 2U) && (out.frames[1].can_id == TORQUER_FSW_BOOT_FRAME_ID));
 }
 
+static void in_flight_it_boots_when_asked_twice(void)
+{
+    const uint8_t data[FRAME_DATA_MOST] = {0U};
+    const bus_frame asked = sealed(TORQUER_PLANT_BOOT_FRAME_ID, TORQUER_PLANT_BOOT_LENGTH, data);
+    booted();
+    for (uint32_t number = 0U; number < 10U; number++) { /* noise, now and then */
+        (void)tick(number, 0);
+        out.count = 0U;
+        detumble_step(&fsw, &asked, 1U, &out);
+        CHECK(out.count == 0U);
+    }
+    detumble_step(&fsw, &asked, 1U, &out);
+    CHECK((out.count == 1U) && (out.frames[0].can_id == TORQUER_FSW_BOOT_FRAME_ID));
+}
+
+static void a_forged_skip_is_left_at_once(void)
+{
+    booted();
+    (void)tick(0U, 0);
+    (void)tick(1U, 0);
+    CHECK((tick(41U, 0) == 1U) && (tick_of_done(0U) == 41U));
+    CHECK((tick(2U, 0) == 1U) && (tick_of_done(0U) == 2U));
+    CHECK(fsw.pulses.wait_ticks[0] == BACKOFF_TICKS);
+}
+
 static void it_fires_as_soon_as_it_may(void)
 {
     booted();
@@ -126,6 +151,32 @@ static void one_strange_sync_is_ignored_and_two_are_believed(void)
     detumble_step(&fsw, &strange, 1U, &out);
     CHECK((out.count == 1U) && (tick_of_done(0U) == 1000000U));
     CHECK(fsw.pulses.wait_ticks[0] == BACKOFF_TICKS);
+    CHECK((tick(11U, 0) == 1U) && (tick_of_done(0U) == 11U)); /* the two were forged */
+    CHECK(fsw.pulses.wait_ticks[0] == BACKOFF_TICKS);
+}
+
+static bus_frame end_frame(uint32_t ticks)
+{
+    const struct torquer_plant_end_t message = {0U, ticks, 0U};
+    uint8_t data[FRAME_DATA_MOST] = {0U};
+    (void)torquer_plant_end_pack(data, &message, sizeof data);
+    return sealed(TORQUER_PLANT_END_FRAME_ID, TORQUER_PLANT_END_LENGTH, data);
+}
+
+static void a_false_end_ends_no_flight(void)
+{
+    const bus_frame right = end_frame(10U);
+    const bus_frame early = end_frame(9U);
+    const bus_frame far = end_frame(10U + (61U * TICK_HZ));
+    bus_frame broken = end_frame(10U);
+    broken.data[4] = (uint8_t)(broken.data[4] ^ 1U);
+    booted();
+    CHECK(!detumble_is_end(&fsw, &right));
+    for (uint32_t number = 0U; number < 10U; number++) {
+        (void)tick(number, 0);
+    }
+    CHECK(detumble_is_end(&fsw, &right));
+    CHECK(!(detumble_is_end(&fsw, &early) || detumble_is_end(&fsw, &far) || detumble_is_end(&fsw, &broken)));
 }
 
 static void more_than_the_outbox_holds_is_not_sent(void)
@@ -141,12 +192,15 @@ static void more_than_the_outbox_holds_is_not_sent(void)
 int main(void)
 {
     it_boots_and_boots_again_when_asked();
+    in_flight_it_boots_when_asked_twice();
+    a_forged_skip_is_left_at_once();
     it_fires_as_soon_as_it_may();
     a_repeated_sync_is_answered_without_a_request();
     it_does_not_fire_with_a_stuck_coil();
     it_does_not_fire_without_a_status();
     lost_ticks_shorten_no_back_off();
     one_strange_sync_is_ignored_and_two_are_believed();
+    a_false_end_ends_no_flight();
     more_than_the_outbox_holds_is_not_sent();
     return failed_checks;
 }
