@@ -133,8 +133,8 @@ _ATTITUDE: tuple[Drawing, ...] = (
     (
         over_time.pointing,
         "True angle from the nominal attitude, and of axis 1, which looks up, from the local vertical. Grey "
-        "bands, here and in all charts against time, are eclipses. A long history is drawn as the span between its least "
-        "and largest values.",
+        "bands, here and in all charts against time, are eclipses. A long history is drawn as the span "
+        "between its least and largest values.",
     ),
     (over_time.modes, "Mode of the controller."),
     (
