@@ -1,7 +1,7 @@
 """Basilisk's spacecraft at the start of a scenario: orbit, attitude, field, Sun and shadow.
 
 Frame ``eci`` is that in which SGP4 works, of date; the Earth turns in it about axis 3. Frame ``orbit`` is
-radius, along-track, normal. The nominal attitude is body = orbit.
+radius, along-track, normal. In the nominal attitude the body axes ``up`` and ``ahead`` are along the first two.
 """
 
 from datetime import UTC, datetime
@@ -37,6 +37,17 @@ DAY_S, UNIX_EPOCH_JD, J2000_UNIX_S = 86400, 2440587.5, 946728000
 
 Array = npt.NDArray[np.float64]
 Scenario = dict[str, Any]
+
+
+def nominal_attitude(body: dict[str, Any]) -> Array:
+    """The matrix that carries orbit to body axes where the axes ``up`` and ``ahead`` look as named."""
+    up, ahead = (_axis(body[name]) for name in ("up", "ahead"))
+    return np.column_stack((up, ahead, np.cross(up, ahead)))
+
+
+def _axis(name: str) -> Array:
+    along: Array = np.eye(3)["xyz".index(name[-1])]
+    return -along if name.startswith("-") else along
 
 
 class State(NamedTuple):
@@ -193,8 +204,8 @@ class Satellite:
         orbit_from_eci, orbit_rate_radps = orbital_frame(r_m, v_mps)
         initial = scenario["initial"]
         axis, half_rad = np.array(initial["axis"]), radians(initial["angle_deg"]) / 2.0
-        q_body_from_orbit = np.array([cos(half_rad), *(sin(half_rad) * axis / np.linalg.norm(axis))])
-        body_from_orbit = RigidBodyKinematics.EP2C(q_body_from_orbit)
+        turn = np.array([cos(half_rad), *(sin(half_rad) * axis / np.linalg.norm(axis))])
+        body_from_orbit = RigidBodyKinematics.EP2C(turn) @ nominal_attitude(scenario["body"])
         omega_body_radps = np.radians(initial["rate_degps"]) + orbit_rate_radps * body_from_orbit[:, 2]
         hub = self._body.hub
         hub.r_CN_NInit, hub.v_CN_NInit = r_m.tolist(), v_mps.tolist()
