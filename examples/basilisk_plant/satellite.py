@@ -1,7 +1,8 @@
 """Basilisk's spacecraft at the start of a scenario: orbit, attitude, field, Sun and shadow.
 
 Frame ``eci`` is that in which SGP4 works, of date; the Earth turns in it about axis 3. Frame ``orbit`` is
-radius, along-track, normal. In the nominal attitude the body axes ``up`` and ``ahead`` are along the first two.
+radius, along-track, normal. In the nominal attitude the body axes ``up`` and ``ahead`` are along the first
+two.
 """
 
 from datetime import UTC, datetime
@@ -41,7 +42,7 @@ Scenario = dict[str, Any]
 
 def nominal_attitude(body: dict[str, Any]) -> Array:
     """The matrix that carries orbit to body axes where the axes ``up`` and ``ahead`` look as named."""
-    up, ahead = (_axis(body[name]) for name in ("up", "ahead"))
+    up, ahead = _axis(body.get("up", "x")), _axis(body.get("ahead", "y"))
     return np.column_stack((up, ahead, np.cross(up, ahead)))
 
 
