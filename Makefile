@@ -95,7 +95,7 @@ test-unpaced: venv
 	$(interpreted) -m "interpreted and long"
 
 test-paced: venv
-	$(bin)/pytest $(PYTEST_FLAGS) -m "long and paced"
+	$(bin)/pytest $(PYTEST_FLAGS) -n 3 -m "long and paced"
 
 lint: environment
 	$(bin)/ruff check
