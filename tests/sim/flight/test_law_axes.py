@@ -45,6 +45,7 @@ def test_a_whole_flight_is_the_same(pair):
     assert np.degrees(angle_rad(attitude)).max() > 30.0
 
 
+@pytest.mark.long
 def test_a_long_body_whose_long_axis_is_z_is_held_upright_by_the_filter():
     """Its attitude against the orbit is reported in its own axes: a quarter turn and more from 1 0 0 0."""
     body = {"inertia_kgm2": [0.04, 0.042, 0.008], "up": "z", "ahead": "x"}
@@ -56,6 +57,7 @@ def test_a_long_body_whose_long_axis_is_z_is_held_upright_by_the_filter():
     assert np.degrees(angle_rad(record.truth["q_body_from_orbit"][-600:])).min() > 90.0
 
 
+@pytest.mark.long
 def test_held_the_other_way_it_falls_over():
     """What makes the difference is the key, not a strong coil."""
     scenario = load("cubesat3u", {"body": {"inertia_kgm2": [0.04, 0.042, 0.008]}})

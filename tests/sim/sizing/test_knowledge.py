@@ -63,6 +63,7 @@ def test_the_names_of_the_axes_make_no_difference(up):
     assert knowledge_of(made(THREE_U, {"body": body})).rms_deg == pytest.approx(expected.rms_deg, rel=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [201, 202])
 def test_a_flight_is_wrong_by_a_third_to_three_times_of_it(seed):
     scenario = made(THREE_U)
