@@ -4,7 +4,8 @@
 # make test-interpreted   the tests, but for the long ones, all interpreted
 # make test-long   those of over a sixth of a second: many orbits, processes, waits in real time; on a CAN interface where there is one: twenty minutes
 # make test-paced   of the long ones, those that keep deadlines in real time: they want a core for themselves
-# make test-unpaced   the other long ones
+# make test-unpaced   the other long ones; UNPACED has more words for pytest
+# make test-firmware   of these those of firmware in C and MicroPython, and of torquer judge
 # make lint   style, types, layers, generated code, pages and pictures
 # make evidence   all that docs/ states of flights: gains, population, validate, comparison, faults, pulse limits, sizing; stopped, it goes on where it was
 # make gains population validate comparison faults pulse-limits sizing   one of them, or some
@@ -44,7 +45,7 @@ compiled := .venv/.compiled
 pip := TORQUER_INTERPRETED=1 $(bin)/pip install --quiet --disable-pip-version-check --no-compile
 export PATH := $(CURDIR)/$(bin):$(PATH)
 
-.PHONY: help venv environment compiled sil test test-interpreted test-long test-unpaced test-paced lint docs docs-gallery notebooks test-vcan test-chromium evidence gains population validate comparison faults pulse-limits sizing golden causes same-flights fuzz scenarios attack firmware-qemu differential replay-elsewhere bench basilisk scaling soak verdicts planted validate-planted mutation coverage
+.PHONY: help venv environment compiled sil test test-interpreted test-long test-unpaced test-firmware test-paced lint docs docs-gallery notebooks test-vcan test-chromium evidence gains population validate comparison faults pulse-limits sizing golden causes same-flights fuzz scenarios attack firmware-qemu differential replay-elsewhere bench basilisk scaling soak verdicts planted validate-planted mutation coverage
 
 help:
 	@sed -n 's/^# \(make .*\)/\1/p' Makefile
@@ -78,7 +79,7 @@ sil: venv
 	$(bin)/torquer sil
 
 # a worker, a core
-test test-interpreted test-unpaced test-paced: export OPENBLAS_NUM_THREADS = 1
+test test-interpreted test-unpaced test-firmware test-paced: export OPENBLAS_NUM_THREADS = 1
 interpreted := TORQUER_INTERPRETED=1 $(bin)/pytest $(PYTEST_FLAGS)
 
 test: venv
@@ -91,8 +92,11 @@ test-interpreted: environment
 test-long: test-unpaced test-paced
 
 test-unpaced: venv
-	$(bin)/pytest $(PYTEST_FLAGS) -n 3 --durations=30 -m "long and not paced"
+	$(bin)/pytest $(PYTEST_FLAGS) -n 3 --durations=30 -m "long and not paced" $(UNPACED)
 	$(interpreted) -m "interpreted and long"
+
+test-firmware: venv
+	$(bin)/pytest $(PYTEST_FLAGS) -n 1 -m "long and not paced" tests/firmware tests/sim/judge
 
 test-paced: venv
 	$(bin)/pytest $(PYTEST_FLAGS) -n 3 -m "long and paced"
