@@ -59,7 +59,7 @@ def knowledge_of(scenario: Scenario) -> Knowledge:
 def _variances(table: FlightTable, steps: int) -> list[list[float]]:
     """The variance of the attitude about each body axis after each step, rad^2."""
     hz, model, changes = table.time.tick_hz, onboard_ephemeris(table), changes_of(table)
-    config, driven_am2 = filter_config(table, STEP_S, samples=STEP_S * hz), mean_drive_am2(table)
+    config, driven_am2 = filter_config(table, STEP_S, samples=STEP_S * hz), _mean_drive_am2(table)
     axes, window, estimate, found = table.body.law_axes, None, None, []
     nominal = IDENTITY if axes is None else conjugate(axes.q_law_from_body)
     for tick in range(0, steps * STEP_S * hz, STEP_S * hz):
@@ -87,7 +87,7 @@ def _variances(table: FlightTable, steps: int) -> list[list[float]]:
     return found
 
 
-def mean_drive_am2(table: FlightTable) -> Vec3:
+def _mean_drive_am2(table: FlightTable) -> Vec3:
     """The root mean square of each coil's dipole: of pulses at the middle level, or a tenth of full scale."""
     coils = table.coils
     used_am2 = coils.levels_am2[1] if coils.driver == "pulsed" else 0.1 * coils.largest_am2
