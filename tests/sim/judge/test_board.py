@@ -1,6 +1,7 @@
 """A coil board of one's own: its checks and flight are verdicts, a busy computer is not held against it."""
 
 import json
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -27,7 +28,8 @@ from torquer.cli.main import main
 QUICK = ("coils.backoff_s=2.0", 'knowledge="perfect"', "flight.modes.settle_s=1.0")
 """The first pulse comes after 30 s."""
 STUB = (
-    "torquer board coil --bus {bus} --tick-hz {tick_hz} --pulse-s 3 --backoff-s BACKOFF "
+    f"{sys.executable} -m torquer board coil "
+    "--bus {bus} --tick-hz {tick_hz} --pulse-s 3 --backoff-s BACKOFF "
     "--backoff {backoff} --levels-ma 25 100 400"
 )
 BUSY = "this computer was late"
