@@ -28,7 +28,7 @@ _COLUMNS: tuple[tuple[str, str, str, Callable[[Any], str]], ...] = (
     ("error_rms", "RMS", ITS_UNIT, str),
     ("error_max", "max", ITS_UNIT, str),
     ("rate_rms_degps", "rate RMS", "deg/s", "{:.4f}".format),
-    ("dipole_squared_a2m4s", "int m^2", "A^2 m^4 s", "{:.4g}".format),
+    ("dipole_squared_a2m4s", "∫ m²", "A² m⁴ s", "{:.4g}".format),
     ("pulses", "pulses", "", str),
     ("duty", "duty", "%", lambda duty: f"{100.0 * duty:.2f}"),
     ("mode_final", "mode", "", str),

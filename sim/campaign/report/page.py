@@ -42,9 +42,11 @@ def write_page(path: Path, campaign: Campaign, analysis: CampaignAnalysis, versi
 
 def _badges(campaign: Campaign, analysis: CampaignAnalysis) -> list[tuple[str, str]]:
     success = analysis.success
+    what = "succeed" if campaign.requirements else "keep the limits of the coils"
     badges = [
-        ("good" if success.count == success.total else "note", f"{success.count} of {success.total} succeed")
+        ("good" if success.count == success.total else "note", f"{success.count} of {success.total} {what}")
     ]
+    badges += [("note", words) for words in scenario_requirements.shortfalls(analysis.shares)]
     if missed := sum(one.met is False for one in verdicts(campaign, analysis)):
         badges.append(("bad", f"{missed} of its limits missed"))
     if analysis.failures:

@@ -76,12 +76,21 @@ def _figure_cells(one: RequirementShare) -> tuple[str, ...]:
     return f"{number(middle)} {one.unit}", f"{number(largest)} {one.unit}", margin
 
 
+def shortfalls(shares: Sequence[RequirementShare]) -> list[str]:
+    """How many requirements no run was long enough for, and how many some run misses; none of none."""
+    of_all = f"of {counted(len(shares), 'requirement')} of the scenario"
+    unjudged = sum(one.met is None for one in shares)
+    missed = sum(one.met is not None and one.met.count < one.met.total for one in shares)
+    counts = {f"{unjudged} {of_all} not judged": unjudged, f"{missed} {of_all} missed by a run": missed}
+    return [words for words, count in counts.items() if count]
+
+
 def share_lines(shares: Sequence[RequirementShare], campaign: Campaign) -> list[str]:
     """A line each for the terminal."""
     lines = []
     for one in shares:
         if one.met is None:
-            found = Outcome.NOT_JUDGED.value
+            found = f"{Outcome.NOT_JUDGED} before orbit {one.by_orbit:g}"
         else:
             found = f"met by {proportion(one.met, campaign)}"
             found += f", {counted(one.unjudged, 'run')} not judged" if one.unjudged else ""

@@ -24,6 +24,7 @@ class RequirementShare:
         id: its name; None where it has none.
         words: index and what it is of, after the name where there is one.
         unit: of figures, limits and margins.
+        by_orbit: when a run is judged by it.
         runs: the numbers of the runs that were flown.
         verdicts: of these runs.
         measured: of these runs; NaN where one has no figure.
@@ -35,6 +36,7 @@ class RequirementShare:
     id: str | None
     words: str
     unit: str
+    by_orbit: float
     runs: tuple[int, ...]
     verdicts: tuple[Outcome, ...]
     measured: Array
@@ -82,6 +84,7 @@ def requirement_shares(campaign: Campaign, results: Results, failed: int) -> tup
                 section.id,
                 words if section.id is None else f"{section.id}: {words}",
                 section.unit.symbol,
+                section.by_orbit,
                 runs,
                 verdicts,
                 figures[measured],

@@ -28,7 +28,8 @@ def lines(campaign: Campaign, analysis: CampaignAnalysis) -> list[str]:
     """A few lines for the terminal."""
     runs = analysis.done + len(analysis.failures)
     heading = f"{campaign.name}: {counted(runs, 'run')} of {length(campaign, analysis)}"
-    rows = [heading, f"  success    {proportion(analysis.success, campaign)}"]
+    label = "success    " if campaign.requirements else "limits     kept by "
+    rows = [heading, f"  {label}{proportion(analysis.success, campaign)}"]
     rows += [f"  required   {one}" for one in verdicts(campaign, analysis) if one.group == "requirement"]
     rows += share_lines(analysis.shares, campaign)
     rows += [f"  {figure.words}: {_percentiles(figure, campaign)}" for figure in analysis.figures]
@@ -75,7 +76,8 @@ def requirement_table(campaign: Campaign, analysis: CampaignAnalysis) -> Table:
         (requirement_words(entry), *_cells_of(found), WORDS[meets(found, campaign)])
         for entry, found in analysis.by_requirement.items()
     ]
-    rows.append(("all, and the limits of the coils", *_cells_of(analysis.success), _ABSENT))
+    limits = "all, and the limits of the coils" if campaign.requirements else "the limits of the coils"
+    rows.append((limits, *_cells_of(analysis.success), _ABSENT))
     return Table(("requirement", "runs that meet it", "part", "at least", "at most", wanted), rows)
 
 

@@ -1,5 +1,6 @@
 """The page shows every result, whatever there is of it, escaped."""
 
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import pytest
@@ -80,6 +81,18 @@ def test_it_says_what_was_flown_and_escapes_it(page):
         assert words in page
     assert "run 7: &lt;too&gt; fast" in page
     assert "<too>" not in page
+
+
+def test_a_campaign_too_short_to_be_judged_says_so_beside_its_verdict(small, done_row, tmp_path):
+    campaign = replace(small, requirements=())
+    with open_results(tmp_path, campaign) as results:
+        results.add(done_row(3))
+        found = analyse(campaign, results)
+    write_page(tmp_path / "page.html", campaign, found, "1.2.3")
+    page = (tmp_path / "page.html").read_text()
+    assert "succeed" not in page
+    assert "1 of 1 keep the limits of the coils" in page
+    assert "2 of 3 requirements of the scenario not judged" in page
 
 
 def test_it_is_the_same_each_time(page, campaign_of_40, analysis, tmp_path):

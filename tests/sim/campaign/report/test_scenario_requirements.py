@@ -32,7 +32,7 @@ def test_the_table_has_shares_figures_and_margin(analysis):
 
 def test_the_lines_and_the_document_say_the_same(campaign_of_40, analysis):
     lines = share_lines(analysis.shares, campaign_of_40)
-    assert lines[0] == "  scenario   settling of whole attitude, at most 3 orbits: not judged"
+    assert lines[0] == "  scenario   settling of whole attitude, at most 3 orbits: not judged before orbit 4"
     assert lines[1].startswith(
         "  scenario   APE of whole attitude, at most 50 deg: met by 19 of 40, 47.5 % ("
     )

@@ -18,13 +18,24 @@ def test_lines_say_what_matters(campaign_of_40, analysis):
     assert lines[2].startswith(
         "  required   missed: pointing error, RMS over the last orbit, at most 60 deg: 25 of 40, "
     )
-    assert lines[3] == "  scenario   settling of whole attitude, at most 3 orbits: not judged"
+    assert lines[3] == "  scenario   settling of whole attitude, at most 3 orbits: not judged before orbit 4"
     assert lines[6].startswith(
         "  pointing error, RMS over the last orbit [deg]: 50 % 51.5 (42.5 to 60.5), 95 % 78.5 (75.5 to –)"
     )
     assert "depends on initial angle +0.97" in "\n".join(lines)
     assert "  worst runs 39 (78.5), 38 (77), 37 (75.5), 36 (74), 35 (72.5)" in lines
     assert lines[-1] == "  failed     2, first run 7: run 7: <too> fast"
+
+
+def test_where_nothing_is_required_the_runs_keep_limits_and_are_no_success(small, done_row, tmp_path):
+    campaign = replace(small, requirements=())
+    with open_results(tmp_path, campaign) as results:
+        results.add(done_row(3))
+        found = analyse(campaign, results)
+    lines = text.lines(campaign, found)
+    assert lines[1].startswith("  limits     kept by 1 of 1, ")
+    assert "success" not in "\n".join(lines)
+    assert text.requirement_table(campaign, found).rows[-1][0] == "the limits of the coils"
 
 
 def test_indices_are_judged_by_their_bounds(campaign_of_40, analysis):
