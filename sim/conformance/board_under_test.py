@@ -34,6 +34,7 @@ class BoardUnderTest:
         self._seq = 0
         self._sent = 0
         self.accepted_seq = 0
+        self._accepted: tuple[CoilFire, TickReply] | None = None
 
     def request(self, **changes: int) -> CoilFire:
         """A proper request that answers this tick, except for ``changes``."""
@@ -112,8 +113,22 @@ class BoardUnderTest:
             raise NonconformanceError(
                 f"a proper request in tick {reply.tick - 1} was refused: {reasons(reply)}"
             )
-        self.accepted_seq = request.seq
+        self._accept(request, reply)
         return request, reply
+
+    def begin_pulse(self) -> tuple[CoilFire, TickReply]:
+        """The pulse that began in the last tick, or one that begins once no coil is locked out.
+
+        A back-off is long: a check goes on with the pulse that the one before it has left.
+        """
+        if self._accepted is None or self._accepted[1] is not self.link.replies[-1]:
+            self.wait_until_free()
+            return self.expect_accepted()
+        return self._accepted
+
+    def _accept(self, request: CoilFire, reply: TickReply) -> None:
+        self.accepted_seq = request.seq
+        self._accepted = request, reply
 
     def follow_pulse(
         self, request: CoilFire, reply: TickReply, meanwhile: Callable[[], TickReply] | None = None
@@ -125,12 +140,8 @@ class BoardUnderTest:
         for number in range(1, ticks + 3):
             status = reply.status
             left_ms = request.duration_ms - number * self.tick_ms
-            if number <= ticks and (status.coil, status.level, status.seq) != (
-                request.coil,
-                request.level,
-                request.seq,
-            ):
-                raise NonconformanceError(f"{request} was accepted, and in tick {reply.tick}: {status}")
+            if number <= ticks:
+                _expect_as_requested(request, reply)
             if status.remaining_ms > max(0.0, ceil(left_ms)):
                 raise NonconformanceError(
                     f"remaining_ms is {status.remaining_ms} in tick {reply.tick}: too long"
@@ -153,8 +164,8 @@ class BoardUnderTest:
         if currents and abs(reply.status.current_ma) * 5 > max(map(abs, currents)):
             raise NonconformanceError(f"current_ma is {reply.status.current_ma} after the end of the pulse")
 
-    def request_until_accepted(self, since_s: float) -> None:
-        """Send requests until one is accepted; follow its pulse to the end.
+    def request_until_accepted(self, since_s: float, **changes: int) -> None:
+        """Send requests until one is accepted, and leave its pulse running.
 
         That must be no sooner than a back-off after ``since_s``, and soon after that; ticks that were put off
         may have put off its end, as a board may count ticks where they are the slower ones.
@@ -164,8 +175,8 @@ class BoardUnderTest:
         while True:
             left_s = end_s - self.link.due_s()
             near = left_s < 6 * period_s
-            told_free = self._is_told_free(coil=1)
-            request = self.request(coil=1)
+            told_free = self._is_told_free(int(changes.get("coil", 1)))
+            request = self.request(**changes)
             reply = self.send(request)
             if not reply.refused:
                 break
@@ -177,13 +188,13 @@ class BoardUnderTest:
                 raise NonconformanceError(f"refused as lockout {-left_s:.1f} s after the end of the back-off")
             for _ in range(0 if near else int(left_s / period_s / 4.0)):
                 self.expect_off(self.link.step())
-        self.accepted_seq = request.seq
+        self._accept(request, reply)
         early_s = end_s - reply.at_s
         if early_s > SLACK_S + DRIFT * (end_s - since_s):
             raise NonconformanceError(f"accepted {early_s:.3f} s before the end of the back-off")
         if reply.status.level == 0:
             raise NonconformanceError("a request is neither driven nor refused")
-        self.follow_pulse(request, reply)
+        _expect_as_requested(request, reply)
 
     def _is_told_free(self, coil: int) -> bool:
         """Whether the status of this tick says that no back-off runs for the coil."""
@@ -200,6 +211,12 @@ class BoardUnderTest:
         """For how long a tick may be held: so long, and a tick, is short of the dead-man."""
         deadman_s, period_s = self.limits.deadman_s, self.link.period_s
         return max(deadman_s - 2.5 * period_s, (deadman_s - period_s) / 2.0)
+
+
+def _expect_as_requested(request: CoilFire, reply: TickReply) -> None:
+    status = reply.status
+    if (status.coil, status.level, status.seq) != (request.coil, request.level, request.seq):
+        raise NonconformanceError(f"{request} was accepted, and in tick {reply.tick}: {status}")
 
 
 def reasons(reply: TickReply) -> str:

@@ -79,7 +79,7 @@ def noise(board: BoardUnderTest) -> None:
 
 
 def boot_lockout(board: BoardUnderTest) -> None:
-    """After boot nothing is accepted for a full back-off, and then it is; the pulse is as requested.
+    """After boot nothing is accepted for a full back-off, and then it is.
 
     A tick is held meanwhile: the back-off is over when the ticks say so, too.
     """
@@ -163,11 +163,12 @@ def flood(board: BoardUnderTest) -> None:
 
 
 def back_off(board: BoardUnderTest) -> None:
-    """One coil at a time; from the end of a pulse to the next start a full back-off, and not much more."""
-    board.wait_until_free()
-    duration_ms = max(1, round(0.75 * board.limits.pulse_ms))
-    request, reply = board.expect_accepted(duration_ms=duration_ms, level=3)
-    end_s = reply.at_s + duration_ms / 1000.0
+    """A pulse is as requested, one coil at a time; from its end to the next start a full back-off.
+
+    And not much more.
+    """
+    request, reply = board.begin_pulse()
+    end_s = reply.at_s + request.duration_ms / 1000.0
 
     def another() -> TickReply:
         reason = CoilRefusedReason.COIL_ON
@@ -180,9 +181,11 @@ def back_off(board: BoardUnderTest) -> None:
     if board.limits.shared:
         board.expect_locked_out(end_s, coil=0)
     else:
-        other_request, first_reply = board.expect_accepted(coil=0, duration_ms=max(1, duration_ms // 2))
+        other_request, first_reply = board.expect_accepted(
+            coil=0, duration_ms=max(1, request.duration_ms // 2)
+        )
         board.follow_pulse(other_request, first_reply)
-    board.request_until_accepted(end_s)
+    board.request_until_accepted(end_s, level=3, duration_ms=max(1, round(0.75 * board.limits.pulse_ms)))
 
 
 def dead_man(board: BoardUnderTest) -> None:
@@ -211,8 +214,7 @@ def dead_man(board: BoardUnderTest) -> None:
 
 def dead_man_in_a_pulse(board: BoardUnderTest) -> None:
     """No SYNC while a coil is on: off, one COIL_EVENT, a full lockout; the last seq is still remembered."""
-    board.wait_until_free()
-    board.expect_accepted()
+    board.begin_pulse()
     board.expect_locked_out(wake_dead_man(board).at_s)
     repeated = board.request(seq=board.accepted_seq)
     reply = board.expect_refusal(repeated, CoilRefusedReason.REPEATED_SEQ)
@@ -254,8 +256,7 @@ def _events(reply: TickReply) -> list[int]:
 
 def restart_in_a_pulse(board: BoardUnderTest) -> None:
     """A restart while a coil is on: off at once, and a full lockout; no seq is a repeated one."""
-    board.wait_until_free()
-    board.expect_accepted()
+    board.begin_pulse()
     restarted = board.link.restart()
     board.expect_lockout(restarted)
     for seq in (board.accepted_seq, 0):

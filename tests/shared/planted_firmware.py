@@ -74,13 +74,13 @@ PLANTED = {
         GUARD,
         "timers->remaining = request->duration_ms * UNITS_PER_MS;",
         "timers->remaining = (request->duration_ms * UNITS_PER_MS) + UNITS_PER_TICK;",
-        "boot_lockout",
+        "back_off",
     ),
     "milliseconds are taken for units": Planted(
         GUARD,
         "timers->remaining = request->duration_ms * UNITS_PER_MS;",
         "timers->remaining = request->duration_ms;",
-        "boot_lockout",
+        "back_off",
         OTHER,
     ),
     "a second coil is let on": Planted(GUARD, "if (timers->remaining > 0U) {", "if (false) {", "back_off"),
@@ -226,7 +226,7 @@ PLANTED = {
         GUARD,
         "state->level = state->driven ? state->pulse_level : 0;",
         "state->level = state->pulse_level;",
-        "boot_lockout",
+        "back_off",
     ),
     "all off, coil 0 is reported": Planted(
         COIL_BOARD, "(uint8_t)(board->tick % COILS)", "(uint8_t)0U", "boot"
@@ -235,7 +235,7 @@ PLANTED = {
         COIL_BOARD, "status.seq = coils->seq;", "status.seq = 0U;", "boot_lockout"
     ),
     "the sign of the current is lost": Planted(
-        MESSAGES, "(uint32_t)current & 0xFFFU", "(uint32_t)current & 0x7FFU", "boot_lockout"
+        MESSAGES, "(uint32_t)current & 0xFFFU", "(uint32_t)current & 0x7FFU", "back_off"
     ),
     "refusals bear the tick in which they are reported": Planted(
         MESSAGES,

@@ -37,6 +37,13 @@ def test_the_stub_conforms(link_to, hz, shared, has_clock, failures):
     assert set(found) == (set() if has_clock else {"own_clock", "held_tick"})
 
 
+def test_a_board_with_the_back_off_of_posat_1_is_judged_in_ten_minutes(link_to, failures):
+    link = link_to(lambda: CoilBoard(CoilLimits(1)), 1)
+    since_s = link.clock()
+    assert failures(run_checks(link, BoardLimits(backoff_ms=100_000), armed=True)) == {}
+    assert link.clock() - since_s < 600.0
+
+
 @pytest.mark.long
 def test_a_board_has_a_whole_tick_for_its_answer(link_to, slow_bus, failures):
     """Also when ticks come early: they come no sooner than it answers."""
@@ -248,11 +255,11 @@ IN_THE_BOARD = {
     "no back-off": (accepting(lockouts(lambda left, limits: 0)), "back_off"),
     "a pulse that is long": (
         accepting(lambda state, limits: replace(state, remaining=state.remaining + limits.units(1000))),
-        "boot_lockout",
+        "back_off",
     ),
     "a pulse that is short": (
         accepting(lambda state, limits: replace(state, remaining=limits.units(1000))),
-        "boot_lockout",
+        "back_off",
     ),
     "another coil": (accepting(lambda state, limits: replace(state, coil=2)), "boot_lockout"),
     "a late request": (without(Reason.WRONG_TICK), "refusals"),
