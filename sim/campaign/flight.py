@@ -4,6 +4,7 @@ The loop, the bus, the audit and the summary are those of ``torquer sil --bus vi
 input is in memory instead of files, and only as much as they need.
 """
 
+from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -172,19 +173,19 @@ class _Truth:
     """The histories that summaries and measures need, and with each row the estimate on board."""
 
     def __init__(self, ticks: int, node: FlightNode) -> None:
-        self._rows = np.zeros((ticks, sum(_WIDTHS.values())))
+        self._rows = array("d")
+        self._width = sum(_WIDTHS.values())
         self.recorder = EstimateRecorder(ticks)
         self._node = node
-        self._row = 0
 
     def append(self, row: TruthRow) -> None:
-        self._rows[self._row] = row.numbers()[: self._rows.shape[1]]
+        self._rows.fromlist(row.numbers()[: self._width])
         self.recorder.take(self._node.state)
-        self._row += 1
 
     def histories(self) -> Histories:
         """By name; each a copy of its columns."""
-        columns = np.split(self._rows, np.cumsum([*_WIDTHS.values()])[:-1], axis=1)
+        rows = np.frombuffer(self._rows).reshape(-1, self._width)
+        columns = np.split(rows, np.cumsum([*_WIDTHS.values()])[:-1], axis=1)
         return {
             name: np.ascontiguousarray(column[:, 0] if width == 1 else column)
             for (name, width), column in zip(_WIDTHS.items(), columns, strict=True)

@@ -1,6 +1,8 @@
 """The estimates of the flight software at every tick, recorded during a replay."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from math import nan
+from struct import Struct
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,38 +41,48 @@ class Estimates:
         )
 
 
+_VECTORS = Struct("=10d")
+"""Attitude, rate relative to the orbital frame and inertial rate of a tick."""
+
+
 class EstimateRecorder:
     """Records flight states tick by tick, ``ticks`` of them from ``first`` on."""
 
     def __init__(self, ticks: int, first: int = 0) -> None:
         self.first = first
-        self._estimates = Estimates(
-            q_body_from_orbit=np.full((ticks, 4), np.nan),
-            omega_body_orbit_radps=np.full((ticks, 3), np.nan),
-            omega_body_radps=np.full((ticks, 3), np.nan),
-            covariance=np.full((ticks, 6, 6), np.nan),
-            valid=np.zeros(ticks, dtype=bool),
-            mode=np.zeros(ticks, dtype=int),
-        )
+        self._vectors = np.full((ticks, 10), nan)
+        self._covariance = np.full((ticks, 6, 6), nan)
+        self._valid, self._mode = bytearray(ticks), bytearray(ticks)
         self._last: Estimate | None = None
 
     def take(self, state: FlightState) -> None:
         """Store the estimate of the state's tick; other ticks are ignored."""
-        tick, into = state.tick - self.first, self._estimates
-        if not 0 <= tick < len(into.valid):
+        tick, ticks = state.tick - self.first, len(self._valid)
+        if not 0 <= tick < ticks:
             return
-        into.mode[tick] = state.modes.mode
-        into.valid[tick] = state.attitude.valid
-        estimate = state.estimator.estimate
-        if estimate is None and not state.attitude.valid:
+        attitude, estimate = state.attitude, state.estimator.estimate
+        self._mode[tick] = state.modes.mode
+        self._valid[tick] = attitude.valid
+        if estimate is None and not attitude.valid:
             return
-        into.q_body_from_orbit[tick] = state.attitude.q_body_from_orbit
-        into.omega_body_orbit_radps[tick] = state.attitude.omega_body_orbit_radps
+        omega_body_radps = (nan, nan, nan) if estimate is None else estimate.omega_body_radps
+        vectors = (*attitude.q_body_from_orbit, *attitude.omega_body_orbit_radps, *omega_body_radps)
+        _VECTORS.pack_into(self._vectors, tick * _VECTORS.size, *vectors)
         if estimate is not None:
-            into.omega_body_radps[tick] = estimate.omega_body_radps
-            into.covariance[tick] = estimate.covariance[0:6, 0:6]
-            self._last = estimate.copy()
+            self._covariance[tick] = estimate.covariance[0:6, 0:6]
+            self._last = estimate if tick + 1 < ticks else estimate.copy()  # it goes on after the last tick
 
     def estimates(self) -> Estimates:
         """The histories."""
-        return replace(self._estimates, last=self._last)
+        q_body_from_orbit, omega_body_orbit_radps, omega_body_radps = (
+            np.ascontiguousarray(vector) for vector in np.split(self._vectors, (4, 7), axis=1)
+        )
+        return Estimates(
+            q_body_from_orbit,
+            omega_body_orbit_radps,
+            omega_body_radps,
+            self._covariance,
+            np.frombuffer(self._valid, dtype=bool),
+            np.frombuffer(self._mode, dtype=np.uint8).astype(int),
+            None if self._last is None else self._last.copy(),
+        )
