@@ -426,6 +426,7 @@ def _write_pair(out: BytesWriter, value: Pair) -> None:
     write_f64_le(out, value.false_convergence)
     write_i64_le(out, value.easing)
     write_i64_le(out, value.eased)
+    write_i64_le(out, value.unsure)
 
 
 def _write_memory(out: BytesWriter, value: Memory) -> None:

@@ -16,7 +16,7 @@ Markov in the angle by which the satellite rotates relative to Sun and Earth.
 """
 
 from dataclasses import dataclass
-from math import hypot
+from math import acos, cos, hypot, pi
 from typing import final
 
 from fsw.core.algebra.vector import Vec3, dot, norm, scale
@@ -82,9 +82,15 @@ class CellSet:
         errors = hypot(GRAZING * self.light_sigma, self.excess_sigma, self.sigma)
         return GRAZING * self.albedo + SIGMAS * errors
 
-    def shaded(self, cell: int, s_body: Vec3) -> bool:
-        """Whether the satellite itself shades a cell from a Sun in this direction."""
-        return any([dot(shade.axis_body, s_body) > shade.cosine for shade in self.shades[cell]])
+    def shaded(self, cell: int, s_body: Vec3, within_rad: float = 0.0) -> bool:
+        """Whether the satellite itself shades a cell from a Sun in this direction, or within that angle."""
+        for shade in self.shades[cell]:
+            cosine = shade.cosine
+            if within_rad > 0.0:
+                cosine = cos(min(pi, acos(cosine) + within_rad))
+            if dot(shade.axis_body, s_body) > cosine:
+                return True
+        return False
 
     def may_be_shaded(self, cell: int, current: float) -> bool:
         """Whether a cell that shows this fraction of full sunlight may be in a shade of its own."""

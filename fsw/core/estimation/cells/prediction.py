@@ -100,17 +100,18 @@ def earthlit(q_body_from_eci: Quaternion, light: Light, cells: CellSet) -> list[
     ]
 
 
-def most_behind(estimate: Estimate, normal: Vec3, light: Light, cells: CellSet) -> float:
+def most_behind(estimate: Estimate, normal: Vec3, light: Light, cells: CellSet, within: float = 0.0) -> float:
     """The most that a cell facing away from the Sun can show, by the Earth's light and its excess.
 
-    The Earth is as bright as the table has it, or brighter where the cells together have shown that it is.
+    The Earth is as bright as the table has it, or brighter where the cells together have shown that it is. It
+    may be nearer to the normal than estimated: ``within``, by this much of the cosine.
     """
     known = estimate.parameters.earth_light
     brighter = max(0.0, known[0]) / cells.albedo if known and cells.albedo > 0.0 else 0.0
     most = SIGMAS * hypot(cells.excess_sigma, cells.light_sigma)
-    return cells.dark + (1.0 + brighter) * _by_earth(estimate.q_body_from_eci, normal, light) + most
+    return cells.dark + (1.0 + brighter) * _by_earth(estimate.q_body_from_eci, normal, light, within) + most
 
 
-def _by_earth(q_body_from_eci: Quaternion, normal: Vec3, light: Light) -> float:
-    view = 0.5 * (1.0 + dot(normal, rotate(q_body_from_eci, light.e_eci)))
+def _by_earth(q_body_from_eci: Quaternion, normal: Vec3, light: Light, within: float = 0.0) -> float:
+    view = 0.5 * (1.0 + min(1.0, dot(normal, rotate(q_body_from_eci, light.e_eci)) + within))
     return light.earth * view * view

@@ -14,10 +14,10 @@ class CellEvidence:
 
     ``currents`` are of isolated cells too; ``light`` is None in the shadow, and ``shadow`` says that this is
     certain. ``sure``: the estimate is proven, and the field confirms it; ``new``: there is none yet, or it
-    began in this tick.
+    began in this tick. ``on_trial``: it was proven, has been too uncertain since, and the field confirms it.
     """
 
-    __slots__ = ("currents", "estimate", "light", "new", "shadow", "sure", "used")
+    __slots__ = ("currents", "estimate", "light", "new", "on_trial", "shadow", "sure", "used")
 
     def __init__(
         self,
@@ -28,6 +28,7 @@ class CellEvidence:
         shadow: bool,
         sure: bool,
         new: bool,
+        on_trial: bool = False,
     ) -> None:
         self.currents = currents
         self.used = used
@@ -36,3 +37,4 @@ class CellEvidence:
         self.shadow = shadow
         self.sure = sure
         self.new = new
+        self.on_trial = on_trial

@@ -19,13 +19,19 @@ its gain is wrong, until the filter has learnt it again.
 
 Two cells are not taken to fail under one estimate, but a wrong estimate is contradicted by one cell after
 another as the satellite turns. What speaks against a second cell that is lit speaks against the estimate.
+
+An attitude that is uncertain is wrong more often than a cell: the cosine of its angle to the Sun is what the
+estimate has it, give or take ``SIGMAS`` standard deviations. Where these reach an edge of what the cell sees,
+or exceed what linear equations hold for, nothing is compared. Of an estimate that was once too uncertain for
+these, and has not been proven since, what speaks against a cell speaks against the estimate alone.
 """
 
 from dataclasses import dataclass, field, replace
+from math import sqrt
 from typing import Final, final
 
 from fsw.core.algebra.quaternion import rotate
-from fsw.core.algebra.vector import dot
+from fsw.core.algebra.vector import cross, dot
 from fsw.core.estimation.cells.cell_set import CellSet, Light
 from fsw.core.estimation.cells.prediction import LEAST_COSINE, most_behind, prediction
 from fsw.core.estimation.cells.update import CellsUsed, take_cell
@@ -37,6 +43,7 @@ from fsw.core.estimation.parameters import COMPONENTS, Parameters, component_pla
 from fsw.core.fdir.evidence import SIGMAS, EvidenceWeights
 from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.cell_evidence import CellEvidence
+from fsw.core.fdir.sensors.certainty import across_variance, is_linear_cosine, turn_variance
 from fsw.core.fdir.sensors.watch import Watch, accuse, readmit
 
 STILL: Final = 0.06
@@ -102,6 +109,21 @@ def is_doubtful(health: CellsHealth, weights: EvidenceWeights) -> bool:
     return accused and isolated
 
 
+def disproves(health: CellsHealth, weights: EvidenceWeights) -> bool:
+    """Whether half of what isolates a cell speaks against one in use: of an estimate on trial, against it."""
+    accused = False
+    for one in health:
+        accused = accused or (one.watch.nats > 0.5 * weights.threshold and not one.watch.fault)
+    return accused
+
+
+def forget_accusations(health: CellsHealth) -> None:
+    """Forget what speaks against cells in use: it was shown by an attitude that is no longer relied on."""
+    for one in health:
+        if not one.watch.fault:
+            one.watch.nats = 0.0
+
+
 def unusable_cells(health: CellsHealth) -> tuple[int, ...]:
     """Numbers of the cells that the filter is not to take."""
     return tuple([cell for cell, one in enumerate(health) if one.watch.fault or one.still])
@@ -160,7 +182,7 @@ def _judge_cell(
         _forget_current(one)
         if evidence.shadow:
             _weigh(one.watch, _by_dark(one.watch.fault, current, cells), False, weights)
-    elif evidence.estimate is not None and evidence.sure:
+    elif evidence.estimate is not None and (evidence.sure or (evidence.on_trial and not was_isolated)):
         _compare(one, cell, current, evidence.estimate, evidence.light, evidence.used, weights, config, cells)
     if not was_isolated:
         one.by_this = evidence.light is not None
@@ -181,13 +203,21 @@ def _compare(
     """Compare a cell with what an estimate that is proven predicts for it."""
     normal = cells.normals_body[cell]
     s = rotate(estimate.q_body_from_eci, light.s_eci)
-    if cells.shaded(cell, s):
+    if cells.shaded(cell, s, SIGMAS * sqrt(across_variance(estimate, s))):
         _forget_current(one)
         return
-    if dot(normal, s) <= LEAST_COSINE:
+    cosine, spread = dot(normal, s), SIGMAS * sqrt(turn_variance(estimate, cross(normal, s)))
+    if cosine <= LEAST_COSINE:
         _forget_current(one)
-        if dot(normal, s) < -LEAST_COSINE and current > most_behind(estimate, normal, light, cells):
+        e = rotate(estimate.q_body_from_eci, light.e_eci)
+        within = SIGMAS * sqrt(turn_variance(estimate, cross(normal, e)))
+        behind = cosine < -max(LEAST_COSINE, spread)
+        if behind and current > most_behind(estimate, normal, light, cells, within):
             _weigh(one.watch, SensorFault.STRENGTH, False, weights)
+        return
+    _, row = prediction(estimate, cell, light, config, cells)
+    if cosine - spread <= cells.dark or not is_linear_cosine(estimate, cosine, s, row, cells.sigma):
+        _forget_current(one)
         return
     predicted, _ = prediction(_as_by_table(estimate), cell, light, config, cells)
     if current != one.current:

@@ -33,9 +33,12 @@ from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.cell_evidence import CellEvidence
 from fsw.core.fdir.sensors.cells import (
     CellsHealth,
+    disproves,
+    forget_accusations,
     is_contradicted,
     judge_cells,
 )
+from fsw.core.fdir.sensors.certainty import is_linear
 from fsw.core.fdir.sensors.credibility import CredibilityConfig, is_credible
 from fsw.core.fdir.sensors.memory import Memory
 from fsw.core.fdir.sensors.observed import Observed, is_new
@@ -113,9 +116,15 @@ def judge_sensors(
     )
     trusted = is_valid(both)  # as before this tick: an estimate that lags may have been misled
     sure = trusted and is_proven(both, weights)
+    was_unsure = both.unsure
     judge_pair(both, observed, weights, config.credibility)
+    if both.unsure and not was_unsure:
+        forget_accusations(health.cells)
     _judge_cells(health, observed, reference, sure, config)
-    if is_contradicted(health.cells):
+    disproven = both.unsure and disproves(health.cells, weights)
+    if disproven:
+        forget_accusations(health.cells)
+    if disproven or is_contradicted(health.cells):
         end_estimate(both)
     if both.accord >= weights.threshold:
         reset_watch(field)
@@ -124,7 +133,10 @@ def judge_sensors(
         return
     alone = trusted and findings.sun is None  # dynamics do not jump
     b_refused = observed.refused_field and (alone or (sure and used.sun))
-    s_refused = observed.refused_sun and sure and used.field
+    b_refused = b_refused and _is_field_linear(estimate, reference, config.mekf)
+    s_refused = (
+        observed.refused_sun and sure and used.field and _is_sun_linear(estimate, reference, config.mekf)
+    )
     common = findings.field_cause != 0 and findings.sun_cause != 0 and not observed.isolated
     ambiguous = observed.refused and not (b_refused or s_refused)  # not of one that a check accuses
     if field.fault:
@@ -163,6 +175,7 @@ def _judge_cells(
         findings.shadow,
         sure and used.field,
         estimate is None or is_new(estimate, used),
+        health.pair.unsure and used.field,
     )
     judge_cells(health.cells, evidence, config.weights, config.mekf)
 
@@ -183,9 +196,7 @@ def _field_fits(
     sample = findings.field
     if sample is None or estimate is None:
         return None
-    q, omega, parameters = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
-    b_eci_t = field_sampled(parameters, reference.b_eci_t, reference.b_rate_eci_tps)
-    prediction = field_prediction(q, omega, parameters, b_eci_t, mekf)
+    prediction = _field_predicted(estimate, reference, mekf)
     return not findings.field_cause and _fits(estimate, sample, prediction, mekf.field_noise, mekf)
 
 
@@ -195,10 +206,32 @@ def _sun_fits(
     sample = findings.sun
     if sample is None or estimate is None:
         return None
+    prediction = _sun_predicted(estimate, reference, mekf)
+    return not findings.sun_cause and _fits(estimate, sample, prediction, mekf.sun_noise, mekf)
+
+
+def _is_field_linear(estimate: Estimate | None, reference: Reference, mekf: MekfConfig) -> bool:
+    if estimate is None:
+        return False
+    return is_linear(estimate, _field_predicted(estimate, reference, mekf), mekf.field_noise)
+
+
+def _is_sun_linear(estimate: Estimate | None, reference: Reference, mekf: MekfConfig) -> bool:
+    if estimate is None:
+        return False
+    return is_linear(estimate, _sun_predicted(estimate, reference, mekf), mekf.sun_noise)
+
+
+def _field_predicted(estimate: Estimate, reference: Reference, mekf: MekfConfig) -> Prediction:
+    q, omega, parameters = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
+    b_eci_t = field_sampled(parameters, reference.b_eci_t, reference.b_rate_eci_tps)
+    return field_prediction(q, omega, parameters, b_eci_t, mekf)
+
+
+def _sun_predicted(estimate: Estimate, reference: Reference, mekf: MekfConfig) -> Prediction:
     q, omega, parameters = estimate.q_body_from_eci, estimate.omega_body_radps, estimate.parameters
     s_eci, slope_eci = deflected_sun(parameters, reference, mekf)
-    prediction = sun_prediction(q, omega, parameters, s_eci, mekf, slope_eci)
-    return not findings.sun_cause and _fits(estimate, sample, prediction, mekf.sun_noise, mekf)
+    return sun_prediction(q, omega, parameters, s_eci, mekf, slope_eci)
 
 
 def _fits(

@@ -20,6 +20,7 @@ from typing import Final, final
 from fsw.core.estimation.estimator import Used
 from fsw.core.estimation.mekf import Estimate
 from fsw.core.fdir.evidence import PAIR_NUMBERS, EvidenceWeights, mean_misfit, misfit, weigh
+from fsw.core.fdir.sensors.certainty import is_unsure
 from fsw.core.fdir.sensors.credibility import (
     CredibilityConfig,
     are_sensors_credible,
@@ -59,7 +60,8 @@ class Pair:
     the estimate has settled on a satellite that the table does not allow and that is not this one either.
     ``ended``: the filter is to end in this tick; ``blind_ticks``: ticks since it took a sample;
     ``proof_required``: what an estimate that lagged, or was blind, still has to prove; ``easing``: the filter
-    is to be eased in this tick; ``eased``: it was, and has not been proven since.
+    is to be eased in this tick; ``eased``: it was, and has not been proven since; ``unsure``: it was too
+    uncertain for its linear equations, and has not been confirmed since.
     """
 
     standing: Standing = Standing.NEW
@@ -72,6 +74,7 @@ class Pair:
     false_convergence: float = 0.0
     easing: bool = False
     eased: bool = False
+    unsure: bool = False
 
 
 def is_proven(pair: Pair, weights: EvidenceWeights) -> bool:
@@ -108,8 +111,9 @@ def judge_pair(
     if doubt >= threshold and _may_ease(pair, observed):
         ease_estimate(pair, weights)
         return
-    if doubt >= threshold:
-        end_estimate(pair, Standing.DISPUTED)
+    if doubt >= threshold:  # an attitude that got lost is no sensor's fault
+        lost = pair.unsure and not (observed.isolated or observed.findings.apart)
+        end_estimate(pair, Standing.NEW if lost else Standing.DISPUTED)
         return
     if accord + observed.in_favour >= threshold:
         end_estimate(pair, Standing.ON_TRIAL)
@@ -122,7 +126,11 @@ def judge_pair(
         pair.standing = _without_proof(pair)
     pair.proof, pair.doubt, pair.accord, pair.ended = proof, doubt, accord, False
     pair.blind_ticks = 0 if used.field or used.sun else pair.blind_ticks + 1
-    pair.proof_required = _proof_required(pair, estimate, used, weights)
+    whole = observed.findings.sun is not None
+    pair.proof_required = _proof_required(pair, estimate, used, weights, whole)
+    pair.unsure = _is_unsure(pair, estimate)
+    if pair.unsure and pair.proof_required >= threshold:  # it is not the one that was proven
+        pair.proof = 0.0
     pair.easing = False
     pair.eased = pair.eased and (proof < threshold or pair.proof_required > 0.0)
     lost = pair.proof_required > 0.0 and used.field and used.sun and not observed.credible
@@ -146,7 +154,8 @@ def skip_judgement(pair: Pair, used: Used, estimate: Estimate | None, weights: E
         pair.standing = _without_proof(pair)
         pair.proof, pair.proof_required = 0.0, 0.0
     else:
-        pair.proof_required = max(pair.proof_required, _proof_required(pair, estimate, used, weights))
+        pair.proof_required = max(pair.proof_required, _proof_required(pair, estimate, used, weights, False))
+    pair.unsure = _is_unsure(pair, estimate)
 
 
 def _may_ease(pair: Pair, observed: Observed) -> bool:
@@ -171,7 +180,7 @@ def end_estimate(pair: Pair, standing: Standing = Standing.NEW) -> None:
     pair.standing, pair.ended, pair.blind_ticks = standing, True, 0
     pair.proof, pair.doubt, pair.accord = 0.0, 0.0, 0.0
     pair.proof_required, pair.false_convergence = 0.0, 0.0
-    pair.easing = pair.eased = False
+    pair.easing = pair.eased = pair.unsure = False
 
 
 def discard_proof(pair: Pair) -> None:
@@ -185,7 +194,7 @@ def _without_proof(pair: Pair) -> Standing:
     """The standing where there is no estimate, or another has begun: a trusted one has ended."""
     if pair.standing is not Standing.TRUSTED:
         return pair.standing
-    return Standing.ON_TRIAL if pair.proof_required else Standing.NEW
+    return Standing.ON_TRIAL if pair.proof_required and not pair.unsure else Standing.NEW
 
 
 def _misfit(
@@ -238,21 +247,34 @@ def _proof(pair: Pair, observed: Observed, weights: EvidenceWeights, credibility
     return weigh(pair.proof, by / slow, weights.threshold)
 
 
-def _proof_required(pair: Pair, estimate: Estimate | None, used: Used, weights: EvidenceWeights) -> float:
+def _is_unsure(pair: Pair, estimate: Estimate | None) -> bool:
+    """Whether an estimate that was proven is, or has been since it was confirmed, too uncertain."""
+    if estimate is None or pair.standing is not Standing.TRUSTED:
+        return False
+    return is_unsure(estimate) or (pair.unsure and pair.proof_required > 0.0)
+
+
+def _proof_required(
+    pair: Pair, estimate: Estimate | None, used: Used, weights: EvidenceWeights, whole: bool
+) -> float:
     """What both sensors have to prove anew, by the ticks without a sample, this one included.
 
-    After a time without a sample, in which pulses may have failed; and if the innovations have a mean that is
-    not chance, which contradicts the covariance: sooner with one sensor alone, as in the shadow.
+    After a time without a sample, in which pulses may have failed; if the innovations have a mean that is not
+    chance, which contradicts the covariance: sooner with one sensor alone, as in the shadow; and if a trusted
+    attitude is too uncertain for the filter's equations. Both prove it, by the ``whole`` Sun, or slowly by
+    what fewer than three cells show of it.
     """
     if estimate is None:
         return 0.0
     alone = used.field != used.sun
     most = ALONE * weights.threshold if alone else weights.threshold
     lags = mean_misfit(estimate.lag, weights) >= most
-    if lags or pair.blind_ticks > weights.blind_ticks:
+    unsure = pair.standing is Standing.TRUSTED and is_unsure(estimate)
+    if lags or unsure or pair.blind_ticks > weights.blind_ticks:
         return weights.threshold
-    both = used.field and used.sun
-    return max(0.0, pair.proof_required - weights.fits) if both else pair.proof_required
+    if not (used.field and used.sun):
+        return pair.proof_required
+    return max(0.0, pair.proof_required - (weights.fits if whole else weights.agrees))
 
 
 def _accord(accord: float, findings: Findings, weights: EvidenceWeights) -> float:

@@ -10,6 +10,7 @@ from cell_samples import CELLS, Q_BODY_FROM_ECI, REFERENCE, cell_filter, cells_t
 from with_values import with_values
 
 from fsw.core.algebra.quaternion import multiply, normalise, rotate
+from fsw.core.algebra.vector import cross, unit
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.cell_set import light
 from fsw.core.estimation.cells.prediction import sunlit
@@ -22,6 +23,8 @@ from fsw.core.fdir.sensors.cells import (
     CellWatch,
     cell_changes,
     cell_faults,
+    disproves,
+    forget_accusations,
     forget_isolated,
     is_contradicted,
     is_doubtful,
@@ -60,11 +63,11 @@ def attitude(tick):
     return normalise(multiply(Q_BODY_FROM_ECI, (1.0, 0.0008 * tick, -0.0006 * tick, 0.0005 * tick)))
 
 
-def proven(q, config=CONFIG):
+def proven(q, config=CONFIG, sigma_deg=1.0):
     """An estimate that is right, and sure of the attitude within 1 deg."""
     estimate = mekf.start(q, (0.0,) * 3, config)
     covariance = estimate.covariance.copy()
-    covariance[0:3, 0:3] = radians(1.0) ** 2 * np.eye(3)
+    covariance[0:3, 0:3] = radians(sigma_deg) ** 2 * np.eye(3)
     return with_values(estimate, covariance=covariance)
 
 
@@ -232,7 +235,7 @@ def test_a_stuck_coarse_cell_is_found_all_the_same():
 
 
 def test_an_excess_that_no_bound_allows_is_found():
-    estimate = mekf.start(Q_BODY_FROM_ECI, (0.0,) * 3, CONFIG)
+    estimate = proven(Q_BODY_FROM_ECI)
     cell, excess = LIT[1], [0.0] * 6
     excess[cell] = 4.1 * CELLS.excess_sigma
     estimate = with_values(estimate, parameters=with_values(estimate.parameters, cell_excess=tuple(excess)))
@@ -319,6 +322,70 @@ class TestASecondCell:
         health = watched(dead(LIT[1]), ENOUGH, again)
         assert faults(health).count(0) == 5
         assert not is_contradicted(health)
+
+
+TURNED_DEG = 180.0
+
+
+def misjudged(sigma_deg, ticks=ENOUGH, health=(), *, sure=True, on_trial=False):
+    """Sound cells by an estimate that is turned from the truth, and as uncertain as it says."""
+    half = radians(0.5 * TURNED_DEG)
+    s = rotate(Q_BODY_FROM_ECI, SEEN.s_eci)
+    about = unit(cross(max(CELLS.normals_body, key=lambda normal: float(np.dot(normal, s))), s))
+    turn = (float(np.cos(half)), *(float(np.sin(half)) * np.array(about)))
+    estimate, health = proven(multiply(Q_BODY_FROM_ECI, turn), sigma_deg=sigma_deg), list(health)
+    for number in range(ticks):
+        currents = [one + 0.001 * (number % 7) for one in ideal()]
+        evidence = CellEvidence(currents, NO_CELLS, estimate, SEEN, False, sure, False, on_trial)
+        health = judge(health, evidence)
+    return health
+
+
+class TestUncertain:
+    """An attitude that may be off by as much as the cells seem to be says nothing of them."""
+
+    def test_one_that_says_it_is_certain_accuses_sound_cells(self):
+        assert faults(misjudged(1.0)) != [0] * 6
+
+    @pytest.mark.parametrize("sigma_deg", [20.0, 37.0])
+    def test_one_that_says_how_uncertain_it_is_accuses_none(self, sigma_deg):
+        health = misjudged(sigma_deg, 10 * ENOUGH)
+        assert [one.watch.nats for one in health] == [0.0] * 6
+
+    @pytest.mark.parametrize("cell", LIT)
+    def test_a_dead_cell_is_found_by_one_that_is_certain_enough(self, cell):
+        health = []
+        for _ in range(ENOUGH):
+            currents = ideal()
+            currents[cell] = 0.0
+            evidence = CellEvidence(
+                currents, NO_CELLS, proven(Q_BODY_FROM_ECI, sigma_deg=2.5), SEEN, False, True, False
+            )
+            health = judge(health, evidence)
+        seen = float(np.dot(CELLS.normals_body[cell], rotate(Q_BODY_FROM_ECI, SEEN.s_eci)))
+        assert faults(health)[cell] == (SensorFault.STRENGTH if seen > 0.3 else 0)
+
+    def test_on_trial_it_isolates_none_and_is_disproven(self):
+        health = misjudged(1.0, 16, sure=False, on_trial=True)
+        assert faults(health) == [0] * 6
+        assert disproves(health, WEIGHTS)
+        assert not disproves(misjudged(1.0, 14, sure=False, on_trial=True), WEIGHTS)
+
+    def test_on_trial_it_readmits_none(self):
+        isolated = [CellWatch(Watch(SensorFault.STRENGTH if cell == LIT[0] else 0)) for cell in range(6)]
+        for number in range(300):
+            currents = [one + 0.001 * (number % 7) for one in ideal()]
+            evidence = CellEvidence(
+                currents, NO_CELLS, proven(Q_BODY_FROM_ECI), SEEN, False, False, False, True
+            )
+            isolated = judge(isolated, evidence)
+        assert faults(isolated)[LIT[0]] == SensorFault.STRENGTH
+        assert not disproves(isolated, WEIGHTS)
+
+    def test_what_it_has_shown_is_forgotten_of_cells_in_use_alone(self):
+        health = [CellWatch(Watch(SensorFault.UNLIT, 3.0)), CellWatch(Watch(0, 5.0))]
+        forget_accusations(health)
+        assert [one.watch.nats for one in health] == [3.0, 0.0]
 
 
 @pytest.mark.long

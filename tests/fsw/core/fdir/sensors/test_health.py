@@ -85,6 +85,16 @@ class TestRefused:
         assert faults(both) == (0, 0)
         assert (both.field.nats, both.sun.nats) == (begun.field.nats, 0.0)
 
+    @pytest.mark.parametrize("used", [SUN, FIELD])
+    @pytest.mark.parametrize(("sigma_rad", "judged"), [(0.01, True), (0.055, False), (0.3, False)])
+    def test_nothing_that_an_attitude_too_uncertain_for_linear_equations_refuses(
+        self, used, sigma_rad, judged
+    ):
+        covariance = ESTIMATE.covariance.copy()
+        covariance[0:3, 0:3] = sigma_rad**2 * np.eye(3)
+        health = after(TRUSTED, used, 100, estimate=with_values(ESTIMATE, covariance=covariance))
+        assert any(faults(health)) == judged
+
     def test_half_of_the_samples_isolate_nothing(self):
         health = TRUSTED
         for _ in range(400):
@@ -104,6 +114,9 @@ def test_cells_speak_against_their_board_where_the_filter_refused_them(cells, fa
     mekf_with_cells = cell_filter()
     config = SensorConfig(WEIGHTS, credibility_config(mekf_with_cells), mekf_with_cells)
     estimate = with_values(mekf.start(Q_BODY_FROM_ECI, (0.0, 0.0, 0.0), mekf_with_cells), nis=3.0, numbers=3)
+    covariance = estimate.covariance.copy()
+    covariance[0:3, 0:3] = 0.01**2 * np.eye(3)
+    estimate = with_values(estimate, covariance=covariance)
     reference, used = REFERENCE, with_values(FIELD, cells=cells)
     field, sun = (rotate(Q_BODY_FROM_ECI, one) for one in (reference.b_eci_t, reference.sun_eci))
     seen, health = Findings(0, 0, field, sun, True, False, currents=(0.1,) * 6), deepcopy(TRUSTED)

@@ -26,6 +26,7 @@ from fsw.core.packing import copy_state
 
 NINE = (0.0,) * 9
 CONFIG = tuned(
+    attitude_sigma_deg=1.0,
     mag_bias_t=Prior((3e-7,) * 3, (0.0,) * 3),
     dipole_body_am2=Prior((0.01,) * 3, (0.0,) * 3),
     coil_error=Prior((0.03,) * 9, NINE),
@@ -47,6 +48,8 @@ TAKEN = Observed(BOTH, Used(True, True, False), ESTIMATE, False, False, False, F
 WITHOUT = with_values(TAKEN, estimate=None, used=Used(False, False, False))
 REFUSED = with_values(TAKEN, used=Used(True, False, False), refused_sun=True)
 LARGE = with_values(TAKEN, estimate=with_values(ESTIMATE, nis=20.0))
+UNSURE = with_values(TAKEN, estimate=with_values(ESTIMATE, covariance=36.0 * ESTIMATE.covariance))
+"""By an estimate that is certain of the attitude within 6 deg about each axis."""
 BEGUN = with_values(TAKEN, estimate=with_values(ESTIMATE, nis=0.0, numbers=0))
 """The tick in which an estimate begins: both are taken, and nothing is compared."""
 TRUSTED = Pair(Standing.TRUSTED, proof=WEIGHTS.threshold)
@@ -327,6 +330,52 @@ class TestSkippedJudgement:
     def test_one_that_lags_is_not_valid(self):
         lagging = with_values(ESTIMATE, lag=(0.0, 2.0, 0.0, 0.0, 0.0, 0.0))
         assert not is_valid(self.after(TRUSTED, lagging))
+
+
+class TestUnsure:
+    """An attitude too uncertain for linear equations is no longer what was proven."""
+
+    def test_it_is_not_valid_before_both_have_borne_it_out_again(self):
+        pair = after(TRUSTED, UNSURE)
+        assert pair.unsure
+        assert not is_valid(pair)
+        assert is_usable(pair, WEIGHTS)
+        assert not is_valid(after(pair, TAKEN, 120))
+        assert is_valid(after(pair, TAKEN, 140))
+        assert not after(pair, TAKEN, 140).unsure
+
+    def test_as_long_as_it_lasts_nothing_bears_it_out(self):
+        assert not is_valid(after(TRUSTED, UNSURE, 1000))
+
+    def test_fewer_cells_than_show_the_sun_s_direction_bear_it_out_slowly(self):
+        one_cell = with_values(TAKEN, findings=ECLIPSE)
+        pair = after(TRUSTED, UNSURE)
+        assert not is_valid(after(pair, one_cell, 500))
+        assert is_valid(after(pair, one_cell, 530))
+
+    def test_one_sensor_alone_does_not(self):
+        alone = with_values(TAKEN, findings=ECLIPSE, used=Used(True, False, False))
+        assert not is_valid(after(after(TRUSTED, UNSURE), alone, 1000))
+
+    @pytest.mark.parametrize("standing", [Standing.NEW, Standing.ON_TRIAL])
+    def test_one_that_is_still_to_be_proven_owes_no_more_than_that(self, standing):
+        begun = after(Pair(standing), UNSURE)
+        assert not begun.unsure
+        assert begun.proof_required == 0.0
+
+    def test_one_that_ends_leaves_no_doubt_of_the_sensors(self):
+        assert after(after(TRUSTED, UNSURE), WITHOUT).standing is Standing.NEW
+
+    def test_what_it_refuses_ends_it_and_disputes_no_sensor(self):
+        contradicted = with_values(REFUSED, estimate=UNSURE.estimate)
+        pair = after(TRUSTED, UNSURE)
+        ends = [pair := after(pair, contradicted) for _ in range(200)]
+        assert any(one.ended for one in ends)
+        assert all(one.standing is not Standing.DISPUTED for one in ends)
+
+    def test_a_wrong_angle_disputes_them_all_the_same(self):
+        apart = with_values(REFUSED, estimate=UNSURE.estimate, findings=APART)
+        assert ticks_until(after(TRUSTED, UNSURE), apart, Standing.DISPUTED)[0] < 200
 
 
 class TestFalseConvergence:
