@@ -51,6 +51,7 @@ class EstimateRecorder:
     def __init__(self, ticks: int, first: int = 0) -> None:
         self.first = first
         self._vectors = np.full((ticks, 10), nan)
+        self._packed = self._vectors.data
         self._covariance = np.full((ticks, 6, 6), nan)
         self._valid, self._mode = bytearray(ticks), bytearray(ticks)
         self._last: Estimate | None = None
@@ -67,7 +68,7 @@ class EstimateRecorder:
             return
         omega_body_radps = (nan, nan, nan) if estimate is None else estimate.omega_body_radps
         vectors = (*attitude.q_body_from_orbit, *attitude.omega_body_orbit_radps, *omega_body_radps)
-        _VECTORS.pack_into(self._vectors, tick * _VECTORS.size, *vectors)
+        _VECTORS.pack_into(self._packed, tick * _VECTORS.size, *vectors)
         if estimate is not None:
             self._covariance[tick] = estimate.covariance[0:6, 0:6]
             self._last = estimate if tick + 1 < ticks else estimate.copy()  # it goes on after the last tick
