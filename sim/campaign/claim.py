@@ -134,9 +134,11 @@ class Study:
         tasks: independent of each other and of the order in which they run.
         conclude: the outcomes, from the tasks' results in order.
         has_flights: whether the tasks are flights, which take minutes.
+        here: whether they run in this process: a function without a module can be given to no other.
     """
 
     id: str
     tasks: tuple[Task, ...]
     conclude: Callable[[Sequence[Any]], list[ClaimOutcome]]
     has_flights: bool = False
+    here: bool = False

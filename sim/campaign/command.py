@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 from shlex import quote
@@ -28,7 +27,7 @@ from sim.campaign.results.store import CODE, LOCK, RESULTS, Results, open_result
 from sim.console import detail, warn
 from sim.errors import HarnessError
 from sim.progress import note, progress
-from sim.record.destination import check_folder
+from sim.record.destination import check_folder, new_folder
 from sim.scenario.schema import flight_table, scenario_of
 from sim.signals import EndedBySignal
 from sim.sizing.scenario_warnings import scenario_warnings
@@ -118,7 +117,7 @@ def campaign(
         flight_config(flight_table(nominal), source)  # a fault of it would be that of every run
     for doubt in scenario_warnings(nominal):
         warn(doubt)
-    folder = out or Path("campaigns") / f"{chosen.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
+    folder = out or new_folder(Path("campaigns"), chosen.name)
     check_folder(folder, (FILE, SCENARIO, RESULTS, LOCK, PAGE, *([PARQUET] if parquet else [])))
     executor: Executor = Cluster(scheduler) if scheduler else Processes(workers or os.cpu_count() or 1)
     with open_results(folder, chosen) as results:

@@ -89,8 +89,9 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
         for place, study in enumerate(studies)
         for number, task in enumerate(study.tasks)
     ]
-    alone = workers == 1 or len(tasks) < 2
-    started = None if alone else start_pool(min(workers, len(tasks)))
+    shared = [one for one in tasks if not studies[one[0]].here]
+    alone = workers == 1 or len(tasks) < 2 or not shared
+    started = None if alone else start_pool(min(workers, len(shared)))
     if started is None:
         for place, number, task in tasks:
             yield place, number, _run_timed(task)
@@ -98,9 +99,12 @@ def _results(studies: Sequence[Study], workers: int) -> Iterator[tuple[int, int,
     with started as pool:
         with children_ignore_interrupt():
             places: dict[Future[tuple[float, Any]], tuple[int, int]] = {
-                pool.submit(_run_timed, task): (place, number) for place, number, task in tasks
+                pool.submit(_run_timed, task): (place, number) for place, number, task in shared
             }
         try:
+            for place, number, task in tasks:
+                if studies[place].here:
+                    yield place, number, _run_timed(task)
             for future in as_completed(places):
                 yield *places[future], future.result()
         except BrokenProcessPool:

@@ -97,7 +97,15 @@ def campaign(
         return [_judge(study_id, stated, figure, _counted(figure, named_flights), few) for figure in figures]
 
     return FlightStudy(
-        study_id, tasks, conclude, True, source, counted, made_for, tuple(groups), tuple(figures)
+        study_id,
+        tasks,
+        conclude,
+        has_flights=True,
+        source=source,
+        counted=counted,
+        made_for=made_for,
+        groups=tuple(groups),
+        figures=tuple(figures),
     )
 
 

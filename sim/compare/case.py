@@ -6,6 +6,7 @@ from enum import StrEnum
 from fsw.core.laws.entry import Aim
 from fsw.core.laws.table import LAWS
 from fsw.input.near import did_you_mean
+from fsw.input.own_code import given_as
 from fsw.input.schema import Nested, merge
 from fsw.table.law_names import laws_by_aim
 from fsw.table.own_law import declared
@@ -30,7 +31,13 @@ class Driver(StrEnum):
 class ComparisonCase:
     """One flight of a comparison: a law, a driver, and the order to fly them.
 
-    ``tuned``: with the best gains that were found, not with the scenario's.
+    Attributes:
+        law: its name.
+        aim: of the law.
+        driver: of the coils.
+        order: to fly them.
+        tuned: whether with the best gains that were found, not with the scenario's.
+        here: whether this process alone has the law, which was given as an object.
     """
 
     law: str
@@ -38,6 +45,7 @@ class ComparisonCase:
     driver: Driver
     order: Order
     tuned: bool = False
+    here: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +75,7 @@ def chosen_laws(scenario: Scenario, text: str | None) -> tuple[str, ...]:
     Args:
         scenario: without ``text``, all laws that are meant for its body, its own among them.
         text: names of laws or aims, or ``all``, with commas between; of an aim those that have their wheel.
+            A law of the scenario's own is always among them.
 
     Raises:
         HarnessError: a name that is neither a law nor an aim.
@@ -87,7 +96,8 @@ def chosen_laws(scenario: Scenario, text: str | None) -> tuple[str, ...]:
     named = {
         name for name, aim in known.items() if {aim.value, "all"} & set(words) and is_suited(name, scenario)
     }
-    return tuple(name for name in known if name in named or name in words)
+    own = {scenario.control.law_name} if scenario.control.own else set()
+    return tuple(name for name in known if name in {*named, *words, *own})
 
 
 def cases(
@@ -120,8 +130,9 @@ def cases(
             if law == suited[0]:
                 load(source, overrides)
             order = Order(source, overrides, seed, orbits)
-            tuned = (
-                bool(found) and merge(values, {"control": found or {}}) == values
-            )  # no setting lies over them
-            all_cases.append(ComparisonCase(law, known.aims[law], driver, order, tuned))
+            untouched = merge(values, {"control": found or {}}) == values  # no setting lies over them
+            here = given_as(known.references[law]) is not None
+            all_cases.append(
+                ComparisonCase(law, known.aims[law], driver, order, bool(found) and untouched, here)
+            )
     return tuple(all_cases)

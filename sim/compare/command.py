@@ -4,9 +4,7 @@ import os
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from functools import partial
-from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +24,7 @@ from sim.drawing.time_chart import Level, Panel, Series, TimeChart, draw, time_d
 from sim.errors import HarnessError, writing
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.progress import note, progress
-from sim.record.destination import check_folder
+from sim.record.destination import check_folder, new_folder
 from sim.record.run_dir import RUN, write_json
 from sim.record.whole_file import replace_text
 from sim.report.summary_text import last_orbit
@@ -270,10 +268,14 @@ def compare(
     kept = _kept(gains, scenario)
     chosen_cases = cases(source, settings, chosen, drivers, seed, orbits, kept)
     ticks = ticks_of(scenario, orbits, MOST_IN_MEMORY)
-    folder = _new_folder(out or _default_folder(scenario))
+    folder = _checked_folder(out or new_folder(Path("compare"), scenario.name))
     studies = [
         Study(
-            f"{case.law}-{case.driver}", (partial(fly_case, case, by),), lambda results: [], has_flights=True
+            f"{case.law}-{case.driver}",
+            (partial(fly_case, case, by),),
+            lambda results: [],
+            has_flights=True,
+            here=case.here,
         )
         for case in chosen_cases
     ]
@@ -358,30 +360,13 @@ def _write(
         replace_text(folder / PAGE, page)
 
 
-def _new_folder(folder: Path) -> Path:
+def _checked_folder(folder: Path) -> Path:
     """The folder, made before anything is flown."""
     check_folder(folder, (JSON, CSV, PICTURE, PAGE))
     for name, what in ((JSON, "a comparison"), (RUN, "a run")):
         if (folder / name).exists():
             raise HarnessError(f"{folder} already holds {what}: choose another --out")
     return folder
-
-
-def _default_folder(scenario: Scenario) -> Path:
-    """A folder of this call alone."""
-    parent, stem = Path("compare"), f"{scenario.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
-    check_folder(parent)
-    names = (stem if number == 1 else f"{stem}-{number}" for number in count(1))
-    return next(parent / name for name in names if _is_made(parent / name))
-
-
-def _is_made(folder: Path) -> bool:
-    """Make a folder; False: there was one."""
-    try:
-        folder.mkdir()
-    except FileExistsError:
-        return False
-    return True
 
 
 def _line(finished: StudyResult, by: Controlled) -> str:

@@ -3,6 +3,9 @@
 import errno
 import os
 from collections.abc import Sequence
+from contextlib import suppress
+from datetime import UTC, datetime
+from itertools import count
 from pathlib import Path
 from tempfile import TemporaryFile
 
@@ -27,6 +30,22 @@ def check_folder(folder: Path, names: Sequence[str] = ()) -> None:
         raise HarnessError(f"{folder}: cannot be written ({_why(error)})") from None
     for name in names:
         _check_target(folder / name)
+
+
+def new_folder(parent: Path, name: str) -> Path:
+    """Create ``<parent>/<name>-<UTC time>``, with a number added if that exists; each call, another folder.
+
+    Raises:
+        HarnessError: it cannot be created.
+    """
+    check_folder(parent)
+    stem = f"{name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
+    for number in count(1):
+        path = parent / (stem if number == 1 else f"{stem}-{number}")
+        with suppress(FileExistsError):
+            path.mkdir()
+            break
+    return path
 
 
 def check_file(path: Path) -> None:

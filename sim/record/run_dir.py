@@ -4,10 +4,8 @@ import hashlib
 import json
 import os
 import platform
-from contextlib import suppress
 from datetime import UTC, datetime
 from importlib.metadata import version
-from itertools import count
 from pathlib import Path
 from typing import Any, Final
 
@@ -20,6 +18,7 @@ from fsw.input.own_code import given_as
 from fsw.input.schema import Nested, TableError
 from sim.errors import HarnessError, writing
 from sim.record.destination import check_folder
+from sim.record.destination import new_folder as dated_folder
 from sim.record.log_index import SUFFIX
 from sim.record.pace import Pace
 from sim.record.run_record import SCHEMA_VERSION, RunRecord, read_record
@@ -47,20 +46,12 @@ RESULTS = (RUN, SUMMARY, REPORT)
 
 
 def new_folder(scenario: Scenario) -> Path:
-    """Create ``runs/<scenario>-<UTC time>``, with a number added if that exists; each call, another folder.
+    """Create ``runs/<scenario>-<UTC time>``, a folder of this call alone.
 
     Raises:
         HarnessError: it cannot be created.
     """
-    runs = Path("runs")
-    check_folder(runs)
-    stem = f"{scenario.name}-{datetime.now(UTC):%Y%m%dT%H%M%SZ}"
-    for number in count(1):
-        path = runs / (stem if number == 1 else f"{stem}-{number}")
-        with suppress(FileExistsError):
-            path.mkdir()
-            break
-    return path
+    return dated_folder(Path("runs"), scenario.name)
 
 
 def bus_log(folder: Path) -> Path:

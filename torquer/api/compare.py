@@ -26,6 +26,7 @@ from torquer.api.arguments import (
 )
 from torquer.api.errors import one_sentence
 from torquer.api.extras import required
+from torquer.api.laws import LawLike, law_given
 from torquer.api.printed import Printed
 
 if TYPE_CHECKING:
@@ -105,7 +106,7 @@ def compare(
     orbits: float | None = None,
     seed: int = 1,
     set: Settings | None = None,
-    law: str | PathLike[str] | None = None,
+    law: LawLike | None = None,
     workers: int | None = None,
     out: str | PathLike[str] | None = None,
     progress: bool = False,
@@ -121,7 +122,8 @@ def compare(
         orbits: of each flight; None: as the scenario says.
         seed: of all random streams.
         set: values laid over the scenario by key.
-        law: ``FILE.py:NAME``, a law of one's own that is flown too, or an installed one by its name.
+        law: a law of one's own that is flown too: ``FILE.py:NAME``, an installed one by its name, or the
+            law itself, a function or a ``ControlLaw``, which flies in this process, others beside it.
         workers: processes; None: one a core.
         out: folder of the files; None: ``compare/<scenario>-<UTC time>``.
         progress: show progress on stderr.
@@ -140,11 +142,11 @@ def compare(
         workers=workers,
     )
     refuse_while_loading("torquer.compare")
-    with shown(progress):
+    with shown(progress), law_given(law) as named:
         return Comparison(
             command.compare(
                 scenario_source(scenario),
-                laid_over(set, law),
+                laid_over(set, named),
                 options.laws,
                 options.driver,
                 options.orbits,

@@ -28,7 +28,7 @@ EXAMPLES = examples(
     "--laws",
     metavar="A,B",
     shell_complete=of_laws,
-    help="Laws, aims or all. Default: all that are meant for the body.",
+    help="Laws, aims or all, beside one of your own. Default: all that are meant for the body.",
 )
 @click.option(
     "--driver", default="both", show_default=True, type=click.Choice(["pulsed", "continuous", "both"])

@@ -28,6 +28,13 @@ class TestRunner:
         assert seen == [1, 2, 3, 4]
         assert sorted(told) == ["none", "one", "two"]
 
+    def test_tasks_that_belong_to_this_process_stay_in_it_while_others_leave(self):
+        here = Study("here", (os.getpid,), lambda results: [], here=True)
+        there = [Study(name, (os.getpid,), lambda results: []) for name in ("a", "b")]
+        mine, *theirs = run([here, *there], 2, lambda done: None, lambda done: None)
+        assert mine.results == (os.getpid(),)
+        assert os.getpid() not in {pid for done in theirs for pid in done.results}
+
     def test_what_a_task_refuses_ends_the_run(self):
         def refuse():
             raise HarnessError("no")

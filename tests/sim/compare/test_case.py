@@ -58,6 +58,16 @@ def test_laws_and_aims_by_name_in_the_order_of_the_table():
     assert chosen_laws(scenario, "all") == tuple(law for law in LAWS if LAWS[law].needs not in wheels)
 
 
+def test_a_law_of_ones_own_flies_beside_those_that_are_named(tmp_path):
+    file = tmp_path / "my_law.py"
+    file.write_text(
+        "from fsw.own_law import Demand\ndef idle(inputs, memory, setpoint, config): return Demand()\n"
+    )
+    scenario = load("microsat", {"control": {"law": f"{file}:idle"}})
+    assert chosen_laws(scenario, "pd,lqr") == ("pd", "lqr", "idle")
+    assert chosen_laws(scenario, "idle") == ("idle",)
+
+
 @pytest.mark.parametrize("text", ["pd,pdd", "", "pd,"])
 def test_unknown_laws_are_named(text):
     with pytest.raises(HarnessError, match=f"--laws {text}: there is no law '{text.partition(',')[2]}'"):

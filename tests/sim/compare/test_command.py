@@ -8,7 +8,6 @@ from click.testing import CliRunner
 
 from sim.compare import command, score
 from sim.errors import HarnessError
-from sim.scenario.schema import load
 from torquer.cli.main import main
 
 SHORT = ("--laws", "predictive,rate_damping", "--orbits", "0.05", "--workers", "1")
@@ -117,14 +116,6 @@ def test_laws_that_could_not_be_flown_are_told_by_the_exit_code(torquer, monkeyp
     assert result.exit_code == 1
     assert "predictive (pulsed) was not flown: no room" in result.stderr
     assert ("compare.png" in result.stdout) is (lost is not None), "no flight, no picture"
-
-
-def test_two_comparisons_in_one_second_have_a_folder_each(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    scenario = load("posat1")
-    folders = {command._default_folder(scenario) for _ in range(3)}
-    assert len(folders) == 3
-    assert all(folder.is_dir() for folder in folders)
 
 
 @pytest.mark.long

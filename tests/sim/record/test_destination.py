@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from sim.errors import HarnessError
-from sim.record.destination import check_file, check_folder
+from sim.record.destination import check_file, check_folder, new_folder
 
 
 def test_a_folder_is_made_and_left_empty(tmp_path):
@@ -18,6 +18,13 @@ def test_what_is_there_stays(tmp_path):
     check_folder(tmp_path, ("x.json", "y.json"))
     check_file(tmp_path / "x.json")
     assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("x.json", "kept")]
+
+
+def test_calls_within_one_second_have_a_folder_each(tmp_path):
+    folders = {new_folder(tmp_path / "runs", "microsat") for _ in range(3)}
+    assert len(folders) == 3
+    assert sorted(folders) == sorted((tmp_path / "runs").iterdir())
+    assert all(folder.name.startswith("microsat-") and not list(folder.iterdir()) for folder in folders)
 
 
 @pytest.mark.parametrize("folder", ["/proc/x", "/dev/null", "/dev/null/x", "a\0b", "x" * 5000])

@@ -5,6 +5,7 @@ import json
 import pytest
 
 import torquer
+from fsw.own_law import Demand
 
 SHORT = {"laws": ["predictive", "rate_damping"], "driver": "pulsed", "orbits": 0.02, "workers": 1}
 
@@ -44,6 +45,23 @@ def test_settings_are_laid_over_all_flights_and_told(tmp_path):
     changed = {"initial": {"rate_degps": [0.5, 0.0, 0.0]}, "control.k_w": 1.0}
     found = torquer.compare("posat1", **SHORT | {"laws": "predictive"}, set=changed, out=tmp_path / "a")
     assert found.values["settings"] == ["initial.rate_degps=[0.5, 0.0, 0.0]", "control.k_w=1.0"]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_law_is_given_as_an_object_to_this_process_while_others_fly_the_rest(done, workers, tmp_path):
+    def idle(inputs, memory, setpoint, config):
+        return Demand()
+
+    found = torquer.compare("posat1", **SHORT | {"workers": workers}, law=idle, out=tmp_path / "a")
+    assert found.ok, "all of them have flown"
+    assert sorted(row.law for row in found.rows) == ["idle", "predictive", "rate_damping"]
+    assert [row for row in found.rows if row.law != "idle"] == list(done.rows)
+
+
+def test_what_is_no_law_is_refused(tmp_path):
+    with pytest.raises(torquer.InputError, match=r"law = 3: give FILE\.py:NAME"):
+        torquer.compare("posat1", law=3, out=tmp_path / "a")
 
 
 @pytest.mark.parametrize(
