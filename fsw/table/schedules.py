@@ -120,7 +120,7 @@ def planned_pulses(
     steps_s = np.arange(round(gains["pulse_mpc"].horizon_orbits * STEPS)) * orbit_s / STEPS
     pulses_s, after_s = np.arange(searched) * step_s, searched * step_s - 0.5 * timing.pulse_s
     axes = table.body.law_axes
-    coil_axes = timing.coil_axes if axes is None else axes.coils(timing.coil_axes)
+    coil_axes = timing.coil_axes if axes is None else axes.matrix(timing.coil_axes)
     wanted_s = [*pulses_s, *(pulses_s + 0.5 * step_s), *(after_s + 0.5 * orbit_s / STEPS + steps_s)]
     return PulseModel(
         *choices(timing.levels_am2, timing.pulse_s, inverse(table.body.law_inertia), coil_axes),

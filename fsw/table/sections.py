@@ -130,7 +130,7 @@ class BodyTable(Section):
     def law_inertia(self) -> Mat3:
         """The tensor in the axes of the laws."""
         axes = self.law_axes
-        return self.inertia if axes is None else axes.tensor(self.inertia)
+        return self.inertia if axes is None else axes.matrix(self.inertia)
 
     @property
     def law_wheel_nms(self) -> Vec3:

@@ -77,9 +77,9 @@ TIMES_UNIX_S = (0, 2**32 - 1)
 
 UNMET = {
     Need.PULSES: "with coils.driver = 'continuous': it plans pulses; allowed is coils.driver = 'pulsed'",
-    Need.MOMENTUM: "with body.wheel_nms[2] <= 0: it holds the axis of a wheel that turns along body axis 3",
+    Need.MOMENTUM: "without body.wheel_nms along the orbit's normal: it holds the axis of such a wheel",
     Need.DRIVEN_WHEEL: "without [wheel]: it asks for torques of a driven wheel",
-    Need.PITCH_WHEEL: "without a [wheel] along body axis 3: it asks for torques of one about that axis",
+    Need.PITCH_WHEEL: "without a [wheel] along the orbit's normal: it asks for torques of such a wheel",
 }
 
 
@@ -210,13 +210,13 @@ class FlightTable(Section):
             check_wheel_inertia(self.wheel, self.body.inertia)
         return self
 
-    def meets(self, law: LawEntry) -> bool:
-        """Whether this satellite has what a law needs."""
+    def meets(self, law: LawEntry, driver: str | None = None) -> bool:
+        """Whether this satellite has what a law needs, with that driver of its coils; None: its own."""
         axes = self.body.law_axes
         axis = None if self.wheel is None else unit(self.wheel.axis)
         if axis is not None and axes is not None:
             axis = axes.of_body(axis)
-        return is_met(law.needs, self.coils.driver == "pulsed", self.body.law_wheel_nms, axis)
+        return is_met(law.needs, (driver or self.coils.driver) == "pulsed", self.body.law_wheel_nms, axis)
 
     @property
     def epoch_unix_s(self) -> int:

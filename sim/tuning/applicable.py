@@ -2,8 +2,7 @@
 
 from collections.abc import Sequence
 
-from fsw.core.algebra.vector import unit
-from fsw.core.laws.entry import Aim, is_met
+from fsw.core.laws.entry import Aim
 from fsw.core.laws.table import LAWS
 from fsw.input.schema import Nested
 from fsw.table.own_law import declared
@@ -37,9 +36,7 @@ def is_suited(law: str, scenario: Scenario, driver: str = "pulsed") -> bool:
     """Whether a law has what it needs with that driver of the coils; one of the user's own always has."""
     if law not in LAWS:
         return True
-    table = flight_table(scenario)
-    axis_body = None if table.wheel is None else unit(table.wheel.axis)
-    return is_met(LAWS[law].needs, driver == "pulsed", table.body.wheel_nms, axis_body)
+    return flight_table(scenario).meets(LAWS[law], driver)
 
 
 def check_suited(laws: Sequence[str], source: str | Scenario, over: Nested) -> None:

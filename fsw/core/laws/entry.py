@@ -36,15 +36,15 @@ class Need(StrEnum):
     PULSES = "pulses"
     """It plans the pulses of a pulsed driver."""
     MOMENTUM = "momentum"
-    """It holds the axis of a wheel that turns at constant speed along body axis 3."""
+    """It holds the axis of a wheel that turns at constant speed along the orbit's normal, axis 3."""
     DRIVEN_WHEEL = "driven_wheel"
     """It asks for torques of a wheel."""
     PITCH_WHEEL = "pitch_wheel"
-    """It asks for torques of a wheel along body axis 3."""
+    """It asks for torques of a wheel along that axis."""
 
 
 LEAST_COSINE = 0.99
-"""Of the angle between a wheel along body axis 3 and that axis."""
+"""Of the angle between such a wheel and that axis."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ class LawEntry:
 
 
 def is_met(need: Need, pulsed: bool, wheel_body_nms: Vec3, driven_axis_body: Vec3 | None) -> bool:
-    """Whether a satellite has what a law needs.
+    """Whether a satellite has what a law needs; body axes are those that the laws count by.
 
     Args:
         need: of the law.

@@ -161,7 +161,7 @@ PLANTED = [
     ("control.gains", {"three_term": 1.0}, "a section of keys"),
     ("control.leak_s", 0.0, "a number above 0"),
     ("control.law", "two_coils", "is not allowed without [wheel]: it asks for torques of a driven wheel"),
-    ("control.law", "dual_spin", "is not allowed with body.wheel_nms[2] <= 0: it holds the axis of a wheel"),
+    ("control.law", "dual_spin", "is not allowed without body.wheel_nms along the orbit's normal: it holds"),
     ("coils.driver", "analog", "'pulsed' or 'continuous'"),
     ("coils.driver", "continuous", "a continuous driver needs max_dipole_am2"),
     ("coils.max_dipole_am2", 0.0, "a number above 0"),

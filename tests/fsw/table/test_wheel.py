@@ -38,7 +38,7 @@ def test_without_it_there_is_none():
 def test_a_law_that_turns_the_body_about_axis_3_needs_it_there(axis):
     table({"axis": [0.0, 0.1, 1.0]}, control={"law": "pitch_wheel"})
     with pytest.raises(
-        TableError, match=r"'pitch_wheel' is not allowed without a \[wheel\] along body axis 3"
+        TableError, match=r"'pitch_wheel' is not allowed without a \[wheel\] along the orbit's normal"
     ):
         table({"axis": axis}, control={"law": "pitch_wheel"})
 

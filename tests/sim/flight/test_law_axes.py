@@ -88,5 +88,5 @@ class TestTable:
         }
         given = {"wheel": wheel, "control": {"law": "pitch_wheel"}}
         load("microsat", given | {"body": {"up": "z", "ahead": "x"}})
-        with pytest.raises(TableError, match=r"without a \[wheel\] along body axis 3"):
+        with pytest.raises(TableError, match=r"without a \[wheel\] along the orbit's normal"):
             load("microsat", given)

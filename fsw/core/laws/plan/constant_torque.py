@@ -16,6 +16,6 @@ def constant_torque(parameters: Parameters, reference: Reference | None, axes: L
     square = reference.orbit_rate_radps**2
     xx, yy, zz, xy, xz, yz = parameters.inertia_error_kgm2
     if axes is not None:
-        (_, xy, xz), (_, _, yz), _ = axes.tensor(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
+        (_, xy, xz), (_, _, yz), _ = axes.matrix(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
     resting_nm = (square * yz, -4.0 * square * xz, 3.0 * square * xy)
     return add(parameters.torque_body_nm, resting_nm if axes is None else axes.to_body(resting_nm))

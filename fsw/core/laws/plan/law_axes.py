@@ -49,27 +49,16 @@ class LawAxes:
             turned[place] = sign * part
         return (turned[0], turned[1], turned[2])
 
-    def tensor(self, of_body: Mat3) -> Mat3:
-        """A symmetric tensor in the axes of the laws, as of inertia."""
-        (a, b, c), (p, q, r) = self.place, self.sign
-        first, second, third = (self.of_body(row) for row in of_body)
-        rows = (first, second, third)
-        (a1, a2, a3), (b1, b2, b3), (c1, c2, c3) = rows[a], rows[b], rows[c]
-        return (p * a1, p * a2, p * a3), (q * b1, q * b2, q * b3), (r * c1, r * c2, r * c3)
+    def matrix(self, of_body: Mat3) -> Mat3:
+        """P M P^T of a matrix M by body axes in rows and columns, P the turn to the axes of the laws.
 
-    def coils(self, axes_body: Mat3) -> Mat3:
-        """By law axis, the dipole of the coil along it per unit nominal one, from those by body axis."""
+        So a tensor of inertia is turned, and by rows the dipole of each coil per unit nominal one.
+        """
         (a, b, c), (p, q, r) = self.place, self.sign
-        first, second, third = (
-            self.of_body(axes_body[a]),
-            self.of_body(axes_body[b]),
-            self.of_body(axes_body[c]),
-        )
-        return (
-            (p * first[0], p * first[1], p * first[2]),
-            (q * second[0], q * second[1], q * second[2]),
-            (r * third[0], r * third[1], r * third[2]),
-        )
+        a1, a2, a3 = self.of_body(of_body[a])
+        b1, b2, b3 = self.of_body(of_body[b])
+        c1, c2, c3 = self.of_body(of_body[c])
+        return (p * a1, p * a2, p * a3), (q * b1, q * b2, q * b3), (r * c1, r * c2, r * c3)
 
     def attitude(self, of_body: Attitude) -> Attitude:
         """The attitude of these axes relative to the orbital frame, as certain as that of the body."""

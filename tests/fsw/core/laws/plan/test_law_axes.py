@@ -39,7 +39,7 @@ class TestATurn:
 
     def test_a_tensor_turns_with_its_vectors(self, up, ahead):
         axes = law_axes(up, ahead)
-        turned = np.array(axes.tensor(J_BODY)) @ axes.of_body(V_BODY)
+        turned = np.array(axes.matrix(J_BODY)) @ axes.of_body(V_BODY)
         assert turned == pytest.approx(axes.of_body(tuple(np.array(J_BODY) @ V_BODY)), rel=1e-14)
 
     def test_the_coil_along_an_axis_keeps_its_misalignment(self, up, ahead):
@@ -48,7 +48,7 @@ class TestATurn:
         coils_body = ((0.98, 0.05, -0.02), (-0.04, 1.03, 0.01), (0.03, -0.06, 0.95))
         asked_body = (0.4, -0.9, 1.3)
         given = tuple(np.array(asked_body) @ np.array(coils_body))
-        again = np.array(axes.of_body(asked_body)) @ np.array(axes.coils(coils_body))
+        again = np.array(axes.of_body(asked_body)) @ np.array(axes.matrix(coils_body))
         assert again == pytest.approx(axes.of_body(given), rel=1e-14)
 
     def test_the_nominal_attitude_is_that_in_which_the_named_axes_are_those_of_the_orbit(self, up, ahead):
