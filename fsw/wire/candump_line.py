@@ -88,11 +88,11 @@ def format_line(timestamp: str, channel: str, frame: Frame) -> str:
 def format_lines(timestamp: str, channel: str, frames: list[Frame]) -> str:
     """The lines of frames that share a time stamp."""
     beginning = f"({timestamp}) {channel} "
-    return "".join([f"{beginning}{_identified(frame)}\n" for frame in frames])
+    return "".join([f"{beginning}{frame_text(frame)}\n" for frame in frames])
 
 
-def _identified(frame: Frame) -> str:
-    """Identifier and data."""
+def frame_text(frame: Frame) -> str:
+    """Identifier and data, ``180#0000000000000000``; of a remote frame ``R`` in place of the data."""
     can_id, data = frame.can_id, frame.data
     if can_id < len(_DIGITS):
         return f"{_DIGITS[can_id]}#{data.hex().upper()}"

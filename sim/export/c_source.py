@@ -104,8 +104,9 @@ def _values(scenario: Scenario) -> Iterator[tuple[str, str, str]]:
         _braced((0.0, 0.0, 0.0) if magnetometer is None else magnetometer.offset_nt),
         "b_body = MAG_MATRIX (reading - MAG_OFFSET_NT)",
     )
-    yield "MAG_MATRIX", _rows(AXES if magnetometer is None else magnetometer.matrix), "see there"
-    yield "SUN_MATRIX", _rows(AXES if calibration.sun is None else calibration.sun.matrix), "s_body = m s"
+    yield "MAG_MATRIX", _rows(AXES if magnetometer is None else magnetometer.matrix), "of that equation"
+    of_sun = AXES if calibration.sun is None else calibration.sun.matrix
+    yield "SUN_MATRIX", _rows(of_sun), "s_body = SUN_MATRIX reading"
     yield "INERTIA_KGM2", _rows(table.body.inertia), "tensor, body axes"
     up, ahead = NAMED[table.body.up], NAMED[table.body.ahead]
     yield (

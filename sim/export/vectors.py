@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from fsw.wire.candump_line import frame_text
 from fsw.wire.frame import Frame
 from fsw.wire.messages import SENDERS, PlantEnd, Sync, TickDone, intact
 from sim.errors import HarnessError
@@ -63,9 +64,12 @@ def tick_vectors(entries: Iterable[LogEntry]) -> Iterator[TickVector]:
 
 
 def _check_in_time(frame: Frame, current: TickVector, entry: LogEntry) -> None:
-    if frame.can_id == TickDone.ID and TickDone.decode(frame.data).tick != current.tick:
+    if frame.can_id != TickDone.ID or not intact(frame):
+        return
+    answered = TickDone.decode(frame.data).tick
+    if answered != current.tick:
         raise HarnessError(
-            f"line {entry.line}: tick {TickDone.decode(frame.data).tick} is answered in tick {current.tick}: "
+            f"line {entry.line}: tick {answered} is answered in tick {current.tick}: "
             "vectors are of a flight in lockstep"
         )
 
@@ -118,4 +122,4 @@ def _write_binary(path: Path, vectors: Iterator[TickVector], source: Source) -> 
 
 
 def _texts(frames: list[Frame]) -> list[str]:
-    return [f"{frame.can_id:03X}#{frame.data.hex().upper()}" for frame in frames]
+    return [frame_text(frame) for frame in frames]

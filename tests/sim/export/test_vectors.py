@@ -92,6 +92,21 @@ def test_a_flight_that_was_late_is_refused():
         list(tick_vectors(late))
 
 
+def test_a_tick_done_that_is_damaged_answers_no_tick():
+    damaged = Frame(TickDone.ID, b"\x07")
+    (_, vector) = tick_vectors(entries(BOOT, sync(0), damaged))
+    assert vector.outgoing == [damaged]
+
+
+def test_frames_of_others_are_written_as_candump_writes_them(tmp_path):
+    texts = ["00000123#01", "20000004#0000000000000000", "123#R", text_of(sync(0))]
+    log = tmp_path / "bus.log"
+    log.write_text("".join(f"(0000000000.000000) can0 {text}\n" for text in texts))
+    write_vectors(open_source(log), tmp_path / "run.jsonl", force=False)
+    *_, tick = map(json.loads, (tmp_path / "run.jsonl").read_text().splitlines())
+    assert tick["in"] == texts
+
+
 def test_another_suffix_is_refused(flight, tmp_path):
     with pytest.raises(HarnessError, match=r"its suffix must be \.jsonl or \.bin"):
         write_vectors(open_source(flight.folder), tmp_path / "run.csv", force=False)
