@@ -30,7 +30,7 @@ MOST_SPREAD = 20.0
 """Ratio of the moments of inertia up to which the least level is judged by the lightest axis."""
 
 
-class Sized(NamedTuple):
+class SizingReport(NamedTuple):
     """What to expect of a scenario, in words and values, and whether its disturbance is balanced."""
 
     text: str
@@ -40,17 +40,17 @@ class Sized(NamedTuple):
 
 def size(scenario: Scenario) -> int:
     """Print what is expected and what levels would do; 1 if the coils cannot balance the disturbance."""
-    found = sized(scenario)
+    found = sizing_report(scenario)
     say(found.text, failed=not found.balanced)
     answer(found.values)
     return int(not found.balanced)
 
 
-def sized(scenario: Scenario) -> Sized:
+def sizing_report(scenario: Scenario) -> SizingReport:
     """What is expected and what levels would do."""
     expectation = expect(scenario)
     levels, gravity = levels_against(scenario, expectation.load), gravity_on(scenario)
-    return Sized(
+    return SizingReport(
         as_text(scenario, expectation, levels, gravity),
         as_json(scenario, expectation, levels, gravity),
         expectation.load <= 1.0,
@@ -62,7 +62,7 @@ def as_json(scenario: Scenario, expectation: Expectation, levels: Levels, gravit
     body = body_of(scenario)
     return {
         "scenario": scenario.name,
-        "inertia_kgm2": body.inertia_kgm2,
+        "inertia_kgm2": scenario.body.inertia,
         "altitude_km": body.altitude_km,
         "inclination_deg": body.inclination_deg,
         "levels_am2": scenario.coils.levels_am2,

@@ -10,11 +10,11 @@ from pydantic import Strict
 from fsw.input.schema import Section
 from sim.new_scenario.command import write_new
 from sim.new_scenario.satellite import NewSatellite
-from sim.sizing.command import Sized, sized
+from sim.sizing.command import SizingReport, sizing_report
 from sim.value_types import Json
 from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
 from torquer.api.errors import one_sentence
-from torquer.api.printed import Printed
+from torquer.api.printed import PrintedResult
 from torquer.api.scenarios import TypedScenario
 
 _Triple = Annotated[tuple[float, float, float], Strict(False)]
@@ -39,14 +39,14 @@ class _GivenSatellite(Section):
 
 
 @dataclass(frozen=True)
-class Sizing(Printed):
+class Sizing(PrintedResult):
     """What to expect of a satellite; ``print`` shows what the command prints.
 
     Attributes:
         found: as ``sim.sizing`` gives it.
     """
 
-    found: Sized
+    found: SizingReport
 
     @property
     def values(self) -> Json:
@@ -101,7 +101,7 @@ def size(scenario: ScenarioLike, *, set: Settings | None = None) -> Sizing:
     Raises:
         InputError: the scenario or a key of it.
     """
-    return Sizing(sized(chosen_scenario(scenario, set)))
+    return Sizing(sizing_report(chosen_scenario(scenario, set)))
 
 
 @one_sentence

@@ -89,6 +89,11 @@ class TestAxesThatGravityDoesNotHold:
         assert "set body.up = 'z' and body.ahead = 'x'" in out
         assert "none to rely on" in out
 
+    def test_with_axes_as_named_it_is_held_and_the_tensor_stays_in_body_axes(self, capsys):
+        _, values = sized("cubesat3u", self.LONG_Z, "body.up=z", "body.ahead=x")
+        assert values["gravity_holds"]
+        assert values["inertia_kgm2"] == ((0.04, 0.0, 0.0), (0.0, 0.04, 0.0), (0.0, 0.0, 0.008))
+
     def test_the_order_that_is_named_is_held(self, capsys):
         _, values = sized("cubesat3u", self.HELD)
         assert values["gravity_holds"]
