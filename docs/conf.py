@@ -2,7 +2,8 @@
 
 from importlib.metadata import version as installed
 
-from docutils.nodes import Element, SkipNode
+from docutils import nodes
+from docutils.nodes import Element, SkipNode, document
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
@@ -61,6 +62,9 @@ EVIDENCE = (
 EVIDENCE += ("firmware-qemu", "soak", "mutation", "replay")
 """Pages that evidence.md leads to; they are in no menu."""
 
+WIDE = 5
+"""Columns from which on a table is too wide for a telephone."""
+
 plot_gallery = "False"  # sphinx-gallery reads a text here
 sphinx_gallery_conf = {
     "examples_dirs": "../examples/gallery",
@@ -85,6 +89,21 @@ def _display(translator: SphinxTranslator, node: Element) -> None:
     raise SkipNode
 
 
+def _name_cells(app: Sphinx, doctree: document, page: str) -> None:
+    """Give each cell of a wide table the name of its column, which the style shows on a narrow screen."""
+    if app.builder.format != "html":
+        return
+    for table in doctree.findall(nodes.table):
+        names = [entry.astext() for head in table.findall(nodes.thead) for entry in head.findall(nodes.entry)]
+        if len(names) < WIDE:
+            continue
+        table["classes"].append("wide")
+        for row in (row for body in table.findall(nodes.tbody) for row in body.findall(nodes.row)):
+            for name, cell in zip(names, row.findall(nodes.entry), strict=True):
+                if cell.astext():
+                    cell.insert(0, nodes.inline("", name, classes=["column"]))
+
+
 def _leave_out(app: Sphinx, env: BuildEnvironment) -> None:
     for name in EVIDENCE:
         env.metadata[name]["orphan"] = ""
@@ -93,4 +112,5 @@ def _leave_out(app: Sphinx, env: BuildEnvironment) -> None:
 def setup(app: Sphinx) -> None:
     """Equations become MathML, which browsers show without scripts or a network."""
     app.connect("env-updated", _leave_out)
+    app.connect("doctree-resolved", _name_cells)
     app.add_html_math_renderer("mathml", (_inline, None), (_display, None))
