@@ -159,7 +159,7 @@ attack: venv
 	TORQUER_ATTACK_REQUESTS=1000000 TORQUER_ATTACK_SECONDS=600 TORQUER_ATTACK_LOGS=1000 $(bin)/pytest -q -s tests/attack tests/firmware/test_attack.py tests/firmware/test_twin.py
 
 firmware-qemu: venv
-	$(bin)/python tests/firmware/record.py
+	PYTHONPATH=tests/shared $(bin)/python tests/firmware/record.py
 
 differential: venv
 	TORQUER_DIFFERENTIAL_ORBITS=100 $(bin)/pytest -q --timeout 3600 tests/differential

@@ -111,6 +111,7 @@ int main(int count, char **words)
         receive_all(record, sizeof record);
         memcpy(&id, record, sizeof id);
         size_t length = record[4];
+        if (length > 8) continue; /* no CAN frame has more */
         if (id == TORQUER_MAG_FIELD_FRAME_ID && torquer_intact((uint16_t)id, data, length)) {
             struct torquer_mag_field_t sample;
             if (torquer_mag_field_unpack(&sample, data, length) || !sample.valid) continue;

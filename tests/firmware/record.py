@@ -13,11 +13,8 @@ import time
 from pathlib import Path
 from random import Random
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "shared"))
-
-from coil_attack import SETUPS, Judge, Setup, attack  # noqa: E402
-from emulated_board import (  # noqa: E402
+from coil_attack import SETUPS, Judge, Setup, attack
+from emulated_board import (
     CROSS,
     EMULATOR,
     MACHINE,
@@ -28,15 +25,16 @@ from emulated_board import (  # noqa: E402
     has_emulator,
     start_board,
 )
-from firmware_bench import FirmwareBench  # noqa: E402
-from process_target import attack_in_real_time  # noqa: E402
-from simulated_bus import SimulatedBus  # noqa: E402
+from firmware_bench import FirmwareBench
+from process_target import attack_in_real_time
+from simulated_bus import SimulatedBus
 
-from sim.conformance.board_link import BOARD_KINDS, BoardLink  # noqa: E402
-from sim.conformance.board_under_test import BoardLimits  # noqa: E402
-from sim.conformance.command import run_checks  # noqa: E402
-from sim.record.whole_file import replace_text  # noqa: E402
+from sim.conformance.board_link import BOARD_KINDS, BoardLink
+from sim.conformance.board_under_test import BoardLimits
+from sim.conformance.command import run_checks
+from sim.record.whole_file import replace_text
 
+ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "firmware-qemu.md"
 SEED = 20150327
 SHORT = {"pulse_ms": 1200, "backoff_ms": 3900, "deadman_ms": 2000}

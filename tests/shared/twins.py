@@ -1,6 +1,7 @@
 """The stub's board and the one in C side by side, with noise on the bus and faults of the current."""
 
 import math
+from functools import partial
 
 from firmware_bench import LEVELS_MA, FirmwareBench, loaded
 
@@ -70,8 +71,7 @@ class Twins:
         self._random = random
         self._currents = Currents(random)
         limits = CoilLimits(setup.tick_hz, setup.pulse_ms, setup.backoff_ms, setup.shared)
-        make = lambda: StubBoard(limits, self._currents)  # noqa: E731
-        self._stub = Bench(make, setup.deadman_ms, has_clock=True)
+        self._stub = Bench(partial(StubBoard, limits, self._currents), setup.deadman_ms, has_clock=True)
         self._board = FirmwareBench(loaded(library), clock_ms, current_ma=lambda: self._currents.now_ma)
         self.compared = 0
         self.kinds = set()

@@ -38,7 +38,7 @@ class Held:
 
 
 bound = ControlLaw(idle)
-short = lambda inputs, memory, setpoint, config: Demand()  # noqa: E731
+short = lambda inputs, memory, setpoint, config: Demand()  # noqa: E731  as a user may write one
 held = Held()
 part = partial(idle)
 
