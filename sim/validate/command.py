@@ -30,7 +30,7 @@ Tell = Callable[[ClaimOutcome], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Validated:
+class ValidationReport:
     """Claims that were checked.
 
     Attributes:
@@ -71,7 +71,7 @@ def validate(
     flight_data: Path | None = None,
     record: bool = False,
     tell: Tell = lambda outcome: None,
-) -> Validated:
+) -> ValidationReport:
     """Run the studies, tell each outcome, write the page.
 
     A study whose computation breaks off fails in all its claims, and the others go on. Without ``out`` only
@@ -129,7 +129,7 @@ def validate(
     write_junit(junit, "torquer validate", suites(finished))
     not_claimed = "" if flight_data is None else claims.NOT_CLAIMED
     doubts = tuple(_doubts(outcomes, satellites))
-    return Validated(outcomes, results.page, results.figures, doubts, not_claimed, wall_s)
+    return ValidationReport(outcomes, results.page, results.figures, doubts, not_claimed, wall_s)
 
 
 def _tell_each(finished: StudyResult, tell: Tell) -> None:

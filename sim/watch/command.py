@@ -15,14 +15,14 @@ from sim.watch.source import BusSource, FrameSource, LogSource, batches
 
 
 @dataclass(frozen=True, slots=True)
-class Watched:
+class WatchSession:
     """A source and what its frames have shown."""
 
     source: FrameSource
     view: FlightView
 
 
-def watch(what: str, pace: Pace, scenario: str | None) -> Watched:
+def watch(what: str, pace: Pace, scenario: str | None) -> WatchSession:
     """Open a bus or a log.
 
     Args:
@@ -43,8 +43,8 @@ def watch(what: str, pace: Pace, scenario: str | None) -> Watched:
     else:
         source = _bus(what)
     if flown is None:
-        return Watched(source, FlightView())
-    return Watched(source, FlightView(onboard_around(flown), craft_of(flown)))
+        return WatchSession(source, FlightView())
+    return WatchSession(source, FlightView(onboard_around(flown), craft_of(flown)))
 
 
 def _bus(what: str) -> BusSource:
@@ -56,7 +56,7 @@ def _bus(what: str) -> BusSource:
         raise BusError(f"{error}; nor is there a run or a log of that name") from None
 
 
-def show_on_terminal(watched: Watched) -> None:
+def show_on_terminal(watched: WatchSession) -> None:
     """Show it on standard output until there is no more.
 
     Raises:
@@ -68,7 +68,7 @@ def show_on_terminal(watched: Watched) -> None:
     check_whole(watched.source)
 
 
-def serve_page(watched: Watched, port: int) -> None:
+def serve_page(watched: WatchSession, port: int) -> None:
     """Serve it as a page until Ctrl-C.
 
     Raises:
@@ -80,7 +80,7 @@ def serve_page(watched: Watched, port: int) -> None:
     check_whole(watched.source)
 
 
-def serve_foxglove(watched: Watched, port: int) -> None:
+def serve_foxglove(watched: WatchSession, port: int) -> None:
     """Serve it to Foxglove until there is no more, or Ctrl-C.
 
     Raises:

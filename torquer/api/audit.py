@@ -11,11 +11,11 @@ from sim.progress import shown
 from sim.record.signature import PublicKey, public_key
 from torquer.api.arguments import optional_path, path_text
 from torquer.api.errors import one_sentence
-from torquer.api.printed import Printed
+from torquer.api.printed import PrintedResult
 
 
 @dataclass(frozen=True)
-class Audit(Printed):
+class Audit(PrintedResult):
     """The audit of a log; ``print`` shows what the command prints.
 
     Attributes:

@@ -14,7 +14,7 @@ from sim.commissioning.report import CommissioningReport
 from sim.errors import HarnessError
 from sim.progress import shown
 from torquer.api.arguments import Settings, checked, laid_over, optional_path, path_text
-from torquer.api.commissioned import Commissioned
+from torquer.api.commissioning import CommissioningResult
 from torquer.api.errors import one_sentence
 
 
@@ -23,7 +23,7 @@ class _CalibrateOptions(Section):
     parameters: Literal[9, 12]
 
 
-class SatelliteCalibration(Commissioned):
+class SatelliteCalibration(CommissioningResult):
     """What was calibrated; ok where everything that is asked for is told."""
 
     @property

@@ -27,7 +27,7 @@ from sim.value_types import Json
 from torquer.api.arguments import Settings, checked, optional_path, path_text
 from torquer.api.errors import one_sentence
 from torquer.api.flight import fly
-from torquer.api.printed import Printed
+from torquer.api.printed import PrintedResult
 from torquer.api.run import Run
 
 # --- The statistics of a campaign as values of JSON
@@ -100,7 +100,7 @@ class _CampaignOptions(Section):
 
 
 @dataclass(frozen=True)
-class CampaignRuns(Printed):
+class CampaignRuns(PrintedResult):
     """A campaign whose runs have been flown; ``print`` shows what the command prints.
 
     Attributes:

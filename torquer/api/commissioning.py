@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from sim.commissioning.report import CommissioningReport
-from torquer.api.printed import Printed
+from torquer.api.printed import PrintedResult
 
 
 @dataclass(frozen=True)
-class Commissioned(Printed):
+class CommissioningResult(PrintedResult):
     """What was told; ``print`` shows what the command prints.
 
     Attributes:

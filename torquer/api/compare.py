@@ -27,7 +27,7 @@ from torquer.api.arguments import (
 from torquer.api.errors import one_sentence
 from torquer.api.extras import required
 from torquer.api.laws import LawLike, law_given
-from torquer.api.printed import Printed
+from torquer.api.printed import PrintedResult
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,7 +43,7 @@ class _CompareOptions(Section):
 
 
 @dataclass(frozen=True)
-class Comparison(Printed):
+class Comparison(PrintedResult):
     """Control laws that were flown side by side; ``print`` shows what the command prints.
 
     Attributes:

@@ -17,7 +17,7 @@ from sim.progress import shown
 from sim.value_types import Json
 from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
 from torquer.api.errors import one_sentence
-from torquer.api.printed import Printed
+from torquer.api.printed import PrintedResult
 
 _Gain = Annotated[float, Field(allow_inf_nan=True)]
 """Judged with the natural gains of the body."""
@@ -28,7 +28,7 @@ class _GivenGains(Section):
 
 
 @dataclass(frozen=True)
-class Design(Printed):
+class Design(PrintedResult):
     """Gains for a satellite, and how stable it is with them; ``print`` shows what the command prints.
 
     Attributes:

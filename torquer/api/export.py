@@ -11,7 +11,7 @@ from sim.progress import shown
 from torquer.api.arguments import checked, path_text
 from torquer.api.errors import one_sentence
 from torquer.api.laws import LawLike, law_given
-from torquer.api.printed import Printed
+from torquer.api.printed import PrintedResult
 
 
 class _ExportOptions(Section):
@@ -20,7 +20,7 @@ class _ExportOptions(Section):
 
 
 @dataclass(frozen=True)
-class Export(Printed):
+class Export(PrintedResult):
     """A file that was written; functions that open files take it as its path.
 
     Attributes:

@@ -18,7 +18,7 @@ from torquer.api.arguments import (
     path_text,
     scenario_source,
 )
-from torquer.api.commissioned import Commissioned
+from torquer.api.commissioning import CommissioningResult
 from torquer.api.errors import one_sentence
 
 
@@ -34,7 +34,7 @@ class _GivenPhasing(Section):
     seed: int | None = Field(ge=0, le=2**64 - 1)
 
 
-class WiringVerdict(Commissioned):
+class WiringVerdict(CommissioningResult):
     """How coils and magnetometer are wired; ok where that is told, and is what the table says.
 
     Of a recorded bench log, which tells no axis, ok where a reading responds to a command.

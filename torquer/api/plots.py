@@ -53,7 +53,7 @@ class RunPlots:
         return self._draw("rates", ax, width_in)
 
     def rate_magnitude(self, *, ax: Axes | None = None, width_in: float | None = None) -> Axes:
-        """Its magnitude, on a logarithmic scale."""
+        """Magnitude of the rate relative to the orbital frame [deg/s], on a logarithmic scale."""
         return self._draw("rate_magnitude", ax, width_in)
 
     @one_sentence

@@ -3,7 +3,7 @@
 from html import escape
 
 
-class Printed:
+class PrintedResult:
     """A result that a notebook shows as text."""
 
     def _repr_html_(self) -> str:

@@ -20,7 +20,7 @@ from torquer.api.audit import Audit, check
 from torquer.api.errors import one_sentence
 from torquer.api.export import Export, export
 from torquer.api.laws import LawLike, checked_law, law_given
-from torquer.api.printed import Printed
+from torquer.api.printed import PrintedResult
 from torquer.api.replay import replay
 from torquer.api.scenarios import TypedScenario
 
@@ -35,7 +35,7 @@ OF_EVERY_FLIGHT = {"scenario", "seed", "sim_seconds", "limits_ok"}
 
 
 @dataclass(frozen=True)
-class Run(Printed):
+class Run(PrintedResult):
     """The directory of a flight, which functions take as they take its path.
 
     What takes time is computed when it is first asked for, and kept.

@@ -13,10 +13,10 @@ from sim.scenario.settings import nested
 from sim.scenario.written import scenario_toml
 from torquer.api.arguments import ScenarioLike, Settings, chosen_scenario, path_text
 from torquer.api.errors import one_sentence
-from torquer.api.printed import Printed
+from torquer.api.printed import PrintedResult
 
 
-class TypedScenario(schema.Scenario, Printed):
+class TypedScenario(schema.Scenario, PrintedResult):
     """A scenario, its sections as attributes: ``scenario.body.inertia_kgm2``; ``print`` shows its file.
 
     It never changes: ``changed`` gives another one. Functions take it as they take its name.

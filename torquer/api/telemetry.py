@@ -9,7 +9,7 @@ from fsw.input.schema import Section
 from sim.commissioning.telemetry import command
 from sim.progress import shown
 from torquer.api.arguments import checked, optional_path, path_text
-from torquer.api.commissioned import Commissioned
+from torquer.api.commissioning import CommissioningResult
 from torquer.api.errors import one_sentence
 
 
@@ -17,7 +17,7 @@ class _TelemetryOptions(Section):
     start_s: float = Field(ge=20.0, le=100000.0)
 
 
-class FollowedPass(Commissioned):
+class FollowedPass(CommissioningResult):
     """A recorded pass that the flight filter has followed; ok where its motion can be believed."""
 
     @property

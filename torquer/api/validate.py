@@ -14,12 +14,12 @@ from fsw.input.schema import Section
 from sim.campaign.claim import ClaimOutcome, ClaimVerdict
 from sim.progress import shown
 from sim.validate import command
-from sim.validate.command import Validated
+from sim.validate.command import ValidationReport
 from sim.validate.page import as_json, line
 from torquer.api.arguments import checked, optional_path
 from torquer.api.errors import one_sentence
 from torquer.api.extras import required
-from torquer.api.printed import Printed
+from torquer.api.printed import PrintedResult
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,14 +34,14 @@ class _ValidateOptions(Section):
 
 
 @dataclass(frozen=True)
-class Validation(Printed):
+class Validation(PrintedResult):
     """Claims that were checked; ``print`` shows what the command prints.
 
     Attributes:
         found: the whole of it, as ``sim.validate`` gives it.
     """
 
-    found: Validated
+    found: ValidationReport
 
     @property
     def outcomes(self) -> tuple[ClaimOutcome, ...]:

@@ -11,7 +11,7 @@ from pydantic import Field
 from fsw.input.schema import Section
 from sim.record.pace import parse_pace
 from sim.watch import command
-from sim.watch.command import Watched, check_whole
+from sim.watch.command import WatchSession, check_whole
 from sim.watch.moments import WatchedMoment, moments
 from torquer.api.arguments import checked, path_text
 from torquer.api.errors import one_sentence
@@ -75,7 +75,7 @@ def watch(
     return WatchedMoments(_followed(watched, options))
 
 
-def _followed(watched: Watched, options: _WatchOptions) -> Generator[WatchedMoment]:
+def _followed(watched: WatchSession, options: _WatchOptions) -> Generator[WatchedMoment]:
     silent_s = inf if options.silent_s is None else options.silent_s
     yield from moments(watched.source, watched.view, options.every_s, silent_s)
     check_whole(watched.source)
