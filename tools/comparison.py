@@ -21,7 +21,7 @@ from jinja2 import Environment, StrictUndefined
 from fsw.core.laws.entry import Aim
 from sim.compare.case import Driver
 from sim.compare.command import JSON as COMPARED
-from sim.compare.command import compare
+from sim.compare.command import CompareOptions, compare
 from sim.compare.score import Score
 from sim.compare.table import as_table, error_text, ranked
 from sim.drawing.page_parts import Table
@@ -88,7 +88,7 @@ class Compared(NamedTuple):
 def fly(name: str, workers: int) -> Record:
     """Compare the laws on a satellite, with the gains that ship: what the command writes."""
     with TemporaryDirectory() as folder:
-        compare(name, {}, None, "both", None, 1, workers, Path(folder))
+        compare(name, {}, CompareOptions(workers=workers), Path(folder))
         record: Record = json.loads(Path(folder, COMPARED).read_text())
         return record
 

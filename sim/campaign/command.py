@@ -9,8 +9,11 @@ from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from shlex import quote
+from typing import Literal
 
-from fsw.input.schema import Nested
+from pydantic import Field
+
+from fsw.input.schema import Nested, Section
 from fsw.table.config import flight_config
 from sim.campaign.code_digest import code_digest
 from sim.campaign.definition.campaign import FILE, SCENARIO, Campaign
@@ -78,16 +81,26 @@ class FlownCampaign:
         return sentences
 
 
+class CampaignOptions(Section):
+    """How the runs of a campaign are flown, and what is kept of them.
+
+    Attributes:
+        workers: processes; None: as many as there are cores.
+        scheduler: of a Dask cluster, by address or file; None: processes.
+        keep: of which runs log and histories are kept.
+        retry: whether failed runs are flown again.
+        parquet: whether the results are exported.
+    """
+
+    workers: int | None = Field(default=None, ge=1)
+    scheduler: str | None = None
+    keep: Literal["failures", "all", "none"] = "none"
+    retry: bool = False
+    parquet: bool = False
+
+
 def campaign(
-    source: str,
-    over: Nested,
-    settings: Nested,
-    workers: int | None,
-    scheduler: str | None,
-    keep: str,
-    retry: bool,
-    parquet: bool,
-    out: Path | None,
+    source: str, over: Nested, settings: Nested, options: CampaignOptions, out: Path | None
 ) -> FlownCampaign:
     """Fly a campaign, or what is left of it.
 
@@ -95,11 +108,7 @@ def campaign(
         source: a campaign file, a scenario, or the folder of a campaign that is to be continued.
         over: runs, orbits and seed that were given.
         settings: laid over the scenario of all runs.
-        workers: processes; None: as many as there are cores.
-        scheduler: of a Dask cluster, by address or file; None: processes.
-        keep: of which runs log and histories are kept.
-        retry: whether failed runs are flown again.
-        parquet: whether the results are exported.
+        options: how the runs are flown, and what is kept of them.
         out: folder; None: that of ``source``, or ``campaigns/<name>-<UTC time>``.
 
     Raises:
@@ -109,7 +118,7 @@ def campaign(
     if Path(source).is_dir():
         _check_resumable(source, over, settings, out)
         out = Path(source)
-    if parquet:
+    if options.parquet:
         check_parquet()
     chosen = load_campaign(source, over, settings)
     nominal = scenario_of(chosen.base, source)
@@ -118,23 +127,24 @@ def campaign(
     for doubt in scenario_warnings(nominal):
         warn(doubt)
     folder = out or new_folder(Path("campaigns"), chosen.name)
-    check_folder(folder, (FILE, SCENARIO, RESULTS, LOCK, PAGE, *([PARQUET] if parquet else [])))
-    executor: Executor = Cluster(scheduler) if scheduler else Processes(workers or os.cpu_count() or 1)
+    check_folder(folder, (FILE, SCENARIO, RESULTS, LOCK, PAGE, *([PARQUET] if options.parquet else [])))
+    workers = options.workers or os.cpu_count() or 1
+    executor: Executor = Cluster(options.scheduler) if options.scheduler else Processes(workers)
     with open_results(folder, chosen) as results:
         chosen = replace(chosen, runs=max([chosen.runs, *(run + 1 for run in results.runs())]))
         chosen.write(folder)
-        there = set(results.runs(Status.DONE) if retry else results.runs())
+        there = set(results.runs(Status.DONE) if options.retry else results.runs())
         missing = [run for run in range(chosen.runs) if run not in there]
         if missing:
             _check_code(folder, results)
         detail(f"{len(missing)} of {chosen.runs} runs are not in {folder}")
-        task = RunTask(chosen, Keep(keep), folder.absolute())
+        task = RunTask(chosen, Keep(options.keep), folder.absolute())
         try:
             _fly(executor, task, missing, results)
         except (KeyboardInterrupt, EndedBySignal):
             _say_how_to_resume(folder, chosen, results)
             raise
-        return _conclude(folder, chosen, results, parquet)
+        return _conclude(folder, chosen, results, options.parquet)
 
 
 def _check_resumable(source: str, over: Nested, settings: Nested, out: Path | None) -> None:

@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
-from fsw.input.schema import Nested
+from pydantic import Field
+
+from fsw.input.schema import Nested, Section
 from sim.campaign.claim import Study
 from sim.campaign.runner import StudyResult, run
 from sim.campaign.study_cache import with_cache
@@ -232,30 +234,37 @@ class ComparedLaws:
         return f"{heading}\n{as_text(self.scores, self.by)}"
 
 
+class CompareOptions(Section):
+    """How laws are compared.
+
+    Attributes:
+        laws: the text for ``chosen_laws``; None: all that are meant for the body.
+        driver: of the coils.
+        gains: ``best``: those of ``torquer design --laws`` that ship for this body, where there are some;
+            ``scenario``: the scenario's own; else the path of a file of that command.
+        orbits: of each flight; None: as the scenario says.
+        seed: of the plant's random streams, the same in all flights.
+        workers: processes; None: as many as there are cores.
+    """
+
+    laws: str | None = None
+    driver: Literal["pulsed", "continuous", "both"] = "both"
+    gains: str = BEST
+    orbits: float | None = Field(default=None, gt=0.0)
+    seed: int = Field(default=1, ge=0, le=2**64 - 1)
+    workers: int | None = Field(default=None, ge=1)
+
+
 def compare(
-    source: str | Scenario,
-    settings: Nested,
-    laws: str | None,
-    driver: str,
-    orbits: float | None,
-    seed: int,
-    workers: int | None,
-    out: Path | None,
-    gains: str = BEST,
+    source: str | Scenario, settings: Nested, options: CompareOptions, out: Path | None
 ) -> ComparedLaws:
     """Fly every law by every driver and write how they compare.
 
     Args:
         source: the scenario, its name or its path.
         settings: laid over the scenario.
-        laws: the text for ``chosen_laws``.
-        driver: one of ``Driver``, or ``both``.
-        orbits: None: as the scenario says.
-        seed: of the plant's random streams, the same in all flights.
-        workers: processes; None: as many as there are cores.
+        options: which laws, and how they are flown.
         out: folder of the files; None: ``compare/<scenario>-<UTC time>``.
-        gains: ``best``: those of ``torquer design --laws`` that ship for this body, where there are some;
-            ``scenario``: the scenario's own; else the path of a file of that command.
 
     Raises:
         TableError: there is no such scenario, or it is not valid.
@@ -263,11 +272,11 @@ def compare(
     """
     scenario = load(source, settings)
     by = yardstick(scenario)
-    chosen = chosen_laws(scenario, laws)
-    drivers = tuple(Driver) if driver == "both" else (Driver(driver),)
-    kept = _kept(gains, scenario)
-    chosen_cases = cases(source, settings, chosen, drivers, seed, orbits, kept)
-    ticks = ticks_of(scenario, orbits, MOST_IN_MEMORY)
+    chosen = chosen_laws(scenario, options.laws)
+    drivers = tuple(Driver) if options.driver == "both" else (Driver(options.driver),)
+    kept = _kept(options.gains, scenario)
+    chosen_cases = cases(source, settings, chosen, drivers, options.seed, options.orbits, kept)
+    ticks = ticks_of(scenario, options.orbits, MOST_IN_MEMORY)
     folder = _checked_folder(out or new_folder(Path("compare"), scenario.name))
     studies = [
         Study(
@@ -281,12 +290,12 @@ def compare(
     ]
     description = {
         "scenario": scenario.name,
-        "seed": seed,
+        "seed": options.seed,
         "settings": settings_texts(settings),
         "ticks": ticks,
         "sim_seconds": ticks / scenario.time.tick_hz,
         "judged": by._asdict(),
-        "gains": gains if kept is not None else SCENARIO,
+        "gains": options.gains if kept is not None else SCENARIO,
     }
     if source in shipped_names() and not settings:  # else a file of the user's may be part of it
         studies = with_cache(studies)
@@ -300,13 +309,13 @@ def compare(
 
     try:
         with progress(f"comparing {counted(len(chosen), 'law')} on {scenario.name}", len(studies)) as watch:
-            run(studies, workers or os.cpu_count() or 1, watch, take)
+            run(studies, options.workers or os.cpu_count() or 1, watch, take)
     finally:  # flights that are done are written when the rest is given up
         scores = ranked((result.score for result in results), by)
         description["complete"] = len(results) == len(studies)
         _write(folder, scenario, scores, description, results, by, kept)
     asked = {scenario.control.law_name} if scenario.control.own else set()
-    asked |= {word.strip() for word in (laws or "").split(",")}
+    asked |= {word.strip() for word in (options.laws or "").split(",")}
     drawn = any(result.history for result in results)
     return ComparedLaws(folder, scenario, scores, by, description, frozenset(asked), drawn)
 

@@ -6,7 +6,11 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
+from pydantic import Field, Strict
+
+from fsw.input.schema import Section
 from sim.campaign.claim import ClaimOutcome, ClaimVerdict, Study
 from sim.campaign.runner import StudyResult, run
 from sim.campaign.study import FlightStudy
@@ -60,16 +64,33 @@ class ValidationReport:
         return f"{tally(self.outcomes)}; {self.wall_s:.0f} s"
 
 
+class ValidateOptions(Section):
+    """What is checked of all claims.
+
+    Attributes:
+        only: first words of the ids of the studies to run; none: all.
+        quick: leave out flights.
+        satellites: at most so many of each population, by which claims on the median or mean of more are not
+            judged; None: all.
+        workers: processes; None: as many as there are cores.
+        record: put the outcomes of each study that is done among those of ``validation.json``, and write the
+            page of all.
+    """
+
+    only: Annotated[tuple[str, ...], Strict(False)] = ()
+    quick: bool = False
+    satellites: int | None = Field(default=None, ge=1)
+    workers: int | None = Field(default=None, ge=1)
+    record: bool = False
+
+
 def validate(
-    folder: Path | None,
-    only: Sequence[str],
-    out: Path | None,
-    quick: bool,
-    workers: int | None,
-    satellites: int | None = None,
-    junit: Path | None = None,
+    options: ValidateOptions,
+    *,
+    reference_files: Path | None = None,
     flight_data: Path | None = None,
-    record: bool = False,
+    out: Path | None = None,
+    junit: Path | None = None,
     tell: Tell = lambda outcome: None,
 ) -> ValidationReport:
     """Run the studies, tell each outcome, write the page.
@@ -79,33 +100,28 @@ def validate(
     ``validation.json``: into docs/ of the repository, else into the current directory.
 
     Args:
-        folder: run only the checks of the reference files in this folder.
-        only: first words of the ids of the studies to run; none: all.
-        out: path of the page.
-        quick: leave out flights.
-        workers: processes; None: as many as there are cores.
-        satellites: at most so many of each population, by which claims on the median or mean of more are not
-            judged; None: all.
-        junit: file for the verdicts as JUnit XML; None: not written.
+        options: what is checked.
+        reference_files: run only the checks of the reference files in this folder.
         flight_data: run only the claims on the recorded passes in this folder.
-        record: put the outcomes of each study that is done among those of ``validation.json``, and write the
-            page of all.
+        out: path of the page.
+        junit: file for the verdicts as JUnit XML; None: not written.
         tell: called with each outcome once it is known; at the end, where a bar shows how far it is.
 
     Raises:
         HarnessError: reference data are malformed or missing, an id is unknown, or a file cannot be written.
     """
-    began = time.monotonic()
-    if record:
-        _check_whole(folder, satellites)
-    there_are = _studies(folder, flight_data, satellites)
-    whole = folder is None and flight_data is None and not only and not quick and satellites is None
-    results = _results(out, whole, record, there_are)
+    began, satellites = time.monotonic(), options.satellites
+    if options.record:
+        _check_whole(reference_files, satellites)
+    there_are = _studies(reference_files, flight_data, satellites)
+    of_files = reference_files is not None or flight_data is not None
+    whole = not (of_files or options.only or options.quick or satellites is not None)
+    results = _results(out, whole, options.record, there_are)
     written = {"--out": results.page, "the outcomes": results.figures, "--junit": junit}
-    check_results(written, _data_files(folder or flight_data))
-    chosen = choose_studies(there_are, only, quick)
+    check_results(written, _data_files(reference_files or flight_data))
+    chosen = choose_studies(there_are, options.only, options.quick)
     prepare_junit(junit)
-    passed = (HarnessError,) if folder is not None or flight_data is not None else ()  # the user's own files
+    passed = (HarnessError,) if of_files else ()  # the user's own files
     studies = [guarded(study, passed) for study in with_cache(chosen)]
     bar = sys.stderr.isatty()  # then the outcomes are told after the progress bar
 
@@ -117,13 +133,13 @@ def validate(
     if whole and any(study.has_flights for study in studies):
         note("an hour or more of flights; one that is stopped goes on, --quick leaves them out")
     with progress("validating", sum(len(study.tasks) for study in studies)) as watch:
-        finished = run(studies, workers or os.cpu_count() or 1, watch, report)
+        finished = run(studies, options.workers or os.cpu_count() or 1, watch, report)
     if bar:
         for study in finished:
             _tell_each(study, tell)
     outcomes = tuple(outcome for study in finished for outcome in study.outcomes)
     if all(outcome.verdict is ClaimVerdict.ABSENT for outcome in outcomes):
-        raise HarnessError(f"nothing was checked: {_why_absent(outcomes, folder, satellites)}")
+        raise HarnessError(f"nothing was checked: {_why_absent(outcomes, reference_files, satellites)}")
     wall_s = time.monotonic() - began
     results.finish(finished, wall_s)
     write_junit(junit, "torquer validate", suites(finished))

@@ -5,14 +5,11 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
-
-from pydantic import Field
+from typing import TYPE_CHECKING, Any
 
 from fsw.input.own_code import refuse_while_loading
-from fsw.input.schema import Section
 from sim.campaign import command
-from sim.campaign.command import PAGE, FlownCampaign
+from sim.campaign.command import PAGE, CampaignOptions, FlownCampaign
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.report.analysis import CampaignAnalysis, FigureStatistics
 from sim.campaign.report.scenario_requirements import share_json
@@ -87,16 +84,6 @@ def _figure(figure: FigureStatistics) -> Json:
 
 if TYPE_CHECKING:
     import pandas as pd
-
-
-class _CampaignOptions(Section):
-    """Runs, orbits and seed are checked as those of a campaign file."""
-
-    workers: int | None = Field(ge=1)
-    scheduler: str | None
-    keep: Literal["failures", "all", "none"]
-    retry: bool
-    parquet: bool
 
 
 @dataclass(frozen=True)
@@ -203,7 +190,7 @@ def campaign(
     """
     refuse_while_loading("torquer.campaign")
     options = checked(
-        _CampaignOptions,
+        CampaignOptions,
         "campaign",
         workers=workers,
         scheduler=scheduler,
@@ -218,11 +205,7 @@ def campaign(
             path_text(source, "source"),
             over,
             nested(set),
-            options.workers,
-            options.scheduler,
-            options.keep,
-            options.retry,
-            options.parquet,
+            options,
             optional_path(out, "out"),
         )
     return CampaignRuns(flown)

@@ -5,14 +5,12 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
-
-from pydantic import Field
+from typing import TYPE_CHECKING, Any
 
 from fsw.input.own_code import refuse_while_loading
-from fsw.input.schema import Section, TableError
+from fsw.input.schema import TableError
 from sim.compare import command
-from sim.compare.command import ComparedLaws
+from sim.compare.command import ComparedLaws, CompareOptions
 from sim.compare.score import Score
 from sim.progress import shown
 from torquer.api.arguments import (
@@ -31,15 +29,6 @@ from torquer.api.printed import PrintedResult
 
 if TYPE_CHECKING:
     import pandas as pd
-
-
-class _CompareOptions(Section):
-    laws: str | None
-    driver: Literal["pulsed", "continuous", "both"]
-    gains: str
-    orbits: float | None = Field(gt=0.0)
-    seed: int = Field(ge=0, le=2**64 - 1)
-    workers: int | None = Field(ge=1)
 
 
 @dataclass(frozen=True)
@@ -132,7 +121,7 @@ def compare(
         InputError: an argument, the scenario, a key, or the folder; nothing was flown.
     """
     options = checked(
-        _CompareOptions,
+        CompareOptions,
         "compare",
         laws=_text_of(laws),
         driver=driver,
@@ -145,15 +134,7 @@ def compare(
     with shown(progress), law_given(law) as named:
         return Comparison(
             command.compare(
-                scenario_source(scenario),
-                laid_over(set, named),
-                options.laws,
-                options.driver,
-                options.orbits,
-                options.seed,
-                options.workers,
-                optional_path(out, "out"),
-                options.gains,
+                scenario_source(scenario), laid_over(set, named), options, optional_path(out, "out")
             )
         )
 

@@ -5,16 +5,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-from pydantic import Field, Strict
+from typing import TYPE_CHECKING
 
 from fsw.input.own_code import refuse_while_loading
-from fsw.input.schema import Section
 from sim.campaign.claim import ClaimOutcome, ClaimVerdict
 from sim.progress import shown
 from sim.validate import command
-from sim.validate.command import ValidationReport
+from sim.validate.command import ValidateOptions, ValidationReport
 from sim.validate.page import as_json, line
 from torquer.api.arguments import checked, optional_path
 from torquer.api.errors import one_sentence
@@ -23,14 +20,6 @@ from torquer.api.printed import PrintedResult
 
 if TYPE_CHECKING:
     import pandas as pd
-
-
-class _ValidateOptions(Section):
-    only: Annotated[tuple[str, ...], Strict(False)]
-    quick: bool
-    satellites: int | None = Field(ge=1)
-    workers: int | None = Field(ge=1)
-    record: bool
 
 
 @dataclass(frozen=True)
@@ -117,7 +106,7 @@ def validate(
         InputError: an argument, reference data that are malformed or missing, or a file to write.
     """
     options = checked(
-        _ValidateOptions,
+        ValidateOptions,
         "validate",
         only=(only,) if isinstance(only, str) else only,
         quick=quick,
@@ -129,15 +118,11 @@ def validate(
     with shown(progress):
         return Validation(
             command.validate(
-                optional_path(reference, "reference"),
-                options.only,
-                optional_path(out, "out"),
-                options.quick,
-                options.workers,
-                options.satellites,
-                optional_path(junit, "junit"),
-                optional_path(flight_data, "flight_data"),
-                options.record,
-                tell or (lambda outcome: None),
+                options,
+                reference_files=optional_path(reference, "reference"),
+                flight_data=optional_path(flight_data, "flight_data"),
+                out=optional_path(out, "out"),
+                junit=optional_path(junit, "junit"),
+                tell=tell or (lambda outcome: None),
             )
         )

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from sim.campaign.code_digest import code_digest
-from sim.campaign.command import FlownCampaign, _watch, campaign
+from sim.campaign.command import CampaignOptions, FlownCampaign, _watch, campaign
 from sim.campaign.results.row import RunRow, Status
 from sim.campaign.results.store import CODE, RESULTS, open_results
 from sim.errors import HarnessError
@@ -26,7 +26,7 @@ def begun(small, row_of, tmp_path, monkeypatch):
 
 
 def resume(folder):
-    return campaign(str(folder), {}, {}, 1, None, "none", False, False, None)
+    return campaign(str(folder), {}, {}, CampaignOptions(workers=1), None)
 
 
 def meta(folder, statement):
