@@ -1,8 +1,8 @@
 """Builds what is compiled: the filter's kernel, and the flight code by tools/compile_group.py.
 
-Both are built when the package is installed; after a change, the kernel by ``python hatch_build.py``. Without
-a C compiler or Python's headers the package is installed all the same: filterpy computes, and the flight code
-runs interpreted. With TORQUER_INTERPRETED=1 the flight code is not compiled.
+The kernel is built whenever the package is installed, the flight code with TORQUER_COMPILED=1; after a change
+the kernel is built by ``python hatch_build.py``. Without a C compiler or Python's headers the package is
+installed all the same: filterpy computes, and the flight code runs interpreted.
 """
 
 import hashlib

@@ -106,7 +106,7 @@ def _packages() -> Iterator[Finding]:
             wanted.setdefault(match["extra"] or "", []).append((match["name"], match["least"]))
     wanted.pop("dev", None)
     for extra, packages in wanted.items():
-        lacking = [text for name, least in packages if (text := _lacking(name, least))]
+        lacking = list(dict.fromkeys(text for name, least in packages if (text := _lacking(name, least))))
         name = f"torquer[{extra}]" if extra else "packages"
         found = ", ".join(lacking) or ", ".join(f"{package} {version(package)}" for package, _ in packages)
         absent = Presence.OPTIONAL if extra else Presence.MISSING
@@ -129,17 +129,16 @@ def _numbers(text: str) -> tuple[int, ...]:
 
 def _flight_code() -> Iterator[Finding]:
     """Whether it runs compiled, to the same bits in less time, and whether the filter's kernel is there."""
-    found = standing()
-    build = (
-        "make venv" if (ROOT / "Makefile").is_file() else "pip install --force-reinstall --no-deps torquer"
-    )
+    found, in_sources = standing(), (ROOT / "Makefile").is_file()
+    install = "pip install --force-reinstall --no-deps torquer"
+    build = "make venv" if in_sources else f"TORQUER_COMPILED=1 {install}"
     remedy = f"unset {SWITCH}" if os.environ.get(SWITCH) else f"{build}, where there is a C compiler"
     if found.reason:
         yield Finding("flight code", Presence.OPTIONAL, str(found), remedy)
     else:
         yield Finding("flight code", Presence.OK, str(found))
     if find_spec(KERNEL) is None:
-        remedy = f"{build}, where there is a C compiler"
+        remedy = f"{'make venv' if in_sources else install}, where there is a C compiler"
         yield Finding(
             "filter's kernel", Presence.OPTIONAL, "not built of this source: filterpy flies", remedy
         )

@@ -42,6 +42,14 @@ def test_how_the_flight_code_runs(found, presence, remedy, monkeypatch):
     assert remedy in code.remedy
 
 
+def test_outside_of_the_sources_the_remedy_is_the_command_that_compiles(monkeypatch, tmp_path):
+    monkeypatch.delenv(SWITCH, raising=False)
+    monkeypatch.setattr(doctor, "standing", lambda: CodeStanding(frozenset(), "nothing is built"))
+    monkeypatch.setattr(doctor, "ROOT", tmp_path)
+    code = {finding.name: finding for finding in examine()}["flight code"]
+    assert code.remedy.startswith("TORQUER_COMPILED=1 pip install --force-reinstall --no-deps torquer,")
+
+
 def test_who_switched_compiled_code_off_is_told_how_to_switch_it_on(monkeypatch):
     monkeypatch.setenv(SWITCH, "1")
     monkeypatch.setattr(doctor, "standing", lambda: CodeStanding(frozenset(), f"{SWITCH} is set"))
@@ -78,12 +86,15 @@ def test_a_package_that_is_missing_or_old_is_named(monkeypatch):
         "numpy>=99.0",
         "no-such-thing>=1.0",
         'cryptography>=999; extra == "sign"',
+        'no-such-thing>=1.0; extra == "all"',
+        'no-such-thing>=2.0; extra == "all"',
         'pytest>=8; extra == "dev"',
     ]
     monkeypatch.setattr("sim.doctor.requires", lambda name: wanted)
     found = {finding.name: finding for finding in examine()}
     assert found["packages"].presence is Presence.MISSING
     assert "is older than 99.0, no-such-thing is not installed" in found["packages"].found
+    assert found["torquer[all]"].found == "no-such-thing is not installed", "once"
     assert found["torquer[sign]"].presence is Presence.OPTIONAL
     assert found["torquer[sign]"].remedy == "pip install 'torquer[sign]'"
 
