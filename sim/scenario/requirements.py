@@ -58,21 +58,25 @@ OF = {"attitude": "whole attitude", "axis": "axis 1", "spin": "spin rate"}
 """What an index is of, in words."""
 
 
-def in_words(index: str, what: str | None) -> str:
-    """An index and what it is of; ``what`` does not matter where the index has no choice of it."""
+def in_words(index: str, what: str | None, name: str | None = None) -> str:
+    """An index and what it is of, after the name of the requirement if it has one.
+
+    ``what`` does not matter where the index has no choice of it.
+    """
     row = INDICES[index]
-    return f"{row.words} of {OF[what]}" if row.of and what else row.words
+    words = f"{row.words} of {OF[what]}" if row.of and what else row.words
+    return words if name is None else f"{name}: {words}"
 
 
 class RequirementSection(Section):
     """The upper limit of an index, to be met by the orbit ``by_orbit``; a shorter flight is not judged.
 
-    ``id`` is the name by which verdicts call it, each only once in a scenario. ``what``: the whole attitude,
-    body axis 1 relative to the vertical, or the spin about it; by default what the scenario's modes point.
-    ``window``: the last ``last_orbits`` orbits of the flight, or all from
-    settling on, when the error of ``what`` stays below ``settled_deg`` (``settled_degps`` for a spin rate);
-    then it must have settled by that orbit. ``sunlit``: only the ticks in sunlight. The limit is on the root
-    mean square over the window or, with ``probability``, holds for that fraction of the time: 1 is always.
+    ``id`` is the name by which verdicts call it, each only once in a scenario. ``what``: the whole
+    attitude, axis 1, which looks up, relative to the vertical, or the spin about it; by default what the
+    scenario's modes point. ``window``: the last ``last_orbits`` orbits of the flight, or all from settling
+    on, when the error of ``what`` stays below ``settled_deg`` (``settled_degps`` for a spin rate); then it
+    must have settled by that orbit. ``sunlit``: only the ticks in sunlight. The limit is on the root mean
+    square over the window or, with ``probability``, holds for that fraction of the time: 1 is always.
     ``average_s`` is the time over which MPE takes the mean and RPE the deviation from it.
     """
 

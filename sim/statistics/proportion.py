@@ -1,6 +1,6 @@
 """A proportion, and its bounds by Clopper and Pearson."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from scipy.special import betaincinv
 
@@ -18,6 +18,11 @@ class Proportion:
     def value(self) -> float:
         """The estimate."""
         return self.count / self.total
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The numbers and the estimate by name, as values of JSON."""
+        return {**asdict(self), "value": self.value}
 
 
 def clopper_pearson(count: int, total: int, confidence: float) -> Proportion:

@@ -1,7 +1,7 @@
 """``torquer.campaign``: many runs of a scenario, dispersed."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -10,77 +10,16 @@ from typing import TYPE_CHECKING, Any
 from fsw.input.own_code import refuse_while_loading
 from sim.campaign import command
 from sim.campaign.command import PAGE, CampaignOptions, FlownCampaign
-from sim.campaign.definition.campaign import Campaign
-from sim.campaign.report.analysis import CampaignAnalysis, FigureStatistics
-from sim.campaign.report.scenario_requirements import share_json
 from sim.campaign.report.text import lines
-from sim.campaign.report.verdicts import meets, verdicts
+from sim.campaign.report.values import as_json
 from sim.campaign.rerun import campaign_run
-from sim.console import plain
 from sim.progress import shown
 from sim.scenario.settings import nested
-from sim.statistics.proportion import Proportion
-from sim.value_types import Json
 from torquer.api.arguments import Settings, checked, optional_path, path_text
 from torquer.api.errors import one_sentence
 from torquer.api.flight import fly
 from torquer.api.printed import PrintedResult
 from torquer.api.run import Run
-
-# --- The statistics of a campaign as values of JSON
-
-
-def as_json(campaign: Campaign, analysis: CampaignAnalysis) -> Json:
-    """The figures of the page.
-
-    A bound for which there are too few runs is None, and so is a percentile that falls on runs without value.
-    """
-    values: Json = plain(_values(campaign, analysis))
-    return values
-
-
-def _values(campaign: Campaign, analysis: CampaignAnalysis) -> Json:
-    return {
-        "name": campaign.name,
-        "runs": analysis.done + len(analysis.failures),
-        "failed": len(analysis.failures),
-        "probability": campaign.statistics.probability,
-        "confidence": campaign.statistics.confidence,
-        "success": _proportion(analysis.success),
-        "requirements": {
-            str(entry): {**_proportion(found), "met": meets(found, campaign)}
-            for entry, found in analysis.by_requirement.items()
-        },
-        "scenario_requirements": share_json(analysis.shares),
-        "missed": [str(one) for one in verdicts(campaign, analysis) if one.met is False],
-        "figures": {figure.name: _figure(figure) for figure in analysis.figures},
-        "indices_deg": {
-            name: {how.value: asdict(percentile) for how, percentile in found.items()}
-            for name, found in analysis.indices.items()
-        },
-        "rank_correlations": {
-            each.column.removeprefix("input_"): asdict(each.correlation)
-            for each in analysis.sensitivities
-            if each.correlation
-        },
-    }
-
-
-def _proportion(found: Proportion) -> Json:
-    return {**asdict(found), "value": found.value}
-
-
-def _figure(figure: FigureStatistics) -> Json:
-    return {
-        "runs": len(figure.values),
-        "without": figure.without,
-        "mean": float(figure.values.mean()),
-        "largest": float(figure.values.max()),
-        "percentiles": {f"{each.probability!r}": asdict(each) for each in figure.percentiles},
-    }
-
-
-# --- The campaign
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -1,7 +1,6 @@
 """Requirements of the scenario over a campaign as tables, lines and JSON; of a few runs against each."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -106,7 +105,7 @@ def share_json(shares: Sequence[RequirementShare]) -> list[Json]:
             "id": one.id,
             "requirement": one.words,
             "unit": one.unit,
-            "met": one.met and {**asdict(one.met), "value": one.met.value},
+            "met": one.met and one.met.values,
             "not_judged": one.unjudged,
             "least_margin": None if one.tightest is None else float(one.margins[one.tightest]),
             "least_margin_run": None if one.tightest is None else one.runs[one.tightest],

@@ -78,11 +78,10 @@ def requirement_shares(campaign: Campaign, results: Results, failed: int) -> tup
         cells = results.each((verdict,), Status.DONE)
         verdicts = tuple(Outcome(str(cell)) if cell else Outcome.NOT_JUDGED for (cell,) in cells)
         met, judged = verdicts.count(Outcome.MET), len(runs) - verdicts.count(Outcome.NOT_JUDGED)
-        words = in_words(section.index, section.what or pointed(nominal))
         shares.append(
             RequirementShare(
                 section.id,
-                words if section.id is None else f"{section.id}: {words}",
+                in_words(section.index, section.what or pointed(nominal), section.id),
                 section.unit.symbol,
                 section.by_orbit,
                 runs,

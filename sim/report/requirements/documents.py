@@ -49,7 +49,7 @@ def _requirement(number: int, one: Mapping[str, Any], flown_s: float) -> JunitCa
 def _name(number: int, one: Mapping[str, Any]) -> str:
     if one.get("id") is None:
         return f"requirement {number + 1}"
-    return f"{one['id']}: {in_words(one['index'], one['what'])}"
+    return in_words(one["index"], one["what"], one["id"])
 
 
 def _evidence(one: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

@@ -243,7 +243,11 @@ class Judgement:
                 )
             else:
                 outcome = self._judged(one, audit, isolated_s)
-            outcomes.append(_stated(one) | outcome | {"text": f"{_name(one)}{outcome['text']}"})
+            outcomes.append(
+                _stated(one)
+                | outcome
+                | {"text": f"{in_words(one.section.index, one.what, one.section.id)}{outcome['text']}"}
+            )
         return outcomes
 
     def diagnosis(
@@ -338,11 +342,6 @@ def _of_coils(one: Gathered, scenario: Scenario, audit: AuditReport) -> float:
     if one.section.index == "duty":
         return 100.0 * driven_s / length_s
     return squared * (coils.resistance_ohm or 0.0) / coils.dipole_per_ampere_am2**2
-
-
-def _name(one: Gathered) -> str:
-    words = in_words(one.section.index, one.what)
-    return words if one.section.id is None else f"{one.section.id}: {words}"
 
 
 def _window(one: Gathered) -> str:

@@ -111,13 +111,12 @@ def _keyed(
 
 def _row(each: Sequence[Mapping[str, Any] | None]) -> MatrixRow:
     first = next(one for one in each if one is not None)
-    words = in_words(first["index"], first["what"])
+    name = first.get("id")
     cells = tuple(
         None if one is None else MatrixCell(Outcome(one["verdict"]), one["measured"], one["limit"])
         for one in each
     )
-    name = first.get("id")
-    return MatrixRow(name, words if name is None else f"{name}: {words}", first["unit"], cells)
+    return MatrixRow(name, in_words(first["index"], first["what"], name), first["unit"], cells)
 
 
 # --- As a table, as lines, as JSON

@@ -7,8 +7,8 @@ import numpy as np
 from sim.campaign.definition.campaign import StatisticsSection
 from sim.campaign.report import text
 from sim.campaign.report.analysis import analyse
+from sim.campaign.report.values import as_json
 from sim.campaign.results.store import open_results
-from torquer.api.campaign import as_json
 
 
 def test_lines_say_what_matters(campaign_of_40, analysis):

@@ -12,11 +12,11 @@ from sim.campaign.report import text
 from sim.campaign.report.analysis import analyse
 from sim.campaign.report.documents import suites
 from sim.campaign.report.page import write_page
+from sim.campaign.report.values import as_json
 from sim.campaign.report.verdicts import meets, verdicts
 from sim.campaign.results.store import open_results
 from sim.junit import junit_xml
 from sim.statistics.proportion import clopper_pearson
-from torquer.api.campaign import as_json
 
 MISSED = (
     "missed: pointing error, RMS over the last orbit, at most 60 deg: "
