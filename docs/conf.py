@@ -65,6 +65,9 @@ EVIDENCE += ("firmware-qemu", "soak", "mutation", "replay")
 WIDE = 5
 """Columns from which on a table is too wide for a telephone."""
 
+LONG = 30
+"""Letters of a cell from which on it has a line of its own there."""
+
 plot_gallery = "False"  # sphinx-gallery reads a text here
 sphinx_gallery_conf = {
     "examples_dirs": "../examples/gallery",
@@ -101,6 +104,7 @@ def _name_cells(app: Sphinx, doctree: document, page: str) -> None:
         for row in (row for body in table.findall(nodes.tbody) for row in body.findall(nodes.row)):
             for name, cell in zip(names, row.findall(nodes.entry), strict=True):
                 if cell.astext():
+                    cell["classes"] += ["long"] if len(cell.astext()) > LONG else []
                     cell.insert(0, nodes.inline("", name, classes=["column"]))
 
 
