@@ -1,6 +1,7 @@
 """A node of one's own, flight software or board: a command that is started with the address of the bus."""
 
 import os
+import re
 import shlex
 import shutil
 import subprocess
@@ -83,6 +84,5 @@ def last_words(output: Path) -> str:
 
 
 def _filled(word: str, values: Mapping[str, str]) -> str:
-    for name, text in values.items():
-        word = word.replace(f"{{{name}}}", text)
-    return word
+    """The word with each name in braces replaced, once: what is put in is not looked through again."""
+    return re.sub(r"\{(\w+)\}", lambda match: values.get(match[1], match[0]), word)

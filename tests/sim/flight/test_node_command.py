@@ -22,6 +22,12 @@ def test_further_values_are_given_likewise(tmp_path):
     assert last_words(tmp_path / "said") == "10 10"
 
 
+def test_what_is_put_in_is_not_looked_through_for_names(tmp_path):
+    command = NodeCommand(("echo", "{bus}", "{folder}"))
+    command.start("loop:1", {"folder": "/tmp/{name}", "name": "x"}, tmp_path / "said").wait()
+    assert last_words(tmp_path / "said") == "loop:1 /tmp/{name}"
+
+
 def test_a_quoted_word_is_one_word():
     assert parse_command("sh -c 'exit 3'", "--flight-software").words == ("sh", "-c", "exit 3")
 
