@@ -51,7 +51,7 @@ print(json.dumps([standing().code, [small.remainder(*t).hex() for t in triples],
 def can_compile():
     try:
         compiler_words()
-        import mypyc  # noqa: F401
+        import mypyc  # noqa: F401  whether it is there
     except (CompileError, ImportError):
         return False
     return shutil.which(compiler_words()[0]) is not None

@@ -400,7 +400,7 @@ CANNOT_POINT = frozenset(("isolated", "gravity", "unstable", "disturbance", "any
 POINT_IS_LOST = BEFORE_POINTING | CANNOT_POINT | {"coarse", "weak", "not_settled"}
 
 OF_OWN_SOFTWARE = frozenset(
-    ("isolated", "safe", "dark", "mismatch", "unstable", "never_in_point", "fell_back")
+    ("isolated", "safe", "dark", "shadow", "mismatch", "unstable", "never_in_point", "fell_back")
 )
 """What lies in modes, events, table or laws of this project's flight software."""
 

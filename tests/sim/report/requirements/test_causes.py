@@ -303,6 +303,13 @@ def test_of_another_flight_software_nothing_is_told_that_lies_in_this_one():
     assert not {"isolated", "never_in_point", "estimate"} & set(names(replace(lost, own_software=False)))
 
 
+def test_of_another_flight_software_it_is_not_told_what_the_filter_of_this_one_would_use():
+    """It may send no NAV_QUALITY: then none of its estimates is certain. Its control has bounds of its own."""
+    unsure = replace(sound(), unsure_dark=1.0, estimate_deg=1.7)
+    assert "shadow" in names(unsure)
+    assert names(replace(unsure, own_software=False)) == ["estimate"]
+
+
 def test_of_another_flight_software_a_wrong_estimate_is_told():
     wrong = replace(sound(), estimate_deg=1.7, own_software=False)
     assert "estimate" in names(wrong)
