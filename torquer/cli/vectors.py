@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.options import OUT_FILE, RUN_OR_LOG, examples, sentences
+from torquer.cli.options import FORCE, OUT_FILE, RUN_OR_LOG, examples, sentences
 
 EXAMPLES = examples(
     "torquer vectors runs/microsat-20250320T120000Z --out microsat.jsonl",
@@ -15,7 +15,7 @@ EXAMPLES = examples(
 @click.command(epilog=EXAMPLES)
 @RUN_OR_LOG
 @OUT_FILE
-@click.option("--force", is_flag=True, help="Replace FILE if it is there.")
+@FORCE
 @sentences
 def vectors(run_or_log: Path, out: Path, force: bool) -> None:
     """Write what came in and went out in each tick of a flight, for unit tests of a flight software.
