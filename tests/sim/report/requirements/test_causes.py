@@ -304,7 +304,7 @@ def test_of_another_flight_software_nothing_is_told_that_lies_in_this_one():
 
 
 def test_of_another_flight_software_it_is_not_told_what_the_filter_of_this_one_would_use():
-    """It may send no NAV_QUALITY: then none of its estimates is certain. Its control has bounds of its own."""
+    """It may send no NAV_QUALITY: then no estimate of it is certain. Its control has its own bounds."""
     unsure = replace(sound(), unsure_dark=1.0, estimate_deg=1.7)
     assert "shadow" in names(unsure)
     assert names(replace(unsure, own_software=False)) == ["estimate"]
