@@ -18,7 +18,7 @@ from sim.flight.node_command import NodeCommand, last_words
 from sim.flight.record_flight import check_plant, ticks_of
 from sim.flight.sil import fly_against, serve_bus
 from sim.judge.answers import AnswerRecord, field_samples, read_answers
-from sim.judge.driven import ALTER_REPORTS, limits_as_driven
+from sim.judge.driven import alters_reports, limits_as_driven
 from sim.judge.honesty import wrong_attitude
 from sim.judge.invariants import InvariantVerdict, JudgedFlightRecord, judge_invariants
 from sim.judge.law_fit import LawFit, fit_law, least_degps
@@ -184,17 +184,18 @@ def judged(path: Path, asked: Scenario, profile: Profile, honest_deg: float | No
     """
     run = run_dir.read_run(path)
     scenario, log = asked_of(asked, profile), run_dir.bus_log(path)
+    forged = forge_answers(scenario.fault)
     if log.is_file() and log.stat().st_size:
-        summary, answers = conclude(path), read_answers(whole_entries(log), forge_answers(scenario.fault))
+        summary, answers = conclude(path), read_answers(whole_entries(log), forged)
     else:
         summary, answers = _nothing(scenario, run.get("ended", "nothing was flown")), AnswerRecord()
     run = run_dir.read_run(path)
     said = "" if "flown" in run else last_words(path / OUTPUT)
     wrong = None
     if profile is Profile.ATTITUDE and honest_deg is not None and answers.ticks:
-        wrong = wrong_attitude(path, scenario.time.tick_hz, honest_deg)
+        wrong = wrong_attitude(path, scenario.time.tick_hz, honest_deg, forged)
     driven = None
-    if answers.ticks and any(fault.kind in ALTER_REPORTS for fault in scenario.fault):
+    if answers.ticks and alters_reports(scenario):
         driven = limits_as_driven(scenario, read_truth(path / run_dir.TRUTH))
     faulty = bool(scenario.fault)
     record = JudgedFlightRecord(scenario, profile, run, summary, answers, said, faulty, wrong, driven)

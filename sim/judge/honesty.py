@@ -28,12 +28,13 @@ class WrongAttitude(NamedTuple):
     limit_deg: float = WRONG_DEG
 
 
-def wrong_attitude(path: Path, tick_hz: int, limit_deg: float) -> WrongAttitude:
-    """Of the attitudes that the log of a run holds, against its histories."""
+def wrong_attitude(path: Path, tick_hz: int, limit_deg: float, forged: bool = False) -> WrongAttitude:
+    """Of the attitudes that the log of a run holds, against its histories; ``forged`` as for the answers."""
     longest = wrong = first = 0
     worst_deg = 0.0
     with TruthReader(path / run_dir.TRUTH) as truth:
-        for estimates in observed_estimates(whole_entries(run_dir.bus_log(path)), truth.complete):
+        entries = whole_entries(run_dir.bus_log(path))
+        for estimates in observed_estimates(entries, truth.complete, forged):
             rows = truth.rows(first, first + len(estimates.valid))
             first += len(estimates.valid)
             error_deg = np.degrees(angle_rad(estimate_error(rows, estimates)))[estimates.valid]

@@ -1,14 +1,17 @@
 """What every flight software must keep, whatever it is for: each rule a function that says so in words."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import groupby
 from typing import NamedTuple
 
-from fsw.wire.messages import CoilRefusedReason
+from fsw.wire.messages import CoilFire, CoilRefusedReason
+from hil_stub.coils.interlock import COILS, MAX_LEVEL, CoilLimits
 from sim.console import counted
 from sim.fault_table.wrong_estimates import WRONG_S
 from sim.faults.section import forge_answers, forge_sync
 from sim.judge.answers import AnswerRecord, CoilRequest, crc_as_sent
+from sim.judge.driven import DrivenLimits
 from sim.judge.honesty import WrongAttitude
 from sim.judge.profile import Profile
 from sim.record.run_record import RunRecord
@@ -31,7 +34,7 @@ class JudgedFlightRecord(NamedTuple):
         said: the last line that its command printed.
         faulty: the scenario injects faults, by which requests may come to be refused and answers be lost.
         wrong: attitudes that were called valid and were wrong; None: none is judged.
-        driven: what the dipole that flowed shows of a broken limit, where a fault alters what the board
+        driven: what the currents that flowed show of the limits, where a fault alters what the board
             reports; None: the audit of the log counts.
     """
 
@@ -43,7 +46,7 @@ class JudgedFlightRecord(NamedTuple):
     said: str = ""
     faulty: bool = False
     wrong: WrongAttitude | None = None
-    driven: str | None = None
+    driven: DrivenLimits | None = None
 
     @property
     def tick_hz(self) -> int:
@@ -176,18 +179,28 @@ def _asks_properly(flight: JudgedFlightRecord) -> Found:
             return _broken(f"{counted(refused, 'request')} refused by the continuous driver")
         return _kept(f"{counted(flight.answers.dipoles, 'COIL_DIPOLE')}, none refused")
     requests = flight.answers.requests
-    wrong = [one for one in requests if one.refused not in (0, CoilRefusedReason.LOCKOUT) and not one.stuck]
-    if flight.faulty:  # it is asked of what does not come of a fault
-        wrong = [one for one in wrong if one.refused in _OF_THE_REQUEST]
+    if flight.faulty:  # what the board received, and its refusals, may be others than what was sent
+        limits = coil_limits(flight.scenario.coils, flight.tick_hz)
+        wrong = [
+            replace(one, refused=reason) for one in requests if (reason := _wrong_by_itself(limits, one.fire))
+        ]
+    else:
+        allowed = (0, CoilRefusedReason.LOCKOUT)
+        wrong = [one for one in requests if one.refused not in allowed and not one.stuck]
     if not wrong:
         return _kept(f"{counted(len(requests), 'request')}, each within the limits")
     why = _why_improper(flight, wrong[0])
     return _broken(f"{counted(len(wrong), 'request')} of {len(requests)} against the limits, first {why}")
 
 
-_OF_THE_REQUEST = frozenset(
-    (CoilRefusedReason.BAD_COIL, CoilRefusedReason.BAD_LEVEL, CoilRefusedReason.BAD_DURATION)
-)
+def _wrong_by_itself(limits: CoilLimits, fire: CoilFire) -> CoilRefusedReason | None:
+    """Why no board may accept a request as it was sent, in whatever state it is; None: one may."""
+    reasons = {
+        CoilRefusedReason.BAD_COIL: not 0 <= fire.coil < COILS,
+        CoilRefusedReason.BAD_LEVEL: not 1 <= abs(fire.level) <= MAX_LEVEL,
+        CoilRefusedReason.BAD_DURATION: not 1 <= fire.duration_ms <= limits.pulse_ms,
+    }
+    return next((reason for reason, holds in reasons.items() if holds), None)
 
 
 def _why_improper(flight: JudgedFlightRecord, request: CoilRequest) -> str:
@@ -269,14 +282,18 @@ def _pulses(flight: JudgedFlightRecord) -> Found:
 
 def _limits(flight: JudgedFlightRecord) -> Found:
     """The coils kept their limits, by the audit of the log."""
+    if flight.driven is not None:
+        return _limits_by_currents(flight.driven)
     why = flight.summary.get("failures", {}).get(Verdict.LIMITS.value)
-    if why is None:
-        return _kept("pulses and back-off kept by the board")
-    if flight.driven is None:
-        return _broken(why)
-    if flight.driven:
-        return _broken(flight.driven)
-    return _kept("by the dipole that flowed, as the fault alters what the board reports")
+    return _kept("pulses and back-off kept by the board") if why is None else _broken(why)
+
+
+def _limits_by_currents(driven: DrivenLimits) -> Found:
+    if driven.unjudged:
+        return _unjudged(f"the fault alters what the board reports, and {driven.unjudged}")
+    if driven.broken:
+        return _broken(f"by the currents that flowed: {driven.broken}")
+    return _kept("by the currents that flowed, as the fault alters what the board reports")
 
 
 def _heeds_the_board(flight: JudgedFlightRecord) -> Found:
@@ -284,6 +301,8 @@ def _heeds_the_board(flight: JudgedFlightRecord) -> Found:
     record = flight.answers
     if record.stuck_at < 0:
         return _unjudged("no coil was stuck")
+    if flight.driven is not None:
+        return _unjudged("the fault alters what the board reports, so that none need have been stuck")
     grace = record.stuck_at + flight.tick_hz
     late = [one for one in record.requests if one.stuck and one.tick > grace]
     if not late:

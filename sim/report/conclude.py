@@ -136,7 +136,8 @@ def _observe(path: Path, scenario: Scenario, truth: TruthReader, watch: Watch) -
     performance = Performance(scenario, truth.complete, own_software=False)
     lines = Lines(truth.complete, scenario)
     first = 0
-    for estimates in observed_estimates(whole_entries(run_dir.bus_log(path)), truth.complete):
+    entries, forged = whole_entries(run_dir.bus_log(path)), forge_answers(scenario.fault)
+    for estimates in observed_estimates(entries, truth.complete, forged):
         histories = truth.rows(first, first + len(estimates.valid))
         performance.take(histories, estimates)
         lines.take(histories, estimates)

@@ -8,7 +8,7 @@ from math import nan, sqrt
 
 import numpy as np
 
-from fsw.wire.messages import Mode, NavAttitude, NavQuality, NavRate, Sync, intact
+from fsw.wire.messages import Mode, NavAttitude, NavQuality, NavRate, Sync, TickDone, intact
 from sim.record.candump import LogEntry
 from sim.record.estimates import Estimates
 from sim.report.figures.performance import BLOCK_TICKS
@@ -18,7 +18,7 @@ NO_MODE = -1
 _MODES = frozenset(Mode)
 
 
-def observed_estimates(entries: Iterable[LogEntry], ticks: int) -> Iterator[Estimates]:
+def observed_estimates(entries: Iterable[LogEntry], ticks: int, forged: bool = False) -> Iterator[Estimates]:
     """The estimates of a flight in blocks of ``BLOCK_TICKS``, the last one shorter.
 
     Each holds for the tick in whose answer it came; NAV_QUALITY holds until the next one.
@@ -26,22 +26,27 @@ def observed_estimates(entries: Iterable[LogEntry], ticks: int) -> Iterator[Esti
     Args:
         entries: the log of the flight.
         ticks: to give; those that the log does not hold have no estimate.
+        forged: a fault of the scenario sends under identifiers of the flight software, before SYNC: what
+            comes between two answers is not its own.
     """
     block, first, last = _block(ticks, 0), 0, -1
     quality: NavQuality | None = None
+    answering = False
     for entry in entries:
         frame = entry.frame
         if frame.can_id == Sync.ID and intact(frame):
             tick = Sync.decode(frame.data).tick
             if tick != last + 1 or tick >= ticks:  # repeated, or forged
                 continue
-            last = tick
+            last, answering = tick, True
             if last >= first + BLOCK_TICKS:
                 yield block
                 first += BLOCK_TICKS
                 block = _block(ticks, first)
             _hold(block, last - first, quality)
-        elif last >= 0 and frame.can_id in _TAKEN and intact(frame):
+        elif frame.can_id == TickDone.ID and len(frame.data) == TickDone.LENGTH:
+            answering &= TickDone.decode(frame.data).tick != last
+        elif last >= 0 and (answering or not forged) and frame.can_id in _TAKEN and intact(frame):
             if frame.can_id == NavQuality.ID:
                 quality = NavQuality.decode(frame.data)
                 _hold(block, last - first, quality)

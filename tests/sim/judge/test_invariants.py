@@ -7,6 +7,7 @@ import pytest
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilFire, CoilRefusedReason
 from sim.judge.answers import AnswerRecord, CoilRequest
+from sim.judge.driven import DrivenLimits
 from sim.judge.honesty import WrongAttitude
 from sim.judge.invariants import RULES, JudgedFlightRecord, judge_invariants
 from sim.judge.profile import Profile
@@ -204,15 +205,38 @@ def test_what_comes_of_a_fault_is_not_its_own():
     refused = [request(100, CoilRefusedReason.WRONG_TICK, tick=99), request(110, CoilRefusedReason.LOCKOUT)]
     options = {"settings": (fault,), "faulty": True, "counters": Counter(NAV_RATE=2), "odd_done": [(5, 9)]}
     assert told("asks within limits", requests=refused, **options)[0] is Outcome.MET
-    long = [request(100, CoilRefusedReason.BAD_DURATION, duration_ms=3100)]
-    assert "a pulse of 3.1 s" in broken("asks within limits", requests=long, **options)
+    garbled = [request(100, CoilRefusedReason.BAD_COIL), request(203, CoilRefusedReason.BAD_DURATION)]
+    assert told("asks within limits", requests=garbled, **options)[0] is Outcome.MET
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"duration_ms": 3100}, "a pulse of 3.1 s"),
+        ({"coil": 3}, "there is no coil 3"),
+        ({"level": 4}, "there is no level 4"),
+    ],
+)
+def test_under_faults_a_request_is_judged_as_it_was_sent_whatever_the_board_received(values, words):
+    fault = ('fault=[{kind="corruption", at_s=10.0}]',)
+    told_of = broken("asks within limits", requests=[request(100, **values)], settings=fault, faulty=True)
+    assert words in told_of
+
+
+def test_a_stuck_coil_is_not_believed_where_a_fault_alters_what_the_board_reports():
+    late = [request(203, CoilRefusedReason.COIL_ON, stuck=True)]
+    outcome, _ = told("heeds a stuck coil", requests=late, stuck_at=99, faulty=True, driven=DrivenLimits())
+    assert outcome is Outcome.NOT_JUDGED
 
 
 def test_limits_are_those_of_the_audit_or_of_what_flowed():
     failures = {"limits": "the limits are broken once"}
     assert broken("limits kept", failures=failures) == "the limits are broken once"
-    assert told("limits kept", failures=failures, driven="")[0] is Outcome.MET
-    assert broken("limits kept", failures=failures, driven="driven for 5 s") == "driven for 5 s"
+    assert told("limits kept", failures=failures, driven=DrivenLimits())[0] is Outcome.MET
+    too_long = DrivenLimits("driven for 5 s")
+    assert broken("limits kept", driven=too_long) == "by the currents that flowed: driven for 5 s"
+    unknown = DrivenLimits(unjudged="the fault drives a coil")
+    assert told("limits kept", failures=failures, driven=unknown)[0] is Outcome.NOT_JUDGED
 
 
 def test_a_second_sender_is_told_unless_the_scenario_forges():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fsw.wire.frame import Frame
-from fsw.wire.messages import Mode, NavAttitude, NavQuality, NavRate, Sync
+from fsw.wire.messages import Mode, NavAttitude, NavQuality, NavRate, Sync, TickDone
 from sim.record.candump import LogEntry
 from sim.report.figures.performance import BLOCK_TICKS
 from sim.report.observed import NO_MODE, observed_estimates
@@ -57,3 +57,12 @@ def test_a_log_that_ends_early_gives_every_block():
     found = list(observed_estimates(entries(sync(0), attitude(0.6)), BLOCK_TICKS + 5))
     assert [len(block.valid) for block in found] == [BLOCK_TICKS, 5]
     assert sum(int(block.valid.sum()) for block in found) == 1
+
+
+def test_what_is_forged_before_a_sync_is_no_estimate_of_the_flight_software():
+    done = TickDone(0, 0).encode()
+    frames = (sync(0), attitude(0.6), done, attitude(0.0), sync(1))
+    (own,) = observed_estimates(entries(*frames), 2, forged=True)
+    assert own.q_body_from_orbit[0] == pytest.approx((0.8, 0.6, 0.0, 0.0), abs=2e-5)
+    (taken,) = observed_estimates(entries(*frames), 2)
+    assert taken.q_body_from_orbit[0] == pytest.approx((1.0, 0.0, 0.0, 0.0), abs=2e-5)
