@@ -157,13 +157,18 @@ class CellsBoard(SensorBoard):
         super().__init__(SunCellBoard(tick_hz).begin_tick, stimulus)
 
 
+LAST_TICK: Final = 2**32 - 1
+"""Of SYNC and TICK_DONE."""
+
+
 class Bench:
     """Enters the ticks of the bus: k + 1 when ``TICK_DONE(k)`` has come, or ``SYNC(k + 1)`` at the latest.
 
     The board vouches for its timers only while it counts every tick. When it has lost count (two unexpected
     ``SYNC`` in a row, of the same tick or of one and the next), or when the plant has restarted, it is
     replaced by a new one, which boots: for the coil driver a full lockout. A single unexpected ``SYNC``
-    changes nothing. ``PLANT_END`` is ignored: a bench is switched off by hand.
+    changes nothing. The count does not wrap: no tick follows ``LAST_TICK``, in which the board stays.
+    ``PLANT_END`` is ignored: a bench is switched off by hand.
 
     The dead-man: when no ``SYNC`` has advanced the count of ticks for ``deadman_ms``, the board is off until
     one does. One that only repeats the last tick is no sign of life.
@@ -211,7 +216,7 @@ class Bench:
         if not intact(frame):
             return []
         match frame.can_id:
-            case TickDone.ID if TickDone.decode(frame.data).tick == self._tick:
+            case TickDone.ID if TickDone.decode(frame.data).tick == self._tick < LAST_TICK:
                 return self._next_tick()
             case Sync.ID:
                 return self._follow(Sync.decode(frame.data).tick)

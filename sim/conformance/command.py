@@ -24,6 +24,7 @@ from sim.scenario.schema import Scenario
 
 # --- The checks of a board's clock and count of ticks: ticks held, repeated, in a burst, backwards
 
+LAST_TICK = 2**32 - 1
 SPEED_UP = 4.0
 """How many times too fast ticks come that come too fast."""
 BURST_S = 0.01
@@ -55,6 +56,23 @@ def lost_count(board: BoardUnderTest) -> None:
             board.expect_lockout(reply)
         for _ in range(4):
             link.step()
+
+
+def last_tick(board: BoardUnderTest) -> None:
+    """The count ends at tick 4294967295: no tick follows, and a SYNC(0) after it is strange."""
+    link = board.link
+    _send_unexpected_sync(link, LAST_TICK - 1)
+    if not link.sync(LAST_TICK - 1).only(link.kind.boot):
+        raise NonconformanceError(f"two SYNC of tick {LAST_TICK - 1}: it did not restart in that tick")
+    if not link.sync(LAST_TICK - 1, frames=[TickDone(LAST_TICK - 1, 0).encode()]).only(link.kind.sample):
+        raise NonconformanceError(f"it did not enter tick {LAST_TICK} after TICK_DONE({LAST_TICK - 1})")
+    if link.sync(LAST_TICK, frames=[TickDone(LAST_TICK, 0).encode()]).messages:
+        raise NonconformanceError(f"it entered a tick after TICK_DONE({LAST_TICK}), which is the last")
+    if link.sync(0, frames=[TickDone(0, 0).encode()]).messages:
+        raise NonconformanceError(f"it took SYNC(0) for the tick after {LAST_TICK}: the count does not wrap")
+    if not link.sync(0).only(link.kind.boot):
+        raise NonconformanceError(f"two SYNC of tick 0 after tick {LAST_TICK}: it did not restart")
+    link.tick = 0
 
 
 def _send_unexpected_sync(link: BoardLink, tick: int) -> None:
@@ -149,6 +167,7 @@ CHECKS = (
     Check(checks.restart_in_a_pulse, power=True),
     Check(checks.dead_man),
     Check(lost_count, coil=False),
+    Check(last_tick, coil=False),
     Check(repeated_tick),
     Check(own_clock),
     Check(held_tick, power=True),

@@ -86,7 +86,7 @@ def test_it_conforms_with_a_dead_man_of_half_a_second(link_to, failures):
 def test_sensors_conform(link_to, kind, make, failures):
     verdicts = run_checks(link_to(make, kind=kind), BoardLimits(), armed=False)
     names = [verdict.name for verdict in verdicts]
-    assert names == ["boot", "noise", "lost_count", "heartbeats", "all_along"]
+    assert names == ["boot", "noise", "lost_count", "last_tick", "heartbeats", "all_along"]
     assert failures(verdicts) == {}
 
 
