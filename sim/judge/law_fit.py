@@ -3,11 +3,11 @@
 The torque m x B does work m . (B x w) on a body that turns at w against the orbital frame, so that the dipole
 that brakes it most points along d = w x B. Where the body turns fast, a law that brakes has a large cosine
 between its dipoles and d. If it has not, the dipoles are compared with those that a mistake would make of d:
-each of the 48 signed permutations of the axes, and a field of another time; and with the change of the field
-that a law sees which takes the bytes of the samples the other way round.
+each of the 48 signed permutations of the axes, and a field of another time; and with what brakes by samples
+whose 16 bits are read with their bytes the other way round, or as unsigned.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import permutations, product
 
@@ -71,7 +71,7 @@ def fit_law(scenario: Scenario, truth: Histories, samples: NDArray[np.int16] | N
     found = [
         *_as_signed_axes(m, braking, as_is),
         *_as_other_time(scenario, truth, rows, m, omega, as_is),
-        *(() if samples is None else _as_swapped_bytes(samples, rows, m, as_is)),
+        *(() if samples is None else _as_misread(samples, rows, m, omega, as_is)),
     ]
     # of those that explain it about as well the simplest, which comes first
     best = max((one.mean for one in found), default=0.0)
@@ -185,22 +185,42 @@ def _as_other_time(
         )
 
 
-def _as_swapped_bytes(
-    samples: NDArray[np.int16], rows: Rows, m: Array, as_is: Array
+def _as_misread(
+    samples: NDArray[np.int16], rows: Rows, m: Array, omega: Array, as_is: Array
 ) -> Iterator[_Explanation]:
-    """The change of the samples, over some ticks, with the bytes of each number the other way round."""
-    read = samples.byteswap().astype(float)
-    best = 0.0
-    for span in SPANS:
-        known = rows >= span
-        if known.sum() < LEAST_PULSES:
-            continue
-        seen = _unit(read[rows[known] - span] - read[rows[known]])
-        fit = np.sum(m[known] * seen, axis=1)
-        if _is_better(fit, as_is[known]):
-            best = max(best, float(fit.mean()))
-    if best:
-        yield _Explanation("the byte order of MAG_FIELD is wrong: it is read the other way round", best)
+    """The samples as they come of mistakes in reading their 16 bits.
+
+    A law takes the change of the field over some ticks, or its cross product with the rate. A mistake
+    explains its dipoles only if they fit one of these, of the samples so read, better than each of them of
+    the samples read properly.
+    """
+    spans = [span for span in SPANS if (rows >= span).sum() >= LEAST_PULSES]
+    proper = _best_of_fields(samples.astype(float), spans, rows, m, omega)
+    for words, read in MISREAD.items():
+        best = _best_of_fields(read(samples), spans, rows, m, omega)
+        known = ~np.isnan(best) & ~np.isnan(proper)
+        if _is_better(best[known], as_is[known]) and _is_better(best[known], proper[known]):
+            yield _Explanation(words, float(best[known].mean()))
+
+
+MISREAD: dict[str, Callable[[NDArray[np.int16]], Array]] = {
+    "the byte order of MAG_FIELD is wrong: it is read the other way round": lambda samples: (
+        samples.byteswap().astype(float)
+    ),
+    "MAG_FIELD is read as unsigned: a field below zero comes out as 65536 steps more": lambda samples: (
+        samples.view(np.uint16).astype(float)
+    ),
+}
+"""Mistakes in reading the samples: in words, and what the samples are then."""
+
+
+def _best_of_fields(field: Array, spans: Sequence[int], rows: Rows, m: Array, omega: Array) -> Array:
+    """The cosines of the dipoles to what brakes by this field, taken in the way that fits best; or NaN."""
+    ways = [np.sum(m * _unit(np.cross(omega, field[rows])), axis=1)]
+    for span in spans:
+        fit = np.sum(m * _unit(field[rows - span] - field[rows]), axis=1)
+        ways.append(np.where(rows >= span, fit, np.nan))
+    return max(ways, key=lambda fit: float(np.nanmean(fit)))
 
 
 def _is_better(fit: Array, as_is: Array) -> bool:

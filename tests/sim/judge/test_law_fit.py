@@ -82,6 +82,24 @@ def test_samples_that_are_read_the_wrong_way_round_are_told():
     assert fit_law(load("microsat"), flight(), samples).mistake == ""
 
 
+@pytest.mark.parametrize("by_rate", [False, True])
+def test_samples_that_are_read_as_unsigned_are_told(by_rate):
+    samples = np.cumsum(np.random.default_rng(8).integers(-3000, 3001, size=(TICKS, 3)), axis=0)
+    samples = (np.abs(samples % 40_000 - 20_000) - 10_000).astype(np.int16)
+    read = samples.view(np.uint16).astype(float)
+    truth = flight()
+    truth["m_body_am2"][:] = 0.0
+    for tick in PULSES:
+        omega = truth["omega_body_orbit_radps"][tick]
+        meant = np.cross(omega, read[tick]) if by_rate else read[tick - 4] - read[tick]
+        truth["m_body_am2"][tick + 1 : tick + 4] = 10.0 * meant / np.linalg.norm(meant)
+    assert fit_law(load("microsat"), truth, samples).mistake.startswith("MAG_FIELD is read as unsigned: ")
+    for tick in PULSES:
+        seen = (samples[tick - 4].astype(float) - samples[tick]) / 1e4
+        truth["m_body_am2"][tick + 1 : tick + 4] = 10.0 * seen / np.linalg.norm(seen)
+    assert "unsigned" not in fit_law(load("microsat"), truth, samples).mistake
+
+
 def test_a_body_that_hardly_turns_tells_nothing():
     assert fit(lambda d: -d, rate_degps=0.1).pulses == 0
 
