@@ -328,22 +328,43 @@ def _coarse(missed: Missed, evidence: FlightEvidence) -> str:
 
 
 def _weak(missed: Missed, evidence: FlightEvidence) -> str:
+    largest_am2, gradient_am2 = evidence.scenario.coils.largest_am2, gradient_level_am2(evidence.scenario)
+    if not evidence.own_software and largest_am2 >= gradient_am2:
+        return ""  # its gains may be too high, or it drives at the highest level alone
+    most, of = _at_most(missed, evidence)
+    if len(evidence.trend) < TREND and largest_am2 > HOPELESS * gradient_am2:
+        return ""  # strong coils, too, are at their highest level while they turn the body
+    if not of:
+        return ""
+    least = max(gradient_am2, 2.0 * largest_am2)
+    return (
+        f"the coils are too weak: at the highest level in {part(most)} of {of}; "
+        f"it takes one of at least {number(least)} A m^2"
+    )
+
+
+def _saturates(missed: Missed, evidence: FlightEvidence) -> str:
+    largest_am2, gradient_am2 = evidence.scenario.coils.largest_am2, gradient_level_am2(evidence.scenario)
+    most, of = _at_most(missed, evidence)
+    if evidence.own_software or not of or largest_am2 < gradient_am2 or len(evidence.trend) < TREND:
+        return ""
+    return (
+        f"the highest level is asked for in {part(most)} of {of}, and the coils are not too weak: "
+        f"{number(largest_am2)} A m^2, of which gravity takes {number(gradient_am2)}: are the gains too "
+        "high, or is it never near enough to ask for less?"
+    )
+
+
+def _at_most(missed: Missed, evidence: FlightEvidence) -> tuple[float, str]:
+    """The part of the pulses, or of the time, at the highest level, and of which; no words: not for most."""
     highest, total, of = evidence.levels[2], sum(evidence.levels), "the last orbit"
     if missed.settled is not None and _has_settled(missed) and evidence.pulses:
         before = [level for at, level in evidence.pulses if at < missed.settled]
         highest, total, of = before.count(3), len(before), f"{orbits(missed.settled)}"
     most = evidence.saturated_part if not total else highest / total
     if most < 0.6 or (total and total < 5):
-        return ""
-    largest_am2, gradient_am2 = evidence.scenario.coils.largest_am2, gradient_level_am2(evidence.scenario)
-    if len(evidence.trend) < TREND and largest_am2 > HOPELESS * gradient_am2:
-        return ""  # strong coils, too, are at their highest level while they turn the body
-    least = max(gradient_am2, 2.0 * largest_am2)
-    of = f"the pulses of {of}" if total else of
-    return (
-        f"the coils are too weak: at the highest level in {part(most)} of {of}; "
-        f"it takes one of at least {number(least)} A m^2"
-    )
+        return most, ""
+    return most, f"the pulses of {of}" if total else of
 
 
 def _never_in_point(missed: Missed, evidence: FlightEvidence) -> str:
@@ -418,6 +439,7 @@ CAUSES: Sequence[Diagnosis] = (
     Diagnosis("unstable", ALL - {"ake"}, _unstable, frozenset(("gravity",))),
     Diagnosis("coarse", POINTING, _coarse, BEFORE_POINTING | CANNOT_POINT),
     Diagnosis("weak", POINTING, _weak, BEFORE_POINTING | CANNOT_POINT),
+    Diagnosis("saturates", POINTING, _saturates, BEFORE_POINTING | CANNOT_POINT | {"coarse"}),
     Diagnosis("not_settled", POINTING, _not_settled, CANNOT_POINT | {"safe", "shadow", "estimate", "coarse"}),
     Diagnosis("short", POINTING, _short, POINT_IS_LOST),
     Diagnosis("never_in_point", POINTING, _never_in_point, POINT_IS_LOST | {"short"}),

@@ -86,6 +86,7 @@ FOUND = {
     "unstable": sound("control.law=pd", "control.k_w=1e9"),
     "coarse": replace(sound("coils.levels_am2=[20,30,40]"), levels=(40, 5, 0)),
     "weak": replace(sound("coils.levels_am2=[0.25,1.0,4.0]"), levels=(0, 3, 50)),
+    "saturates": replace(sound(), levels=(0, 3, 50), own_software=False),
     "not_settled": replace(sound(), trend=(16.0, 11.0, 8.0, 5.6, 4.0, 2.8)),
     "never_in_point": replace(sound(), in_mode=STUCK, first_in_point=None),
     "short": replace(sound(), orbits=0.5, trend=(40.0,)),
@@ -244,6 +245,33 @@ def test_a_continuous_driver_at_full_scale_is_too_weak():
     evidence = replace(sound(name="kalman-50kg"), levels=(0, 0, 0), saturated_part=0.8, torque_nm=(0.0,) * 3)
     assert names(evidence) == ["weak"]
     assert "at the highest level in 80 % of the last orbit" in text(evidence)
+
+
+class TestAnotherSoftware:
+    """Its law is not known: that it asks for the highest level is no evidence that the coils are weak."""
+
+    def test_strong_coils_at_their_highest_level_are_not_called_weak(self):
+        strong = replace(sound(), levels=(0, 3, 50), own_software=False, torque_nm=(0.0, 0.0, 0.0))
+        assert names(strong) == ["saturates"]
+        assert "the highest level is asked for in 94 % of the pulses of the last orbit" in text(strong)
+        assert "too weak:" in text(strong)
+        assert "are the gains too high" in text(strong)
+
+    def test_coils_that_cannot_turn_the_body_against_gravity_are(self):
+        settings = (
+            "coils.levels_am2=[0.05,0.1,0.2]",
+            "disturbance.torque_nm=[0,0,0]",
+            "disturbance.residual_dipole_am2=[0,0,0]",
+        )
+        weak = replace(sound(*settings), levels=(0, 3, 50), own_software=False, torque_nm=(0.0, 0.0, 0.0))
+        assert "weak" in names(weak)
+        assert "saturates" not in names(weak)
+
+    def test_one_that_seldom_asks_for_it_does_not_saturate(self):
+        assert "saturates" not in names(replace(sound(), levels=(20, 20, 10), own_software=False))
+
+    def test_of_this_project_s_own_nothing_is_said_of_gains_in_this_way(self):
+        assert "saturates" not in names(replace(sound(), levels=(0, 3, 50)))
 
 
 def test_knowledge_is_not_explained_by_the_coils():
