@@ -1,7 +1,7 @@
 """How the plant waits for the flight software: for its boot and for the answer to a tick, with deadlines."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from math import inf
 
@@ -25,8 +25,22 @@ Overhear = Callable[[int, list[Frame], list[Frame], bool], object]
 """Called in each tick with the frames before its SYNC, those after it, and whether SYNC was repeated."""
 
 
+MOST_UNHEARD = 64
+
+
 class CounterpartError(FlightError):
-    """The flight software is silent for too long, or another plant sends on the bus."""
+    """The flight software is silent for too long, or another plant sends on the bus.
+
+    Args:
+        message: the sentence.
+        tick: that has no answer; None: it is the boot that was awaited.
+        unheard: what came instead, each frame once, at most ``MOST_UNHEARD``.
+    """
+
+    def __init__(self, message: str, tick: int | None = None, unheard: Sequence[Frame] = ()) -> None:
+        super().__init__(message)
+        self.tick = tick
+        self.unheard = tuple(list(dict.fromkeys(unheard))[:MOST_UNHEARD])
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +60,7 @@ def await_boot(
     bus: Bus, boot_s: float, overhear: Overhear | None, waiting: Callable[[float], None] | None
 ) -> Frame:
     """Wait for FSW_BOOT; PLANT_BOOT asks flight software that booted earlier to repeat it."""
+    unheard: dict[Frame, None] = {}
     began = time.monotonic()
     while (waited_s := time.monotonic() - began) < boot_s:
         if waiting is not None:
@@ -54,15 +69,26 @@ def await_boot(
         deadline = min(time.monotonic() + BOOT_REQUEST_S, began + boot_s)
         while (remaining_s := deadline - time.monotonic()) > 0.0:
             frame = bus.receive(remaining_s)
-            if frame is None or not intact(frame):
+            if frame is None:
                 continue
-            if frame.can_id == FswBoot.ID:
+            if not intact(frame):
+                _note_unheard(unheard, frame)
+            elif frame.can_id == FswBoot.ID:
                 return frame
-            if SENDERS[frame.can_id] == "PLANT":
+            elif SENDERS[frame.can_id] == "PLANT":
                 if overhear is not None:
                     overhear(0, [frame], [], False)
                 raise CounterpartError(f"another plant sent {NAMES[frame.can_id]} before the flight began")
-    raise CounterpartError(f"the flight software has not booted within {boot_s:.0f} s")
+            else:
+                _note_unheard(unheard, frame)
+    why = f"the flight software has not booted within {boot_s:.0f} s"
+    raise CounterpartError(why, unheard=tuple(unheard))
+
+
+def _note_unheard(unheard: dict[Frame, None], frame: Frame) -> None:
+    """Note a frame once, and no more of them than are told, whatever a babbling node sends."""
+    if len(unheard) < MOST_UNHEARD:
+        unheard[frame] = None
 
 
 def waiting_frames(bus: Bus) -> list[Frame]:
@@ -105,9 +131,9 @@ def lockstep_answers(bus: Bus, tick: int, sync: Frame, answer_s: float) -> list[
         if answers and _is_answer(answers[-1], tick):
             return answers
         if time.monotonic() >= deadline:
-            raise CounterpartError(
-                f"no answer from the flight software to tick {tick} within {answer_s:.0f} s"
-            )
+            unheard = [frame for frame in answers if frame is not sync]
+            why = f"no answer from the flight software to tick {tick} within {answer_s:.0f} s"
+            raise CounterpartError(why, tick, unheard)
         bus.send([sync])
         answers.append(sync)
 

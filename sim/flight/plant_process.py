@@ -40,7 +40,8 @@ def main(path: Path, bus: str, patience: tuple[float, float], host: tuple[int, .
             link = host_bus(*host) if host else open_bus(bus)
             record_flight(path, scenario, link, patience=Patience(boot_s, answer_s, answer_s))
     except CounterpartError as error:
-        run_dir.update(path, ended=str(error))
+        frames = [{"id": one.can_id, "data": one.data.hex().upper()} for one in error.unheard]
+        run_dir.update(path, ended=str(error), unheard={"tick": error.tick, "frames": frames})
         sys.exit(1)
     except (TableError, BusError, HarnessError, PlantError) as error:
         click.echo(f"plant: {error_text(error)}", err=True)

@@ -37,7 +37,7 @@ ALONE = frozenset({"PLANT"})
 """The same where the boards are nodes of their own."""
 
 _FROM_FSW = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW")
-_ONCE = frozenset(
+ONCE = frozenset(
     {
         CoilFire.ID,
         CoilDipole.ID,
@@ -140,7 +140,7 @@ class SenderWatch:
             if can_id == FswBoot.ID:
                 is_strange = tick > 0 or can_id in sent  # in tick 0 it may have been requested twice
             else:
-                is_strange = place < early or (can_id in _ONCE and can_id in sent)
+                is_strange = place < early or (can_id in ONCE and can_id in sent)
             if is_strange:
                 strange.append((can_id, tick))
             else:

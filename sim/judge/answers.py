@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ from fsw.wire.messages import (
     TickDone,
     intact,
 )
+from sim.flight.second_senders import ONCE
 from sim.record.candump import LogEntry
 
 FROM_FSW = frozenset(can_id for can_id, sender in SENDERS.items() if sender == "FSW")
@@ -41,6 +43,14 @@ class CoilRequest:
     refused: int = 0
 
 
+class OutOfTurn(NamedTuple):
+    """A message that is not where it belongs: after TICK_DONE of the tick, or a second time before it."""
+
+    tick: int
+    name: str
+    late: bool
+
+
 @dataclass(slots=True)
 class AnswerRecord:
     """The record of the answers.
@@ -50,7 +60,9 @@ class AnswerRecord:
         boots: ticks in which FSW_BOOT came; -1: before the first.
         answered_in: by tick, the tick in which its TICK_DONE came; -1: it did not.
         repeats: how often SYNC was repeated, by tick.
-        odd_done: TICK_DONE of a tick that had not come: the tick in which it came, and the one it names.
+        odd_done: TICK_DONE of a tick that had not come, or had its answer: the tick in which it came, and the
+            one it names.
+        out_of_turn: messages after TICK_DONE, or twice in an answer; none of a SYNC that was repeated.
         broken: number of frames that are not whole, by message.
         first_broken: of each, the tick and the frame.
         counters: number of counters that do not rise by one, by message.
@@ -67,6 +79,7 @@ class AnswerRecord:
     answered_in: list[int] = field(default_factory=list)
     repeats: Counter[int] = field(default_factory=Counter)
     odd_done: list[tuple[int, int]] = field(default_factory=list)
+    out_of_turn: list[OutOfTurn] = field(default_factory=list)
     broken: Counter[str] = field(default_factory=Counter)
     first_broken: dict[str, tuple[int, Frame]] = field(default_factory=dict)
     counters: Counter[str] = field(default_factory=Counter)
@@ -79,6 +92,27 @@ class AnswerRecord:
 
 
 MOST_ODD = 100
+
+
+def tick_as_named(at: int, named: int) -> str:
+    """A TICK_DONE that names another tick than the one that it answers, and what that seems to come of."""
+    ways = {
+        "the byte order is wrong, it is that tick with its bytes the other way round": named
+        and _swapped(named) == at,
+        "the one after it": named == at + 1,
+        "the one before it": named == (at - 1) % 2**32,
+        "the lowest byte of it alone": named == at & 0xFF,
+        "the lowest two bytes of it alone": named == at & 0xFFFF,
+        "always the first": not named,
+    }
+    why = next((f": {way}" for way, holds in ways.items() if holds), "")
+    return f"TICK_DONE names tick {named} in the answer to tick {at}{why}"
+
+
+def _swapped(tick: int) -> int:
+    return int.from_bytes(tick.to_bytes(4, "little"), "big")
+
+
 CURRENT_WHILE_OFF = 3
 """``event`` of COIL_EVENT; restated here, as in docs/icd.md."""
 _STEP = 16
@@ -91,6 +125,7 @@ class _Reader:
         self.record = AnswerRecord()
         self._forged = forged
         self._open = False
+        self._in_answer: set[str] = set()
         self._counter: dict[int, int] = {}
         self._stuck = False
         self._refusable: dict[tuple[int, int], int] = {}
@@ -115,6 +150,7 @@ class _Reader:
             tick = Sync.decode(frame.data).tick
             if tick == record.ticks:
                 self._open = True
+                self._in_answer.clear()
                 record.ticks += 1
                 record.answered_in.append(-1)
             elif tick == self._tick:
@@ -148,6 +184,7 @@ class _Reader:
             self._take_done(TickDone.decode(frame.data))
             return
         self._take_counter(frame, name)
+        self._take_turn(frame.can_id, name)
         if frame.can_id == FswBoot.ID:
             if record.boots and self._tick < 0:
                 return  # asked for again
@@ -161,15 +198,24 @@ class _Reader:
             self._estimated_at = self._tick
             record.estimates += 1
 
+    def _take_turn(self, can_id: int, name: str) -> None:
+        record, late = self.record, not self._open
+        if can_id == FswBoot.ID:
+            self._in_answer.clear()
+        elif record.ticks and self._tick not in record.repeats and len(record.out_of_turn) < MOST_ODD:
+            if late or (can_id in ONCE and name in self._in_answer):
+                record.out_of_turn.append(OutOfTurn(self._tick, name, late))
+            self._in_answer.add(name)
+
     def _take_done(self, done: TickDone) -> None:
         record = self.record
-        if not 0 <= done.tick <= self._tick:
-            if len(record.odd_done) < MOST_ODD:
-                record.odd_done.append((self._tick, done.tick))
-        elif record.answered_in[done.tick] < 0:
+        self._in_answer.clear()
+        if 0 <= done.tick <= self._tick and record.answered_in[done.tick] < 0:
             self._open &= done.tick != self._tick
             record.answered_in[done.tick] = self._tick
             record.state_crcs += done.state_crc != 0
+        elif self._open and done.tick not in record.repeats and len(record.odd_done) < MOST_ODD:
+            record.odd_done.append((self._tick, done.tick))
 
     def _take_counter(self, frame: Frame, name: str) -> None:
         counter, last = frame.data[0] & 0xF, self._counter.get(frame.can_id)

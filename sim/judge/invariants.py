@@ -10,10 +10,12 @@ from hil_stub.coils.interlock import COILS, MAX_LEVEL, CoilLimits
 from sim.console import counted
 from sim.fault_table.wrong_estimates import WRONG_S
 from sim.faults.section import forge_answers, forge_sync
-from sim.judge.answers import AnswerRecord, CoilRequest, crc_as_sent
+from sim.flight.second_senders import describe_senders
+from sim.judge.answers import AnswerRecord, CoilRequest, crc_as_sent, tick_as_named
 from sim.judge.driven import DrivenLimits
 from sim.judge.honesty import WrongAttitude
 from sim.judge.profile import Profile
+from sim.judge.unheard import tell_unheard
 from sim.record.run_record import RunRecord
 from sim.report.requirements.judge import Outcome
 from sim.report.verdict import Verdict
@@ -91,23 +93,18 @@ def _flies_to_its_end(flight: JudgedFlightRecord) -> Found:
     why = flight.summary.get("failures", {}).get(Verdict.COMPLETE.value)
     if why is None:
         return _kept(f"all {counted(flight.answers.ticks, 'tick')} flown")
+    came = tell_unheard(flight.run.get("unheard"))
+    heard = f": {came}" if came else ""
     said = f", the last that it printed is: {flight.said}" if flight.said else ""
-    return _broken(f"{why}{said}")
+    return _broken(f"{why}{heard}{said}")
 
 
 def _answers(flight: JudgedFlightRecord) -> Found:
     """Every tick is answered, and in real time in its own time."""
     record = flight.answers
-    swapped = [(at, named) for at, named in record.odd_done if _swapped(named, 4) in (at, at - 1) and named]
-    if swapped and not flight.faulty:
-        at, named = swapped[0]
-        return _broken(
-            f"the byte order is wrong: TICK_DONE names tick {named} in tick {at}, "
-            f"which is {_swapped(named, 4)} with its bytes the other way round"
-        )
     if record.odd_done and not flight.faulty:
-        at, named = record.odd_done[0]
-        return _broken(f"TICK_DONE names tick {named} in tick {at}")
+        more = f", and {len(record.odd_done) - 1} more" if len(record.odd_done) > 1 else ""
+        return _broken(f"{tick_as_named(*record.odd_done[0])}{more}")
     if hang := _longest_hang(record):
         first, ticks = hang
         least_s, most_s = ticks / flight.tick_hz, (ticks + 1) / flight.tick_hz
@@ -313,13 +310,46 @@ def _heeds_the_board(flight: JudgedFlightRecord) -> Found:
     )
 
 
+def _in_its_turn(flight: JudgedFlightRecord) -> Found:
+    """It sends before TICK_DONE, and one request and one of each estimate in an answer."""
+    faults = flight.scenario.fault
+    if forge_answers(faults) or forge_sync(faults):
+        return _unjudged("the scenario forges frames")
+    own = [one for one in flight.answers.out_of_turn if _is_its_own(flight, one.name)]
+    if not own:
+        return _kept("nothing comes after TICK_DONE, and nothing twice in an answer")
+    (tick, name, late), request = own[0], own[0].name in _REQUESTS
+    told = {
+        (True, True): f"a late request in tick {tick}: {name} comes after TICK_DONE({tick})",
+        (True, False): f"two requests in tick {tick}: {name} comes twice in its answer",
+        (False, True): f"late in tick {tick}: {name} comes after TICK_DONE({tick})",
+        (False, False): f"twice in the answer to tick {tick}: {name}",
+    }[request, late]
+    more = f", and {len(own) - 1} more" if len(own) > 1 else ""
+    return _broken(f"{told}{more}")
+
+
+_REQUESTS = frozenset(("COIL_FIRE", "COIL_DIPOLE", "WHEEL_TORQUE"))
+
+
+def _is_its_own(flight: JudgedFlightRecord, name: str) -> bool:
+    """Whether frames are sure to be the flight software's: it alone is on the bus, or its counter goes on."""
+    alone = flight.run.get("flight_software", {}).get("command") is not None
+    return alone or (name not in flight.answers.counters and name != "TICK_DONE")
+
+
 def _alone(flight: JudgedFlightRecord) -> Found:
     """No other node sends in its place, or it in another's."""
     faults = flight.scenario.fault
     if forge_answers(faults) or forge_sync(faults):
         return _unjudged("the scenario forges frames")
-    why = flight.summary.get("failures", {}).get(Verdict.SECOND_SENDERS.value)
-    return _kept("nobody else sends its frames, or it those of others") if why is None else _broken(why)
+    record = flight.answers
+    told = {one.name for one in record.out_of_turn} | ({"TICK_DONE"} if record.odd_done else set())
+    explained = {name for name in told if _is_its_own(flight, name)}
+    others = [one for one in flight.run.get("second_senders", []) if one["message"] not in explained]
+    if others:
+        return _broken(describe_senders(others))
+    return _kept("nobody else sends its frames, or it those of others")
 
 
 def _tells_its_estimate(flight: JudgedFlightRecord) -> Found:
@@ -357,6 +387,7 @@ RULES: dict[str, Rule] = {
     "drives the coils": _acts,
     "limits kept": _limits,
     "heeds a stuck coil": _heeds_the_board,
+    "sends in its turn": _in_its_turn,
     "alone on the bus": _alone,
     "tells its estimate": _tells_its_estimate,
     "is honest": _is_honest,

@@ -84,11 +84,28 @@ class SoftwareRecord(TypedDict):
 
 
 @with_config(_OPEN)
+class FrameRecord(TypedDict):
+    """A frame: its identifier with the flags of ``can_id``, and its data in hexadecimal digits."""
+
+    id: Count
+    data: Annotated[str, Field(pattern="^([0-9A-F]{2}){0,8}$")]
+
+
+@with_config(_OPEN)
+class UnheardRecord(TypedDict):
+    """What the flight software sent where it did not answer ``tick``, or (None) did not boot."""
+
+    tick: Count | None
+    frames: list[FrameRecord]
+
+
+@with_config(_OPEN)
 class RunRecord(FlightRecord):
     """run.json.
 
     ``code``: whether the flight code ran compiled; ``algebra``: what computed the filter's matrices;
-    ``ended``: why a flight was not completed, where the plant knows; ``law_object``: only whoever has that
+    ``ended``: why a flight was not completed, where the plant knows; ``unheard``: what came instead of the
+    answer for want of which it ended; ``law_object``: only whoever has that
     law can replay the run; ``flight_software``: another one than this project's has flown.
     """
 
@@ -109,6 +126,7 @@ class RunRecord(FlightRecord):
     algebra: NotRequired[Text]
     second_senders: NotRequired[list[SenderRecord]]
     ended: NotRequired[Text]
+    unheard: NotRequired[UnheardRecord]
     law_object: NotRequired[LawRecord]
     flight_software: NotRequired[SoftwareRecord]
 

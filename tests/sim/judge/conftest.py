@@ -20,9 +20,9 @@ FIRMWARE = Path(__file__).with_name("firmware.py")
 TUMBLER = str(Path(__file__).with_name("tumbler.toml"))
 
 
-def under_test(mistake="", profile=Profile.DETUMBLE, pace="lockstep", answer_s=20.0):
+def under_test(mistake="", profile=Profile.DETUMBLE, pace="lockstep", answer_s=20.0, boot_s=30.0):
     command = NodeCommand((sys.executable, str(FIRMWARE), "{port}", *filter(None, [mistake])))
-    return SoftwareUnderTest(command, "loop", profile, parse_pace(pace), Patience(30.0, answer_s, answer_s))
+    return SoftwareUnderTest(command, "loop", profile, parse_pace(pace), Patience(boot_s, answer_s, answer_s))
 
 
 @pytest.fixture

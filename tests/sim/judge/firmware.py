@@ -17,6 +17,7 @@ RECORD = struct.Struct("=IB3x8s")
 SYNC, TICK_DONE, MAG_FIELD, COIL_STATUS, COIL_FIRE = 0x180, 0x280, 0x110, 0x100, 0x080
 FSW_BOOT, PLANT_BOOT, PLANT_END, REF_ATTITUDE, REF_RATE = 0x510, 0x500, 0x700, 0x120, 0x121
 
+FIELD = {"bytes": ">3h", "unsigned": "<3H"}
 PULSE_MS, SPAN, DEAD_NT_PER_S, STRONG_NT_PER_S = 3000, 10, 130.0, 300.0
 EPOCH, PERIOD_S, U0, INCLINATION, FIELD_NT = 1742461200, 6052.4, 0.0, radians(98.6), 21_500.0
 
@@ -53,14 +54,18 @@ class Firmware:
         self.boot()
 
     def boot(self):
-        self.bus.sendall(sealed(FSW_BOOT, struct.pack("<BBI", 0, 1, 0)))
+        record = bytearray(sealed(FSW_BOOT, struct.pack("<BBI", 0, 1, 0)))
+        record[14] ^= self.mistake == "boot-crc"
+        record[3] |= 0x80 if self.mistake == "boot-extended" else 0  # on a little-endian machine
+        record[4] -= self.mistake == "boot-short"
+        self.bus.sendall(bytes(record))
 
     def run(self):
         while record := self.received.read(RECORD.size):
             can_id, _, data = RECORD.unpack(record)
             word = int.from_bytes(data[:7], "little")
             if can_id == MAG_FIELD:
-                self.field = struct.unpack(">3h" if self.mistake == "bytes" else "<3h", data[1:7])
+                self.field = struct.unpack(FIELD.get(self.mistake, "<3h"), data[1:7])
             elif can_id == REF_ATTITUDE:
                 self.attitude = [signed(word, first, 17) / 65536.0 for first in (5, 22, 39)]
             elif can_id == REF_RATE:
@@ -90,8 +95,12 @@ class Firmware:
         dot = self.field_change(unix_time_s)
         if dot is not None and tick >= self.quiet_until and (not self.stuck or self.mistake == "stuck"):
             request = self.request(tick, dot)
-        done = struct.pack("<II", tick, 0)
-        self.bus.sendall(request + RECORD.pack(TICK_DONE, 8, done))
+        if self.mistake == "twice" and request:
+            request += self.request(tick, dot)
+        named = tick + 1 if self.mistake == "done-next" else tick
+        order = ">" if self.mistake == "done-order" else "<"
+        done = RECORD.pack(TICK_DONE, 8, struct.pack(f"{order}II", named, 0))
+        self.bus.sendall(done + request if self.mistake == "late" else request + done)
 
     def field_change(self, unix_time_s):
         """Of the field in body axes, nT/s; None: not known."""

@@ -1,5 +1,7 @@
 """What is read of a flight software's frames, and what of those that are not as they should be."""
 
+import pytest
+
 from fsw.wire.frame import Frame, crc8
 from fsw.wire.messages import (
     CoilEvent,
@@ -13,7 +15,7 @@ from fsw.wire.messages import (
     Sync,
     TickDone,
 )
-from sim.judge.answers import crc_as_sent, read_answers
+from sim.judge.answers import OutOfTurn, crc_as_sent, read_answers, tick_as_named
 from sim.record.candump import LogEntry
 
 
@@ -66,9 +68,45 @@ def test_a_done_of_no_tick_is_odd():
     assert found.answered_in == [0, -1]
 
 
+def test_a_done_of_a_tick_that_has_its_answer_is_odd_unless_its_sync_was_repeated():
+    assert record(BOOT, sync(0), done(0), sync(1), done(0)).odd_done == [(1, 0)]
+    assert record(BOOT, sync(0), sync(0), done(0), done(0), sync(1), done(1)).odd_done == []
+
+
+@pytest.mark.parametrize(
+    ("at", "named", "why"),
+    [
+        (0, 1, "the one after it"),
+        (0, 2**32 - 1, "the one before it"),
+        (7, 6, "the one before it"),
+        (300, 0x2C01_0000, "the byte order is wrong, it is that tick with its bytes the other way round"),
+        (300, 44, "the lowest byte of it alone"),
+        (70_000, 4464, "the lowest two bytes of it alone"),
+        (5, 0, "always the first"),
+    ],
+)
+def test_what_another_tick_seems_to_come_of_is_told(at, named, why):
+    assert tick_as_named(at, named) == f"TICK_DONE names tick {named} in the answer to tick {at}: {why}"
+    assert tick_as_named(5, 9) == "TICK_DONE names tick 9 in the answer to tick 5"
+
+
 def test_a_counter_that_stands_still_is_counted():
     still = NavAttitude(1, 0.0, 0.0, 0.0, counter=5).encode()
     assert record(BOOT, sync(0), still, done(0), sync(1), still, done(1)).counters == {"NAV_ATTITUDE": 1}
+
+
+def test_a_request_after_the_answer_or_a_second_one_in_it_is_out_of_turn():
+    late = record(BOOT, sync(0), done(0), fire(0), sync(1), done(1))
+    assert late.out_of_turn == [OutOfTurn(0, "COIL_FIRE", True)]
+    twice = record(BOOT, sync(0), fire(0), fire(0, 1, 1), done(0))
+    assert twice.out_of_turn == [OutOfTurn(0, "COIL_FIRE", False)]
+
+
+def test_what_answers_another_tick_or_a_sync_again_is_in_its_turn():
+    each = record(BOOT, sync(0), fire(0), done(0), sync(1), fire(1, 1, 1), done(1))
+    behind = record(BOOT, sync(0), sync(1), fire(0), done(0), fire(1, 1, 1), done(1))
+    again = record(BOOT, sync(0), sync(0), fire(0), done(0), fire(0, 0, 1), done(0))
+    assert [each.out_of_turn, behind.out_of_turn, again.out_of_turn] == [[], [], []]
 
 
 def test_a_request_knows_what_became_of_it():

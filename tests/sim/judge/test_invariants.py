@@ -6,7 +6,7 @@ import pytest
 
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilFire, CoilRefusedReason
-from sim.judge.answers import AnswerRecord, CoilRequest
+from sim.judge.answers import AnswerRecord, CoilRequest, OutOfTurn
 from sim.judge.driven import DrivenLimits
 from sim.judge.honesty import WrongAttitude
 from sim.judge.invariants import RULES, JudgedFlightRecord, judge_invariants
@@ -26,7 +26,7 @@ def record(pace="lockstep", settings=(), profile=Profile.ACTUATOR, failures=None
     return JudgedFlightRecord(
         load("microsat", parse_settings(settings)),
         profile,
-        {"pace": pace},
+        {"pace": pace} | answers.pop("run", {}),
         {"failures": failures or {}, "pulses": {"total": pulses}},
         AnswerRecord(**sound | answers),
         said,
@@ -99,6 +99,13 @@ def test_one_that_ends_is_told_with_its_last_words():
     assert text.endswith("it ended with exit code 1, the last that it printed is: KeyError: 5")
 
 
+def test_what_came_in_place_of_an_answer_is_told_with_the_end():
+    unheard = {"tick": 1, "frames": [{"id": 0x280, "data": "0200000000000000"}]}
+    flight = record(failures={"complete": "no answer to tick 1"})
+    (end, *_) = judge_invariants(flight._replace(run={**flight.run, "unheard": unheard}))
+    assert end.text == "no answer to tick 1: TICK_DONE names tick 2 in the answer to tick 1: the one after it"
+
+
 def test_a_tick_without_an_answer_is_told():
     answered = [*range(10), -1, -1, *range(12, TICKS)]
     assert broken("answers each tick", answered_in=answered) == (
@@ -108,13 +115,14 @@ def test_a_tick_without_an_answer_is_told():
 
 def test_the_bytes_of_tick_done_the_other_way_round_are_told():
     text = broken("answers each tick", odd_done=[(1, 1 << 24)], answered_in=[0, -1], ticks=2, estimates=2)
-    assert text.startswith(
-        "the byte order is wrong: TICK_DONE names tick 16777216 in tick 1, which is 1 with"
+    assert text == (
+        "TICK_DONE names tick 16777216 in the answer to tick 1: the byte order is wrong, it is that tick "
+        "with its bytes the other way round"
     )
 
 
 def test_another_tick_is_told_as_it_is():
-    assert broken("answers each tick", odd_done=[(5, 9)]) == "TICK_DONE names tick 9 in tick 5"
+    assert broken("answers each tick", odd_done=[(5, 9)]) == "TICK_DONE names tick 9 in the answer to tick 5"
 
 
 @pytest.mark.parametrize(
@@ -240,10 +248,40 @@ def test_limits_are_those_of_the_audit_or_of_what_flowed():
 
 
 def test_a_second_sender_is_told_unless_the_scenario_forges():
-    failures = {"second_senders": "a second sender is on the bus: SYNC"}
-    assert broken("alone on the bus", failures=failures) == failures["second_senders"]
+    sender = [{"message": "SYNC", "id": "180", "tick": 7, "frames": 1}]
+    text = broken("alone on the bus", run={"second_senders": sender})
+    assert text == "a second sender is on the bus: SYNC (180) at tick 7"
     forged = ('fault=[{kind="second_sender", at_s=10.0}]',)
-    assert told("alone on the bus", failures=failures, settings=forged)[0] is Outcome.NOT_JUDGED
+    outcome, _ = told("alone on the bus", run={"second_senders": sender}, settings=forged)
+    assert outcome is Outcome.NOT_JUDGED
+
+
+STARTED = {"flight_software": {"command": "./firmware", "profile": "actuator"}}
+RUNS_ALREADY = {"flight_software": {"command": None, "profile": "actuator"}}
+FIRES = {"second_senders": [{"message": "COIL_FIRE", "id": "080", "tick": 7, "frames": 1}]}
+
+
+@pytest.mark.parametrize(
+    ("out_of_turn", "words"),
+    [
+        (OutOfTurn(7, "COIL_FIRE", True), "a late request in tick 7: COIL_FIRE comes after TICK_DONE(7)"),
+        (OutOfTurn(7, "COIL_FIRE", False), "two requests in tick 7: COIL_FIRE comes twice in its answer"),
+        (OutOfTurn(7, "NAV_RATE", True), "late in tick 7: NAV_RATE comes after TICK_DONE(7)"),
+        (OutOfTurn(7, "NAV_RATE", False), "twice in the answer to tick 7: NAV_RATE"),
+    ],
+)
+@pytest.mark.parametrize("run", [STARTED, RUNS_ALREADY])
+def test_what_comes_out_of_turn_is_named_and_no_second_sender(out_of_turn, words, run):
+    senders = FIRES if out_of_turn.name == "COIL_FIRE" else {}
+    assert broken("sends in its turn", run=run | senders, out_of_turn=[out_of_turn]) == words
+    assert broken("sends in its turn", run=run, out_of_turn=[out_of_turn] * 3) == f"{words}, and 2 more"
+
+
+def test_where_others_may_be_on_the_bus_and_the_counter_does_not_go_on_it_is_a_second_sender():
+    late = {"out_of_turn": [OutOfTurn(7, "COIL_FIRE", True)], "counters": Counter(COIL_FIRE=2)}
+    found = {one.name: one for one in judge_invariants(record(run=RUNS_ALREADY | FIRES, **late))}
+    assert found["alone on the bus"].text == "a second sender is on the bus: COIL_FIRE (080) at tick 7"
+    assert found["sends in its turn"].outcome is Outcome.MET
 
 
 def test_an_estimate_is_asked_of_the_profile_that_promises_it():

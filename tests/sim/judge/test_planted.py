@@ -1,4 +1,4 @@
-"""A sound firmware passes, and ten planted mistakes are told, each in words and by the rule it breaks."""
+"""A sound firmware passes, and planted mistakes are told, each in words and by the rule it breaks."""
 
 from pathlib import Path
 
@@ -102,6 +102,50 @@ def test_one_that_heeds_it_is_not_blamed(flown):
 
 
 @pytest.mark.paced
+@pytest.mark.parametrize(
+    ("mistake", "words"),
+    [
+        ("boot-crc", "510#00010000000005, with a wrong CRC, expected 510#00010000000004"),
+        ("boot-short", "510#000100000000, of 6 bytes and not of 7, as in 510#00010000000004"),
+        ("boot-extended", "80000510#00010000000004: bit 31 of its identifier makes it an"),
+    ],
+)
+def test_a_boot_that_is_not_heard_is_told_with_what_is_wrong(flown, mistake, words):
+    flight = flown(mistake, orbits=0.05, boot_s=1.5)
+    assert list(broken(flight)) == ["flies to its end"]
+    end = broken(flight)["flies to its end"]
+    assert "the flight software has not booted within 2 s" in end
+    assert words in end
+
+
+@pytest.mark.parametrize(
+    ("mistake", "words"),
+    [
+        ("done-next", "TICK_DONE names tick 1 in the answer to tick 0: the one after it"),
+        ("done-order", "TICK_DONE names tick 16777216 in the answer to tick 1: the byte order is wrong"),
+    ],
+)
+def test_a_tick_done_of_another_tick_is_told(flown, mistake, words):
+    flight = flown(mistake, orbits=0.05, answer_s=1.0)
+    assert words in broken(flight)["flies to its end"]
+    assert words in failed_text(flight)
+
+
+@pytest.mark.parametrize(
+    ("mistake", "words"),
+    [
+        ("late", "a late request in tick {0}: COIL_FIRE comes after TICK_DONE({0})"),
+        ("twice", "two requests in tick {0}: COIL_FIRE comes twice in its answer"),
+    ],
+)
+def test_a_request_out_of_turn_is_told_and_is_no_second_sender(flown, mistake, words):
+    flight = flown(mistake, orbits=0.06)
+    told = broken(flight)
+    first = flight.record.answers.out_of_turn[0].tick
+    assert told["sends in its turn"].startswith(words.format(first))
+    assert "alone on the bus" not in told
+
+
 def test_a_hang_of_10_s_is_told_where_time_counts(flown):
     flight = flown("hang", orbits=0.04, hang_s="0.52", pace="realtime:20")
     text = broken(flight)["answers each tick"]
