@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from torquer.api.errors import Error, InputError
     from torquer.api.export import Export, export
     from torquer.api.flight import fly, report
+    from torquer.api.judge import JudgedSoftware, judge
     from torquer.api.phasing import WiringVerdict, phasing
     from torquer.api.replay import replay
     from torquer.api.run import Run, load
@@ -36,6 +37,7 @@ _MODULES = {
     "Export": "export",
     "FollowedPass": "telemetry",
     "InputError": "errors",
+    "JudgedSoftware": "judge",
     "NewScenario": "satellites",
     "Run": "run",
     "SatelliteCalibration": "calibrate",
@@ -51,6 +53,7 @@ _MODULES = {
     "design": "design",
     "export": "export",
     "fly": "flight",
+    "judge": "judge",
     "load": "run",
     "new": "satellites",
     "phasing": "phasing",
@@ -74,6 +77,7 @@ __all__ = [
     "Export",
     "FollowedPass",
     "InputError",
+    "JudgedSoftware",
     "NewScenario",
     "Run",
     "SatelliteCalibration",
@@ -89,6 +93,7 @@ __all__ = [
     "design",
     "export",
     "fly",
+    "judge",
     "load",
     "new",
     "phasing",

@@ -20,6 +20,7 @@ from sim.bench.tick_source import PlantTicks, SyncOnly, TickSource, line_to
 from sim.console import answer, fail, plain, say
 from sim.errors import HarnessError
 from sim.flight.bus_in_use import FLIGHT_NODES, refuse_bus_in_use
+from sim.flight.node_command import NodeCommand
 from sim.flight.second_senders import describe_senders
 from sim.flight.table_file import write_flight_table
 from sim.progress import progress
@@ -38,6 +39,8 @@ BOARDS = {"coil": "COIL", "magnetometer": "MAG", "sun": "SUN", "cells": "SUN"}
 """The nodes; a satellite has a Sun sensor or Sun cells."""
 SENSORS = ("magnetometer", "sun", "cells")
 NUMBERS, PAGE = "hil.json", "hil.html"
+SOFTWARE = "flight-software.log"
+"""In the run directory: what the command of a flight software of one's own printed."""
 BOOT_S = 30.0
 ASK_AGAIN_S = 0.5
 
@@ -58,6 +61,8 @@ class HilSettings:
         warm_s: from when on memory is judged.
         seed: of the plant.
         out: run directory to be written; None: no log is written.
+        software: the command of a flight software of one's own, which a bench does not disarm; None: this
+            project's.
     """
 
     scenario: Scenario
@@ -71,6 +76,7 @@ class HilSettings:
     warm_s: float
     seed: int
     out: Path | None
+    software: NodeCommand | None = None
 
 
 def real_boards(names: str | None) -> frozenset[str]:
@@ -181,9 +187,7 @@ def _run(
     scenario = settings.scenario
     ticks = ticks_in(scenario, settings.seconds)
     tick_hz = scenario.time.tick_hz
-    arming = () if settings.armed else ("--disarmed",)
-    arguments = ("--table", str(table), "--bench", "--bus", spec, "--parent", str(os.getpid()), *arming)
-    fsw = processes.start("fsw", "fsw", *arguments)
+    fsw = _software(settings, spec, processes, folder, table)
     booted = _await_boots(bus, {"FSW": fsw}, ask=True)[-1:]
     stubs = {
         name: _board(settings, processes, name, spec)
@@ -210,6 +214,19 @@ def _run(
     numbers["budgets"] = [{**line._asdict(), "kept": line.kept} for line in lines]
     say(render(numbers, lines))
     return numbers
+
+
+def _software(
+    settings: HilSettings, spec: str, processes: BenchProcesses, folder: Path, table: Path
+) -> BenchProcess:
+    """Start the flight software."""
+    if settings.software is not None:
+        given = {"scenario": str((folder / run_dir.SCENARIO).absolute())}
+        popen = settings.software.start(spec, given, folder / SOFTWARE)
+        return processes.take("fsw", popen, folder / SOFTWARE)
+    arming = () if settings.armed else ("--disarmed",)
+    arguments = ("--table", str(table), "--bench", "--bus", spec, "--parent", str(os.getpid()), *arming)
+    return processes.start("fsw", "fsw", *arguments)
 
 
 def _pids(processes: BenchProcesses, hub_pid: int | None) -> dict[str, int]:

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from tempfile import TemporaryFile
 from types import TracebackType
 from typing import IO, NamedTuple, Self
@@ -62,6 +63,11 @@ class BenchProcesses:
         if popen.stdin is not None:
             os.set_blocking(popen.stdin.fileno(), False)
         self.by_name[name] = BenchProcess(name, popen, errors)
+        return self.by_name[name]
+
+    def take(self, name: str, popen: subprocess.Popen[bytes], output: Path) -> BenchProcess:
+        """Take a process that was started elsewhere, and writes into a file, among these."""
+        self.by_name[name] = BenchProcess(name, popen, output.open("rb"))
         return self.by_name[name]
 
     def __enter__(self) -> Self:

@@ -16,7 +16,7 @@ from fsw.bus.interface import Bus
 from fsw.bus.link import LoopLink
 from fsw.bus.open_bus import open_bus, resolve
 from sim.errors import FlightError
-from sim.flight.bus_in_use import refuse_bus_in_use
+from sim.flight.bus_in_use import ALL_NODES, refuse_bus_in_use
 from sim.flight.flight_loop import ProgressCallback
 from sim.flight.fsw_answers import ANSWER_TIMEOUT_S, Patience
 from sim.flight.second_senders import describe_senders
@@ -67,31 +67,35 @@ MARGIN_S = 5.0
 
 
 @contextmanager
-def serve_bus(bus: str) -> Iterator[tuple[str, socket.socket | None]]:
+def serve_bus(bus: str, others: frozenset[str] = ALL_NODES) -> Iterator[tuple[str, socket.socket | None]]:
     """A bus for two processes: its full spec, and the listener of a loop bus that the plant is to host.
+
+    Args:
+        bus: as the user wrote it.
+        others: nodes that must not be on it yet, where another process has opened it.
 
     Raises:
         BusError: the bus cannot be used, or is in use by another flight.
     """
     spec = resolve(bus)
     if not spec.startswith("loop:"):
-        _refuse_in_use(open_bus(spec), spec)
+        _refuse_in_use(open_bus(spec), spec, others)
         yield spec, None
         return
     port = int(spec.removeprefix("loop:"))
     try:
         listener = listen(0 if bus in ("loop", "auto") else port)
     except OSError:  # another process hosts it, or uses the port for something else
-        _refuse_in_use(LoopLink(port, may_host=False), spec)
+        _refuse_in_use(LoopLink(port, may_host=False), spec, others)
         yield spec, None
         return
     with listener:
         yield f"loop:{listener.getsockname()[1]}", listener
 
 
-def _refuse_in_use(bus: Bus, spec: str) -> None:
+def _refuse_in_use(bus: Bus, spec: str, others: frozenset[str]) -> None:
     try:
-        refuse_bus_in_use(bus, spec)
+        refuse_bus_in_use(bus, spec, others)
     finally:
         bus.close()
 

@@ -1,9 +1,12 @@
-"""A coil driver board of one's own: checked against docs/icd.md, then flown with, in real time."""
+"""A coil driver board of one's own: checked against docs/icd.md, then flown with, in real time.
+
+Its flight software is this project's, or one's own as well.
+"""
 
 import json
 import signal
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from math import ceil
@@ -16,7 +19,7 @@ from fsw.bus.open_bus import open_bus
 from fsw.wire.messages import CoilBoot, PlantBoot, intact
 from sim.audit.check import check
 from sim.bench.budgets import Budgets
-from sim.bench.command import NUMBERS, HilSettings, hil
+from sim.bench.command import NUMBERS, SOFTWARE, HilSettings, hil
 from sim.bench.processes import hub_of, wait_or_kill
 from sim.conformance.board_link import BOARD_KINDS, BoardLink
 from sim.conformance.board_under_test import BoardLimits
@@ -25,8 +28,15 @@ from sim.console import counted
 from sim.drawing.page_parts import PageHeader, PageSection, Table, sections_page
 from sim.errors import HarnessError
 from sim.flight.node_command import NodeCommand, last_words
+from sim.judge.answers import read_answers
+from sim.judge.flight import SoftwareUnderTest
+from sim.judge.invariants import JudgedFlightRecord, judge_invariants
 from sim.junit import JunitCase
+from sim.record import run_dir
+from sim.record.candump import whole_entries
 from sim.record.destination import check_folder
+from sim.report.requirements.judge import Outcome
+from sim.report.verdict import Verdict
 from sim.scenario.coil_limits import coil_limits
 from sim.scenario.schema import Scenario
 from sim.value_types import Json
@@ -73,7 +83,7 @@ def check_board(
     board: CoilBoardUnderTest,
     scenario: Scenario,
     folder: Path,
-    report: Callable[[BoardVerdict], None] = lambda verdict: None,
+    report: Callable[[BoardVerdict], object] = lambda verdict: None,
 ) -> list[BoardVerdict]:
     """Check a board against docs/icd.md, its limits being those of the scenario.
 
@@ -99,12 +109,18 @@ def check_board(
 
 
 def fly_with_board(
-    board: CoilBoardUnderTest, scenario: Scenario, folder: Path, seconds: float | None, seed: int
+    board: CoilBoardUnderTest,
+    software: SoftwareUnderTest | None,
+    scenario: Scenario,
+    folder: Path,
+    seconds: float | None,
+    seed: int,
 ) -> list[BoardVerdict]:
-    """Fly in real time with a board, this project's flight software and plant; the log is in ``FLIGHT``.
+    """Fly in real time with a board, a flight software and this project's plant; the log is in ``FLIGHT``.
 
     Args:
         board: the board.
+        software: is judged too; None: this project's flies.
         scenario: what is flown.
         folder: of the judgement.
         seconds: how long; None: for some pulses.
@@ -131,10 +147,49 @@ def fly_with_board(
             NEVER_WARM_S,
             seed,
             path,
+            None if software is None else software.command,
         )
         hil(settings)
     numbers = json.loads((path / NUMBERS).read_text(encoding="utf-8"))
-    return flight_verdicts(path, numbers, late, board.armed)
+    verdicts = flight_verdicts(path, numbers, late, board.armed)
+    return verdicts if software is None else verdicts + software_verdicts(path, scenario, software, numbers)
+
+
+OF_ITS_TIME = "answers each tick"
+"""The rule that a computer which is late may break in the flight software's place."""
+
+
+def software_verdicts(
+    path: Path, scenario: Scenario, software: SoftwareUnderTest, numbers: Json
+) -> list[BoardVerdict]:
+    """What a flight on the bench shows of the flight software: the rules that every one must keep.
+
+    Args:
+        path: its run directory.
+        scenario: that was flown.
+        software: the flight software.
+        numbers: of the bench.
+    """
+    log = run_dir.bus_log(path)
+    pulses = len(check(path, None, ticks_alone=True).pulses)
+    run = run_dir.read_run(path)
+    run["flight_software"] = {"command": None, "profile": software.profile.value}  # a board is beside it
+    ended = numbers["ended"].get("fsw", "")
+    summary = {
+        "failures": {Verdict.COMPLETE.value: f"it ended before its time, {ended}"} if ended else {},
+        "pulses": {"total": pulses},
+    }
+    answers, said = read_answers(whole_entries(log)), last_words(path / SOFTWARE)
+    record = JudgedFlightRecord(scenario, software.profile, run, summary, answers, said if ended else "")
+    busy = "this computer was late" if numbers["slips"] and not ended else ""
+    found = []
+    for one in judge_invariants(record):
+        broken = one.text if one.outcome is Outcome.FAILED else ""
+        unjudged = one.text if one.outcome is Outcome.NOT_JUDGED else ""
+        if one.name == OF_ITS_TIME and broken and busy:
+            broken, unjudged = "", busy
+        found.append(BoardVerdict(f"software: {one.name}", one.text, broken, unjudged))
+    return found
 
 
 def flight_verdicts(path: Path, numbers: Json, late: int, armed: bool) -> list[BoardVerdict]:
@@ -222,17 +277,23 @@ def _await_board(bus: Bus, boot_s: float, process: Popen[bytes], folder: Path) -
     raise HarnessError(f"the board sends no COIL_BOOT within {boot_s:g} s of its start")
 
 
-def board_suites(found: list[BoardVerdict]) -> dict[str, list[JunitCase]]:
+def board_suites(found: Sequence[BoardVerdict]) -> dict[str, list[JunitCase]]:
     """The verdicts as tests of JUnit."""
     return {"board": [JunitCase("board", one.name, 0.0, one.failure, one.skipped) for one in found]}
 
 
-def board_json(found: list[BoardVerdict]) -> Json:
+def board_line(one: BoardVerdict) -> str:
+    """A check in a line."""
+    mark = "FAILED" if one.failure else "not run" if one.skipped else "ok"
+    return f"{mark:<8}{one.name:<20} {one.failure or one.what}"
+
+
+def board_json(found: Sequence[BoardVerdict]) -> Json:
     """The verdicts as values."""
     return {"ok": not any(one.failure for one in found), "checks": [one._asdict() for one in found]}
 
 
-def board_page(name: str, about: str, found: list[BoardVerdict]) -> str:
+def board_page(name: str, about: str, found: Sequence[BoardVerdict]) -> str:
     """The page of a board."""
     failed = sum(bool(one.failure) for one in found)
     badge = ("bad", f"✗ {failed} failed") if failed else ("good", "✓ as it should be")

@@ -46,7 +46,7 @@ class DrivenLimits(NamedTuple):
     unjudged: str = ""
 
 
-class _Pulse(NamedTuple):
+class _CoilDriven(NamedTuple):
     """Ticks from the first to before the last in which a coil was driven; that of row k is [k - 1, k)."""
 
     first: int
@@ -114,19 +114,19 @@ def _beyond_limits(scenario: Scenario, currents_a: Array) -> Iterator[str]:
                 yield f"a pulse began {gap_s:g} s after the last, in tick {after.first}"
 
 
-def _together(pulses: list[_Pulse]) -> Iterator[str]:
+def _together(pulses: list[_CoilDriven]) -> Iterator[str]:
     for before, after in pairwise(pulses):
         if before.past - after.first > 2:
             yield f"coils {before.coil} and {after.coil} were driven at once in tick {after.first + 1}"
 
 
-def _pulses(driven: NDArray[np.bool_]) -> list[_Pulse]:
+def _pulses(driven: NDArray[np.bool_]) -> list[_CoilDriven]:
     """The pulses of all coils by their begin, from whether each was driven in the tick that ends at a row."""
     found = []
     for coil in range(3):
         edges = np.flatnonzero(np.diff(driven[:, coil].astype(int), prepend=0, append=0))
         found += [
-            _Pulse(int(first) - 1, int(past) - 1, coil)
+            _CoilDriven(int(first) - 1, int(past) - 1, coil)
             for first, past in zip(edges[::2], edges[1::2], strict=True)
         ]
     return sorted(found)

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
 
-from fsw.bus.open_bus import open_bus, resolve
 from sim.errors import FlightError
 from sim.fault_table.wrong_estimates import WRONG_DEG
 from sim.faults.section import forge_answers
-from sim.flight.bus_in_use import refuse_bus_in_use
+from sim.flight.bus_in_use import ALL_NODES
 from sim.flight.flight_loop import ProgressCallback
 from sim.flight.fsw_answers import Patience
 from sim.flight.node_command import NodeCommand, last_words
@@ -36,6 +35,8 @@ from sim.value_types import Json
 
 OUTPUT = "flight-software.log"
 """In the run directory: what the command of the flight software printed."""
+OF_SOUND_LAWS = frozenset(("gravity", "coarse", "weak", "saturates"))
+"""Causes of a missed requirement by what the satellite is: told of a law in which no mistake is found."""
 PLANT_AND_BOARDS = frozenset(("PLANT", "COIL", "MAG", "SUN", "WHEEL"))
 
 
@@ -86,6 +87,11 @@ class JudgedFlight:
             if (why := not_asked(one, self.record.profile))
         ]
         judged: list[Json] = self.record.summary["requirements"]
+        if self.law.mistake:  # what a sound law would be limited by explains nothing of this one
+            judged = [
+                {**one, "reasons": [why for why in one["reasons"] if why["cause"] not in OF_SOUND_LAWS]}
+                for one in judged
+            ]
         return judged + others
 
     @cached_property
@@ -211,17 +217,8 @@ def _nothing(scenario: Scenario, why: str) -> Json:
 @contextmanager
 def _bus_of(software: SoftwareUnderTest) -> Iterator[tuple[str, socket.socket | None]]:
     """The bus of a flight: one of its own where the flight software is started, otherwise where it runs."""
-    if software.command is not None:
-        with serve_bus(software.bus) as served:
-            yield served
-        return
-    spec = resolve(software.bus)
-    bus = open_bus(spec)
-    try:
-        refuse_bus_in_use(bus, spec, PLANT_AND_BOARDS)
-    finally:
-        bus.close()
-    yield spec, None
+    with serve_bus(software.bus, PLANT_AND_BOARDS if software.command is None else ALL_NODES) as served:
+        yield served
 
 
 def _note_end(path: Path, sentence: str) -> None:

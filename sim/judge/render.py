@@ -47,12 +47,17 @@ def software_text(flight: JudgedFlight) -> str:
     return f"what runs on {flight.record.run['bus']}" if command is None else str(command)
 
 
-def failed_text(flight: JudgedFlight) -> str:
-    """All that is broken or missed, in one sentence; empty of a flight that is as it should be."""
+def failed_clauses(flight: JudgedFlight) -> list[str]:
+    """What is broken or missed, a clause each; empty of a flight that is as it should be."""
     clauses = [f"{one.name}: {one.text}" for one in flight.invariants if one.outcome is Outcome.FAILED]
-    clauses += [
+    return clauses + [
         f"missed: {one['text']}" for one in flight.requirements if one["verdict"] == Outcome.FAILED.value
     ]
+
+
+def failed_text(flight: JudgedFlight) -> str:
+    """All that is broken or missed, in one sentence; empty of a flight that is as it should be."""
+    clauses = failed_clauses(flight)
     if not clauses:
         return ""
     more = f", and {len(clauses) - 1} more" if len(clauses) > 1 else ""

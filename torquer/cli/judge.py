@@ -1,6 +1,5 @@
 """``torquer judge``: a flight software of one's own, judged."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,7 +20,8 @@ from torquer.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from sim.judge.board import CoilBoardUnderTest
+    from sim.judge.board import BoardVerdict
+    from sim.judge.series import JudgedCase
 
 EXAMPLES = examples(
     "torquer judge microsat --flight-software './firmware {port}' --profile detumble",
@@ -47,8 +47,8 @@ EXAMPLES = examples(
     show_default=True,
     help="What it gives: requests, requests that brake, its estimate too.",
 )
-@click.option("--pace", default="lockstep", show_default=True, help="lockstep or realtime[:FACTOR].")
-@click.option("--paced", "pace", flag_value="realtime", help="In real time; a late answer is a failure.")
+@click.option("--pace", help="lockstep or realtime[:FACTOR]. Default: lockstep.")
+@click.option("--paced", is_flag=True, help="In real time, as --pace realtime: a late answer is a failure.")
 @click.option(
     "--answer-s",
     type=Number(0.01, 3600.0),
@@ -87,7 +87,8 @@ EXAMPLES = examples(
 @click.option(
     "--board",
     metavar="COMMAND|BUS",
-    help="Judge a coil board instead: started on a loop bus, or there already; checks, then a flight.",
+    help="Judge a coil board: started on a loop bus, or there already; checks, then a flight. With "
+    "--flight-software both fly and are judged, else this project's flies.",
 )
 @click.option("--arm", is_flag=True, help="With --board: let coils be driven.")
 @click.option("--seconds", type=Number(1.0, 1e6), help="With --board: of the flight. Default: three pulses.")
@@ -101,7 +102,8 @@ def judge(
     software: str | None,
     bus: str | None,
     profile: str,
-    pace: str,
+    pace: str | None,
+    paced: bool,
     answer_s: float,
     boot_s: float,
     orbits: float | None,
@@ -124,79 +126,60 @@ def judge(
     SCENARIO may be the file of a campaign: then all of its runs are flown. docs/own-firmware.md has what a
     flight software needs.
     """
-    from sim.campaign.definition.campaign_file import load_campaign
-    from sim.fault_table.rows.table import choose_rows
-    from sim.flight.fsw_answers import Patience
-    from sim.flight.node_command import parse_command
+    from sim.console import answer, fail, say
     from sim.flight.record_flight import ticks_of
-    from sim.judge.command import judge_board, judge_campaign, judge_faults, judge_scenario
-    from sim.judge.flight import SoftwareUnderTest
-    from sim.judge.profile import Profile
-    from sim.judge.series import KeptFiles
-    from sim.junit import prepare_junit
-    from sim.record.pace import parse_pace
-    from sim.scenario.schema import parse_settings
+    from sim.scenario.schema import Scenario, parse_settings
+    from torquer.api.judge import is_campaign, judge
 
-    of_board = {"--arm": arm, "--seconds": seconds, "--deadman-s": deadman_s}
-    if board is not None:
-        others = {"--flight-software": software, "--bus": bus, "--faults": faults, "--orbits": orbits}
-        _refuse("--board", others)
-        chosen = load_scenario(scenario, settings)
-        tested_board = _coil_board(board, arm, 5.0 if deadman_s is None else deadman_s)
-        prepare_junit(junit)
-        return judge_board(tested_board, chosen, seconds, 1 if seed is None else seed, out, junit)
-    _refuse("without --board a judgement", of_board)
-    if software is None and bus is None:
-        raise HarnessError("which flight software? --flight-software COMMAND starts it, --bus BUS has it")
-    command = None if software is None else parse_command(software, "--flight-software")
-    patience = Patience(boot_s, answer_s, answer_s)
-    tested = SoftwareUnderTest(command, bus or "loop", Profile(profile), parse_pace(pace), patience)
-    kept = KeptFiles(keep)
-    if _is_campaign(scenario):
-        _refuse("a campaign", {"--faults": faults, "--row": rows, "--phases": phases})
-        over = {"runs": runs, "orbits": orbits, "seed": seed}
-        given = {key: value for key, value in over.items() if value is not None}
-        campaign = load_campaign(scenario, given, parse_settings(settings))
-        prepare_junit(junit)
-        return judge_campaign(tested, campaign, out, kept, junit)
-    _refuse("a scenario, which is no campaign", {"--runs": runs})
-    seed = 1 if seed is None else seed
-    if faults:
-        _refuse("--faults", {"--orbits": orbits})
-        found = choose_rows(rows, slow=True)
-        chosen = load_scenario(scenario, settings)
-        prepare_junit(junit)
-        return judge_faults(tested, chosen, found, phases or 1, seed, out, kept, junit)
-    _refuse("a flight without --faults", {"--row": rows, "--phases": phases})
-    chosen = load_scenario(scenario, settings, lambda chosen: ticks_of(chosen, orbits))
-    prepare_junit(junit)
-    return judge_scenario(tested, chosen, seed, orbits, out, junit)
+    if paced and pace is not None:
+        raise HarnessError(f"--paced, --pace {pace}: both say how fast it is flown, give one of them")
 
+    def ticks(chosen: Scenario) -> int:
+        return ticks_of(chosen, orbits)
 
-def _coil_board(board: str, arm: bool, deadman_s: float) -> "CoilBoardUnderTest":
-    """The board of a command, or of a bus."""
-    from fsw.bus.open_bus import resolve
-    from sim.flight.node_command import parse_command
-    from sim.judge.board import CoilBoardUnderTest
-
-    if board.partition(":")[0] in ("loop", "socketcan", "slcan", "can"):
-        return CoilBoardUnderTest(None, resolve(board), arm, deadman_s)
-    return CoilBoardUnderTest(parse_command(board, "--board"), "loop", arm, deadman_s)
+    campaign = board is None and is_campaign(scenario)
+    one_flight = board is None and not faults
+    judged = judge(
+        scenario if campaign else load_scenario(scenario, settings, ticks if one_flight else None),
+        software,
+        bus=bus,
+        profile=profile,
+        pace=pace or ("realtime" if paced else "lockstep"),
+        answer_s=answer_s,
+        boot_s=boot_s,
+        orbits=orbits,
+        seed=seed,
+        faults=faults,
+        rows=rows,
+        phases=phases,
+        runs=runs,
+        keep=keep,
+        board=board,
+        arm=arm,
+        seconds=seconds,
+        deadman_s=deadman_s,
+        set=parse_settings(settings) if campaign else None,
+        out=out,
+        junit=junit,
+        tell=_say,
+        progress=True,
+    )
+    for line, wrong in judged.found.lines:
+        say(line, failed=wrong)
+    say(f"page: {judged.page}")
+    answer(judged.document)
+    if not judged.ok:
+        fail(judged.found.sentence)
+    return int(not judged.ok)
 
 
-def _is_campaign(source: str) -> bool:
-    """Whether the argument is the file of a campaign, which names its scenario."""
-    from fsw.input.schema import read_toml
+def _say(one: "JudgedCase | BoardVerdict") -> None:
+    from sim.console import say
+    from sim.judge.board import BoardVerdict, board_line
+    from sim.judge.series_render import case_line
+    from sim.report.requirements.judge import Outcome
 
-    return source.endswith(".toml") and "scenario" in read_toml(Path(source))
-
-
-def _refuse(what: str, given: Mapping[str, object]) -> None:
-    """Refuse options that do not belong to what is judged.
-
-    Raises:
-        HarnessError: one was given.
-    """
-    wrong = [option for option, value in given.items() if value]
-    if wrong:
-        raise HarnessError(f"{', '.join(wrong)}: {what} has no such option")
+    if isinstance(one, BoardVerdict):
+        say(board_line(one), failed=bool(one.failure))
+    else:
+        say(case_line(one), failed=one.outcome is Outcome.FAILED)

@@ -41,10 +41,19 @@ def cross(a, b):
     return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 
 
+def connected(port):
+    """Tries until the hub listens, and once connected does not try again."""
+    while True:
+        try:
+            return socket.create_connection(("127.0.0.1", port))
+        except ConnectionRefusedError:
+            time.sleep(0.05)
+
+
 class Firmware:
     def __init__(self, port, mistake):
         self.mistake, self.restarted = mistake, "RESTARTED" in os.environ
-        self.bus = socket.create_connection(("127.0.0.1", port))
+        self.bus = connected(port)
         self.bus.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.received = self.bus.makefile("rb")
         assert self.received.read(16) == b"torquer-loop/1\r\n"

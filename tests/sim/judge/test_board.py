@@ -22,6 +22,7 @@ from sim.judge.board import (
     flight_verdicts,
     fly_with_board,
 )
+from sim.judge.invariants import RULES
 from sim.scenario.schema import load, parse_settings
 from torquer.cli.main import main
 
@@ -79,11 +80,23 @@ def test_what_drives_coils_is_not_checked_unarmed(few_checks, scenario, tmp_path
 @pytest.mark.long
 @pytest.mark.paced
 def test_a_flight_with_it_is_audited(scenario, tmp_path):
-    found = fly_with_board(stub(), scenario, tmp_path, 38.0, 1)
+    found = fly_with_board(stub(), None, scenario, tmp_path, 38.0, 1)
     assert names(found) == []
     flown = json.loads((tmp_path / "flight" / "hil.json").read_text())
     assert flown["real"] == ["coil"]
     assert flown["messages"]["COIL_FIRE"] > 0
+
+
+@pytest.mark.long
+@pytest.mark.paced
+@pytest.mark.parametrize(
+    ("mistake", "broken"), [("", []), ("long", ["pulses in flight", "software: asks within limits"])]
+)
+def test_a_flight_software_of_ones_own_flies_with_it_and_is_judged(tmp_path, firmware, mistake, broken):
+    tumbling = load("microsat", parse_settings((*QUICK, "initial.rate_degps=[1,1,1]")))
+    found = fly_with_board(stub(), firmware(mistake), tumbling, tmp_path, 25.0, 1)
+    assert names(found) == broken
+    assert {one.name for one in found} > {f"software: {rule}" for rule in RULES}
 
 
 @pytest.mark.long
@@ -162,7 +175,9 @@ def test_page_json_and_junit_tell_the_same(flown):
     ("words", "says"),
     [
         (("--board", "no-such-board"), "there is no program 'no-such-board'"),
-        (("--board", "sh", "--flight-software", "sh"), "--flight-software"),
+        (("--board", "sh", "--flight-software", "sh"), "it drives the coils of the board, give --arm"),
+        (("--flight-software", "sh", "--paced", "--pace", "lockstep"), "--paced, --pace lockstep: both say"),
+        (("--flight-software", "sh", "--pace", "realtime:5", "--paced"), "--paced, --pace realtime:5: both"),
         (("--arm", "--flight-software", "sh"), "--arm"),
     ],
 )

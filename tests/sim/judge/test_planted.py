@@ -1,5 +1,9 @@
 """A sound firmware passes, and planted mistakes are told, each in words and by the rule it breaks."""
 
+import dataclasses
+import socket
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -12,6 +16,7 @@ from sim.scenario.schema import load
 
 pytestmark = pytest.mark.long
 
+FIRMWARE = Path(__file__).with_name("firmware.py")
 TUMBLER = str(Path(__file__).with_name("tumbler.toml"))
 STUCK = {"fault": [{"kind": "coil_stuck_on", "at_s": 1500.0, "parameters": {"axis": 1.0, "ampere": 0.4}}]}
 
@@ -193,6 +198,20 @@ def test_what_a_profile_does_not_give_is_not_asked(flown):
 def test_one_that_promises_an_estimate_must_give_it(flown):
     flight = flown("", orbits=0.05, profile=Profile.ATTITUDE)
     assert broken(flight) == {"tells its estimate": "NAV_ATTITUDE in 0 of 303 answers"}
+
+
+def test_one_that_waits_for_the_hub_connects_once(tmp_path, firmware):
+    """The hub of a bus that nobody serves is opened once for the flight."""
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    waits = subprocess.Popen([sys.executable, str(FIRMWARE), str(port)])
+    try:
+        software = dataclasses.replace(firmware(), command=None, bus=f"loop:{port}")
+        flight = fly_and_judge(software, load(TUMBLER), 1, tmp_path / "run", 0.1)
+        assert flight.ok
+        assert waits.wait(10.0) == 0
+    finally:
+        waits.kill()
 
 
 @pytest.mark.parametrize("mistake", ["", "long"])

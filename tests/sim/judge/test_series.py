@@ -82,8 +82,9 @@ def test_text_page_json_and_junit_tell_the_same():
 @pytest.mark.long
 def test_files_of_what_is_broken_stay_and_others_go(firmware, tmp_path):
     rows = choose_rows(("mag-frozen-passing", "bit-flip"))
-    out = tmp_path / "sound"
-    assert judge_faults(firmware(), load(TUMBLER), rows, 1, 1, out, KeptFiles.FAILURES, None) == 0
+    out, told = tmp_path / "sound", []
+    assert judge_faults(firmware(), load(TUMBLER), rows, 1, 1, out, KeptFiles.FAILURES, told.append).ok
+    assert [one.name for one in told] == ["mag-frozen-passing", "bit-flip"]
     assert sorted(path.name for path in out.iterdir()) == ["judge.html", "judge.json"]
     assert json.loads((out / "judge.json").read_text())["tally"] == {
         "kept": 1,
@@ -91,20 +92,21 @@ def test_files_of_what_is_broken_stay_and_others_go(firmware, tmp_path):
         "not applicable": 1,
     }
     torn = tmp_path / "torn"
-    assert judge_faults(firmware("long"), load(TUMBLER), rows[:1], 1, 1, torn, KeptFiles.FAILURES, None) == 1
+    broken = judge_faults(firmware("long"), load(TUMBLER), rows[:1], 1, 1, torn, KeptFiles.FAILURES, print)
+    assert broken.failures[0].startswith("mag-frozen-passing: asks within limits")
     assert (torn / "mag-frozen-passing" / "judge.html").is_file()
     with pytest.raises(HarnessError, match="already holds a judgement"):
-        judge_faults(firmware(), load(TUMBLER), rows[:1], 1, 1, out, KeptFiles.FAILURES, None)
+        judge_faults(firmware(), load(TUMBLER), rows[:1], 1, 1, out, KeptFiles.FAILURES, print)
 
 
 @pytest.mark.long
 def test_a_campaign_is_flown_run_by_run(firmware, tmp_path):
     short = load_campaign(TUMBLERS, {"orbits": 0.05, "runs": 2}, {})
-    assert judge_campaign(firmware(), short, tmp_path / "all", KeptFiles.ALL, None) == 0
+    assert judge_campaign(firmware(), short, tmp_path / "all", KeptFiles.ALL, print).ok
     assert sorted(path.name for path in (tmp_path / "all").iterdir()) == [
         "0",
         "1",
         "judge.html",
         "judge.json",
     ]
-    assert judge_campaign(firmware("order"), short, tmp_path / "torn", KeptFiles.FAILURES, None) == 1
+    assert not judge_campaign(firmware("order"), short, tmp_path / "torn", KeptFiles.FAILURES, print).ok
