@@ -18,7 +18,7 @@ from sim.flight.record_flight import check_plant, ticks_of
 from sim.flight.sil import fly_against, serve_bus
 from sim.judge.answers import AnswerRecord, field_samples, read_answers
 from sim.judge.driven import alters_reports, limits_as_driven
-from sim.judge.honesty import wrong_attitude
+from sim.judge.honesty import wrong_attitude, wrong_rate
 from sim.judge.invariants import InvariantVerdict, JudgedFlightRecord, judge_invariants
 from sim.judge.law_fit import LawFit, fit_law, least_degps
 from sim.judge.profile import Profile, asked_of, not_asked
@@ -35,6 +35,10 @@ from sim.value_types import Json
 
 OUTPUT = "flight-software.log"
 """In the run directory: what the command of the flight software printed."""
+LEAST_BRAKING = 0.4
+"""Mean cosine of a law to the dipole that brakes most. One coil at a time cannot have more than some 0.8;
+with one axis reversed, or two swapped, a third of that is left, 0.27, and half is between. Flown were from
+0.49 on by sound laws, and up to 0.38 with the bytes of the field or the axes wrong: docs/own-firmware.md."""
 OF_SOUND_LAWS = frozenset(("gravity", "coarse", "weak", "saturates"))
 """Causes of a missed requirement by what the satellite is: told of a law in which no mistake is found."""
 PLANT_AND_BOARDS = frozenset(("PLANT", "COIL", "MAG", "SUN", "WHEEL"))
@@ -129,8 +133,11 @@ class JudgedFlight:
             yield InvariantVerdict(name, Outcome.NOT_JUDGED, why)
             return
         told = f"mean cosine to the braking dipole {law.brakes:.2f} over {law.pulses} dipoles"
-        outcome = Outcome.MET if law.brakes > 0.0 else Outcome.FAILED
-        yield InvariantVerdict(name, outcome, f"{told}, work on the body {law.work_j:.2g} J")
+        found = f"{told}, work on the body {law.work_j:.2g} J"
+        if law.brakes < LEAST_BRAKING:
+            found += f", a law that brakes has {LEAST_BRAKING} at least"
+        sound = law.brakes >= LEAST_BRAKING and not law.mistake
+        yield InvariantVerdict(name, Outcome.MET if sound else Outcome.FAILED, found)
 
 
 def fly_and_judge(
@@ -197,14 +204,15 @@ def judged(path: Path, asked: Scenario, profile: Profile, honest_deg: float | No
         summary, answers = _nothing(scenario, run.get("ended", "nothing was flown")), AnswerRecord()
     run = run_dir.read_run(path)
     said = "" if "flown" in run else last_words(path / OUTPUT)
-    wrong = None
+    wrong = rate = None
     if profile is Profile.ATTITUDE and honest_deg is not None and answers.ticks:
         wrong = wrong_attitude(path, scenario.time.tick_hz, honest_deg, forged)
+        rate = wrong_rate(path, scenario, forged)
     driven = None
     if answers.ticks and alters_reports(scenario):
         driven = limits_as_driven(scenario, read_truth(path / run_dir.TRUTH))
     faulty = bool(scenario.fault)
-    record = JudgedFlightRecord(scenario, profile, run, summary, answers, said, faulty, wrong, driven)
+    record = JudgedFlightRecord(scenario, profile, run, summary, answers, said, faulty, wrong, driven, rate)
     return JudgedFlight(path, record, asked)
 
 

@@ -13,7 +13,7 @@ from sim.faults.section import forge_answers, forge_sync
 from sim.flight.second_senders import describe_senders
 from sim.judge.answers import AnswerRecord, CoilRequest, crc_as_sent, tick_as_named
 from sim.judge.driven import DrivenLimits
-from sim.judge.honesty import WrongAttitude
+from sim.judge.honesty import WrongAttitude, WrongRate
 from sim.judge.profile import Profile
 from sim.judge.unheard import tell_unheard
 from sim.record.run_record import RunRecord
@@ -38,6 +38,7 @@ class JudgedFlightRecord(NamedTuple):
         wrong: attitudes that were called valid and were wrong; None: none is judged.
         driven: what the currents that flowed show of the limits, where a fault alters what the board
             reports; None: the audit of the log counts.
+        wrong_rate: rates that were told and were wrong; None: none is judged.
     """
 
     scenario: Scenario
@@ -49,6 +50,7 @@ class JudgedFlightRecord(NamedTuple):
     faulty: bool = False
     wrong: WrongAttitude | None = None
     driven: DrivenLimits | None = None
+    wrong_rate: WrongRate | None = None
 
     @property
     def tick_hz(self) -> int:
@@ -370,9 +372,26 @@ def _is_honest(flight: JudgedFlightRecord) -> Found:
     worst = f"at most {wrong.worst_deg:.2g} deg wrong when called valid"
     if wrong.longest_s <= WRONG_S:
         return _kept(worst)
+    why = f": {wrong.mistake}" if wrong.mistake else ""
     return _broken(
         f"an attitude is called valid that is more than {wrong.limit_deg:g} deg wrong, for "
-        f"{wrong.longest_s:.0f} s on end and up to {wrong.worst_deg:.3g} deg"
+        f"{wrong.longest_s:.0f} s on end and up to {wrong.worst_deg:.3g} deg{why}"
+    )
+
+
+def _tells_its_rate(flight: JudgedFlightRecord) -> Found:
+    """Of the profile attitude: NAV_RATE beside a valid attitude is the rate relative to the orbital frame."""
+    rate = flight.wrong_rate
+    if rate is None:
+        return _unjudged(
+            f"not asked of the profile {flight.profile.value}, or of this fault, or none is sent"
+        )
+    if rate.longest_s <= WRONG_S:
+        return _kept(f"NAV_RATE at most {rate.worst_degps:.2g} deg/s wrong beside a valid attitude")
+    why = f": {rate.mistake}" if rate.mistake else ""
+    return _broken(
+        "NAV_RATE is wrong by more than half the orbital rate and a tenth of itself, for "
+        f"{rate.longest_s:.0f} s on end and up to {rate.worst_degps:.3g} deg/s{why}"
     )
 
 
@@ -391,6 +410,7 @@ RULES: dict[str, Rule] = {
     "alone on the bus": _alone,
     "tells its estimate": _tells_its_estimate,
     "is honest": _is_honest,
+    "its rate is true": _tells_its_rate,
 }
 
 

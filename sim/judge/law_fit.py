@@ -28,6 +28,9 @@ EVERY_S = 30.0
 """Time between two dipoles of a continuous driver that are taken: those between tell the same."""
 LEAST_PART = 0.02
 """Of the largest dipole: a smaller one is not counted."""
+DIFFER, LEAST_DIFFERENT = 0.5, 4
+"""Between the cosines by two readings of the samples, where they are told apart, and in how many dipoles: as
+unsigned a field is read wrongly only while it passes zero."""
 SHIFT_S = 60.0
 SPANS = range(1, 31)
 """Ticks over which a law may take the change of the field."""
@@ -199,7 +202,9 @@ def _as_misread(
     for words, read in MISREAD.items():
         best = _best_of_fields(read(samples), spans, rows, m, omega)
         known = ~np.isnan(best) & ~np.isnan(proper)
-        if _is_better(best[known], as_is[known]) and _is_better(best[known], proper[known]):
+        differ = known & (np.abs(best - proper) > DIFFER)
+        fits = float(best[known].mean()) > as_is[known].mean() and differ.sum() >= LEAST_DIFFERENT
+        if fits and _is_better(best[differ], proper[differ]):
             yield _Explanation(words, float(best[known].mean()))
 
 

@@ -8,7 +8,7 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilFire, CoilRefusedReason
 from sim.judge.answers import AnswerRecord, CoilRequest, OutOfTurn
 from sim.judge.driven import DrivenLimits
-from sim.judge.honesty import WrongAttitude
+from sim.judge.honesty import WrongAttitude, WrongRate
 from sim.judge.invariants import RULES, JudgedFlightRecord, judge_invariants
 from sim.judge.profile import Profile
 from sim.report.requirements.judge import Outcome
@@ -295,6 +295,23 @@ def test_a_wrong_attitude_is_told_when_it_lasts():
     assert told("is honest", profile=Profile.ATTITUDE, wrong=sound)[0] is Outcome.MET
     assert "for 200 s on end and up to 31 deg" in broken("is honest", profile=Profile.ATTITUDE, wrong=wrong)
     assert told("is honest")[0] is Outcome.NOT_JUDGED
+
+
+def test_the_mistake_of_an_attitude_is_told_with_it():
+    wrong = WrongAttitude(200.0, 31.0, mistake="it is the conjugate")
+    assert broken("is honest", profile=Profile.ATTITUDE, wrong=wrong).endswith(" deg: it is the conjugate")
+
+
+def test_a_wrong_rate_is_told_when_it_lasts():
+    def verdict(rate):
+        flight = record(profile=Profile.ATTITUDE)._replace(wrong_rate=rate)
+        return {one.name: one for one in judge_invariants(flight)}["its rate is true"]
+
+    assert verdict(None).outcome is Outcome.NOT_JUDGED
+    assert verdict(WrongRate(100.0, 0.2)).outcome is Outcome.MET
+    wrong = verdict(WrongRate(200.0, 0.2, "its sign is wrong"))
+    assert wrong.outcome is Outcome.FAILED
+    assert wrong.text.endswith("for 200 s on end and up to 0.2 deg/s: its sign is wrong")
 
 
 def test_a_continuous_driver_has_no_back_off():

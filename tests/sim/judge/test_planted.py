@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.judge.flight import fly_and_judge
+from sim.judge.flight import LEAST_BRAKING, fly_and_judge
 from sim.judge.profile import Profile
 from sim.judge.render import failed_text, verdict_json, verdict_page, verdict_text
 from sim.report.requirements.judge import Outcome
@@ -91,6 +91,19 @@ def test_a_field_that_is_read_in_the_wrong_byte_order_is_named(flown):
     assert missed(flight) == ["RATE"]
     (why,) = flight.reasons
     assert why.startswith("the byte order of MAG_FIELD is wrong: it is read the other way round: ")
+
+
+def test_a_field_that_is_read_as_unsigned_is_named(flown):
+    flight = flown("unsigned")
+    assert list(broken(flight)) == ["brakes the body"]
+    (why,) = flight.reasons
+    assert why.startswith("MAG_FIELD is read as unsigned: ")
+
+
+def test_a_law_that_hardly_brakes_is_told_with_the_least_figure(flown):
+    flight = flown("axes", orbits=0.5)
+    assert 0.0 < flight.law.brakes < LEAST_BRAKING
+    assert "a law that brakes has 0.4 at least" in broken(flight)["brakes the body"]
 
 
 def test_a_stuck_coil_that_goes_on_being_fired_is_told(flown):
