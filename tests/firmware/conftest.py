@@ -1,7 +1,8 @@
 """The coil board in C, compiled once for each set of limits."""
 
 import pytest
-from firmware_bench import NO_COMPILER, compile_board, compile_program, has_compiler, limits_header
+from c_compiler import has_compiler
+from firmware_bench import NO_COMPILER, compile_board, compile_program, limits_header
 
 
 @pytest.fixture(scope="session")

@@ -3,8 +3,9 @@
 from random import Random
 
 import pytest
+from c_compiler import has_compiler
 from coil_attack import Setup, attack
-from firmware_bench import NO_COMPILER, FirmwareBench, has_compiler, loaded
+from firmware_bench import NO_COMPILER, FirmwareBench, loaded
 from planted_firmware import PLANTED, UNSEEN, compile_planted
 from simulated_bus import SimulatedBus
 from twins import Twins

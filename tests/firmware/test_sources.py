@@ -5,7 +5,8 @@ import shutil
 import subprocess
 
 import pytest
-from firmware_bench import BOARD, LEVELS_MA, NO_COMPILER, has_compiler, limit, limits_header
+from c_compiler import has_compiler
+from firmware_bench import BOARD, LEVELS_MA, NO_COMPILER, limit, limits_header
 from planted_firmware import PLANTED, Planted, compile_planted
 
 from hil_stub.bench import DEADMAN_MS

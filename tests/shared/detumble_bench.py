@@ -1,12 +1,12 @@
 """The flight software in C, compiled for this machine and fed with golden vectors."""
 
-import ctypes
 import json
 import shutil
-import subprocess
 from pathlib import Path
 from struct import Struct
 from typing import NamedTuple
+
+from c_compiler import COMPILER, compile_c, harness_of
 
 from fsw.bus import can_frame
 from fsw.wire.frame import Frame
@@ -14,18 +14,6 @@ from sim.export.c_source import SOURCE, c_files
 
 ROOT = Path(__file__).resolve().parents[2]
 FIRMWARE = ROOT / "examples" / "firmware" / "detumble"
-COMPILER = "gcc"
-STRICT = (
-    "-std=c99",
-    "-Wall",
-    "-Wextra",
-    "-Werror",
-    "-pedantic",
-    "-Wconversion",
-    "-Wsign-conversion",
-    "-Wshadow",
-    "-Wundef",
-)
 NO_COMPILER = f"the flight software in C needs the compiler {COMPILER}, which is not installed"
 BOOT, STEP, BOOT_SCHEDULER, SCHEDULE = range(4)
 _FRAMES_MOST = 32
@@ -33,10 +21,6 @@ REQUEST = Struct(f"<BBxx{can_frame.SIZE * _FRAMES_MOST}s")
 REPLY_MOST = 4 + can_frame.SIZE * 16
 SCHEDULED = Struct("<Bbxx3I3fI")
 _SIX = Struct("<6f")
-
-
-def has_compiler():
-    return shutil.which(COMPILER) is not None
 
 
 def write_contract(folder, scenario):
@@ -72,22 +56,15 @@ def _compile(product, scenario, host, core=FIRMWARE / "src", flags=()):
     contract = write_contract(product.parent / "contract", scenario)
     sources = [*sorted(core.glob("*.c")), *(FIRMWARE / "host" / name for name in host)]
     includes = [f"-I{folder}" for folder in (core, FIRMWARE / "host", FIRMWARE / "gains", contract)]
-    words = [COMPILER, *STRICT, "-O2", *flags, *includes, *sources, contract / SOURCE, "-o", product, "-lm"]
-    done = subprocess.run([str(word) for word in words], check=False, capture_output=True, text=True)
-    if done.returncode:
-        raise AssertionError(f"{COMPILER} does not compile the flight software:\n{done.stderr}")
-    return product
+    return compile_c(product, [*flags, *includes, *sources, contract / SOURCE], "the flight software")
 
 
 def loaded(library):
     """The flight software of a library, from request to reply. There is one in each."""
-    step = ctypes.CDLL(str(library)).harness_step
-    step.argtypes = (ctypes.c_char_p, ctypes.c_char_p)
-    step.restype = ctypes.c_uint32
-    reply = ctypes.create_string_buffer(REPLY_MOST)
+    step = harness_of(library, REPLY_MOST)
 
     def answer(request):
-        length = step(request, reply)
+        reply, length = step(request)
         return reply.raw[:length]
 
     return answer

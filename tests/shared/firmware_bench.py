@@ -1,38 +1,21 @@
 """The coil board in C, compiled for this machine and called as the stub's bench is."""
 
-import ctypes
 import re
-import shutil
-import subprocess
 from pathlib import Path
 from struct import Struct
+
+from c_compiler import COMPILER, compile_c, harness_of
 
 from fsw.bus import can_frame
 from hil_stub.coils.coil_driver import Pin
 
 ROOT = Path(__file__).resolve().parents[2]
 BOARD = ROOT / "examples" / "firmware" / "coil_board"
-COMPILER = "gcc"
-STRICT = (
-    "-std=c99",
-    "-Wall",
-    "-Wextra",
-    "-Werror",
-    "-pedantic",
-    "-Wconversion",
-    "-Wsign-conversion",
-    "-Wshadow",
-    "-Wundef",
-)
 NO_COMPILER = f"the coil board in C needs the compiler {COMPILER}, which is not installed"
 _REQUEST = Struct("<B3xIi16s")
 REPLY = Struct("<BbBxI")
 _REPLY_MOST = REPLY.size + can_frame.SIZE * 69
 _CLOCK = 2**32
-
-
-def has_compiler():
-    return shutil.which(COMPILER) is not None
 
 
 def limits_header(**values):
@@ -73,31 +56,15 @@ def _compile(product, limits, board, words, strict=True):
     (folder / "coil_limits.h").write_text(limits_header() if limits is None else limits)
     sources = [str(source) for source in sorted((board / "src").glob("*.c"))]
     includes = [f"-I{folder}", f"-I{board / 'src'}"]
-    command = [
-        COMPILER,
-        *(STRICT if strict else ("-std=c99", "-w")),
-        "-O2",
-        *includes,
-        *sources,
-        *words,
-        "-o",
-        str(product),
-    ]
-    done = subprocess.run(command, check=False, capture_output=True, text=True)
-    if done.returncode:
-        raise AssertionError(f"{COMPILER} does not compile the coil board:\n{done.stderr}")
-    return product
+    return compile_c(product, [*includes, *sources, *words], "the coil board", strict)
 
 
 def loaded(library):
     """The board of a library, as ``compile_board`` gives it: from request to reply. There is one in each."""
-    step = ctypes.CDLL(str(library)).harness_step
-    step.argtypes = (ctypes.c_char_p, ctypes.c_char_p)
-    step.restype = ctypes.c_uint32
-    reply = ctypes.create_string_buffer(_REPLY_MOST)
+    step = harness_of(library, _REPLY_MOST)
 
     def answer(request):
-        step(request, reply)
+        reply, _ = step(request)
         return reply
 
     return answer

@@ -4,8 +4,9 @@ import json
 from pathlib import Path
 
 import pytest
+from c_compiler import has_compiler
 from click.testing import CliRunner
-from detumble_bench import NO_COMPILER, Firmware, compile_library, compile_program, has_compiler, loaded
+from detumble_bench import NO_COMPILER, Firmware, compile_library, compile_program, loaded
 
 from sim.scenario.schema import load, parse_settings
 from torquer.cli.main import main

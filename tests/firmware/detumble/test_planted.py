@@ -1,8 +1,9 @@
 """Errors that a programmer might make in the flight software in C: ``torquer judge`` finds and names them."""
 
 import pytest
+from c_compiler import has_compiler
 from click.testing import CliRunner
-from detumble_bench import NO_COMPILER, compile_program, has_compiler
+from detumble_bench import NO_COMPILER, compile_program
 
 from sim.scenario.schema import load
 from torquer.cli.main import main

@@ -5,7 +5,8 @@ import shutil
 import subprocess
 
 import pytest
-from detumble_bench import COMPILER, FIRMWARE, NO_COMPILER, has_compiler, write_contract
+from c_compiler import COMPILER, has_compiler
+from detumble_bench import FIRMWARE, NO_COMPILER, write_contract
 from detumble_reference import gains_that_ship
 
 from fsw.table.config import flight_config
