@@ -38,7 +38,7 @@ OUTPUT = "flight-software.log"
 LEAST_BRAKING = 0.4
 """Mean cosine of a law to the dipole that brakes most. One coil at a time cannot have more than some 0.8;
 with one axis reversed, or two swapped, a third of that is left, 0.27, and half is between. Flown were from
-0.45 on by sound laws, and up to 0.38 with the bytes of the field or the axes wrong: docs/own-firmware.md."""
+0.45 on by sound laws, and up to 0.39 with the bytes of the field or the axes wrong: docs/own-firmware.md."""
 OF_SOUND_LAWS = frozenset(("gravity", "coarse", "weak", "saturates"))
 """Causes of a missed requirement by what the satellite is: told of a law in which no mistake is found."""
 PLANT_AND_BOARDS = frozenset(("PLANT", "COIL", "MAG", "SUN", "WHEEL"))
