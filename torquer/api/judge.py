@@ -31,7 +31,7 @@ from sim.scenario.schema import Scenario, load
 from sim.value_types import Json
 from torquer.api.arguments import ScenarioLike, Settings, checked, laid_over, optional_path, scenario_source
 from torquer.api.errors import one_sentence
-from torquer.api.printed import Printed
+from torquer.api.printed import PrintedResult
 from torquer.api.run import Run
 
 Tell = Callable[[JudgedCase | BoardVerdict], None]
@@ -57,7 +57,7 @@ class _JudgeOptions(Section):
 
 
 @dataclass(frozen=True)
-class JudgedSoftware(Printed):
+class JudgedSoftware(PrintedResult):
     """What was judged; ``print`` shows what the command prints.
 
     Attributes:
