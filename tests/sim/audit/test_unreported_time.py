@@ -1,14 +1,12 @@
 """Stretches without COIL_STATUS: which of them may hide a whole pulse."""
 
-from fractions import Fraction
-from types import SimpleNamespace
-
 import pytest
 
 from fsw.wire.messages import CoilStatus, Sync
 from sim.audit.auditor import AuditLimits, audit
 from sim.audit.check import render
 from sim.audit.documents import as_json, suites
+from sim.audit.log_clock import LogClock
 from sim.audit.unreported_time import UnreportedTime
 
 
@@ -144,9 +142,7 @@ class TestStretches:
 
     @pytest.fixture
     def time(self):
-        clock = SimpleNamespace(
-            units=1, period=SECOND, epoch_s=0, seconds=lambda instant: Fraction(instant, SECOND)
-        )
+        clock = LogClock(units=1, period=SECOND, epoch_s=0, origin_us=0, simulated=True, contradictory=False)
         found = UnreportedTime(clock, AuditLimits())
         found.begin(SECOND)
         return found

@@ -45,7 +45,7 @@ def known(*sigmas_rad, along=AXES):
 def seen(v):
     """A direction and H of it."""
     rows = np.zeros((3, CONFIG.layout.size))
-    rows[:, 0:3] = np.array([cross(v, axis) for axis in AXES.tolist()]).T
+    rows[:, 0:3] = np.array([cross(v, tuple(axis)) for axis in AXES.tolist()]).T
     return v, rows
 
 
