@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import groupby
 from typing import NamedTuple
 
+from fsw.wire.candump_line import frame_text
 from fsw.wire.messages import CoilFire, CoilRefusedReason
 from hil_stub.coils.interlock import COILS, MAX_LEVEL, CoilLimits
 from sim.console import counted
@@ -162,8 +163,8 @@ def _speaks_whole(flight: JudgedFlightRecord) -> Found:
         tick, frame = record.first_broken[name]
         how = crc_as_sent(frame)
         why = f": {how}" if how else ""
-        data = frame.data.hex().upper()
-        return _broken(f"{counted(number, 'frame')} of {name} not whole, first {data} in tick {tick}{why}")
+        first = frame_text(frame)
+        return _broken(f"{counted(number, 'frame')} of {name} not whole, first {first} in tick {tick}{why}")
     if record.counters and not flight.faulty:
         name, number = record.counters.most_common(1)[0]
         return _broken(f"the counter of {name} does not rise by one, {counted(number, 'time')}")

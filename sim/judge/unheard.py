@@ -1,5 +1,6 @@
 """What came where a boot or an answer was awaited, and why it is neither, with the bytes that would be."""
 
+from fsw.wire.candump_line import frame_text
 from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame, crc8
 from fsw.wire.messages import CLASSES, NAMES, FswBoot, TickDone, intact
 from sim.console import counted
@@ -35,12 +36,6 @@ def tell_unheard(unheard: UnheardRecord | None) -> str:
     more = len(likely or found) - len(told)
     others = f", and {counted(more, 'other frame')}" if more else ""
     return f"{'' if likely else f'no {name} came, but '}{', '.join(told)}{others}"
-
-
-def frame_text(frame: Frame) -> str:
-    """A frame as candump writes it; an identifier of more than 11 bits in eight digits, flags among them."""
-    width = 3 if frame.can_id <= 0x7FF else 8
-    return f"{frame.can_id:0{width}X}#{frame.data.hex().upper()}"
 
 
 def _why(frame: Frame, awaited: Frame, tick: int | None) -> str:

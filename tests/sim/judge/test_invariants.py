@@ -154,7 +154,7 @@ def test_a_boot_in_tick_0_was_asked_for_and_a_later_one_is_a_restart():
 def test_broken_frames_and_counters_are_told():
     frame = Frame(0x80, bytes.fromhex("E5010764B80B00"))
     text = broken("sends whole frames", broken=Counter(COIL_FIRE=3), first_broken={"COIL_FIRE": (9, frame)})
-    assert text == "3 frames of COIL_FIRE not whole, first E5010764B80B00 in tick 9"
+    assert text == "3 frames of COIL_FIRE not whole, first 080#E5010764B80B00 in tick 9"
     text = broken("sends whole frames", counters=Counter(NAV_RATE=2))
     assert text == "the counter of NAV_RATE does not rise by one, 2 times"
 

@@ -125,7 +125,7 @@ def test_one_that_heeds_it_is_not_blamed(flown):
     [
         ("boot-crc", "510#00010000000005, with a wrong CRC, expected 510#00010000000004"),
         ("boot-short", "510#000100000000, of 6 bytes and not of 7, as in 510#00010000000004"),
-        ("boot-extended", "80000510#00010000000004: bit 31 of its identifier makes it an"),
+        ("boot-extended", "00000510#00010000000004: bit 31 of its identifier makes it an"),
     ],
 )
 def test_a_boot_that_is_not_heard_is_told_with_what_is_wrong(flown, mistake, words):

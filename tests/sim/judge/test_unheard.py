@@ -37,7 +37,7 @@ def test_where_nothing_was_noted_nothing_is_told():
         ((0x510 | ERROR_FLAG, BOOT), "bit 29 of its identifier makes it an error frame"),
         (
             (0x1005, BOOT),
-            "FSW_BOOT came as 00001005#00010000000004: its identifier has its bytes the other way round",
+            "FSW_BOOT came as 1005#00010000000004: its identifier has its bytes the other way round",
         ),
         (
             (0x1005_0000, BOOT),
