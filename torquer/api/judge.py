@@ -88,7 +88,7 @@ class JudgedSoftware(PrintedResult):
 
     @property
     def run(self) -> Run | None:
-        """The run of one flight; None: of several, or of a board, whose folders are beside the page."""
+        """The run, if one flight was judged; several, and that with a board, have folders beside the page."""
         return Run(self.found.flight.path) if isinstance(self.found, OneFlight) else None
 
     def __str__(self) -> str:
