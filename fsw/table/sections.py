@@ -269,7 +269,7 @@ class EstimatorTable(Section):
     """Noise of the sensors, rate at start-up, and standard deviations up to which the attitude serves.
 
     ``usable_sigma_deg``: up to which laws and modes go by it; it becomes valid below ``valid_sigma_deg``, and
-    stays so up to twice that. ``magnetometer_quantum_nt`` and ``sun_quantum`` are steps of a
+    stays so up to 1.5 times that. ``magnetometer_quantum_nt`` and ``sun_quantum`` are steps of a
     component of field and Sun vector, where they are coarser than those of the bus; 0: they are not.
     ``algebra``: what computes the filter's matrices.
     """
