@@ -23,7 +23,9 @@ def verdict_text(flight: JudgedFlight) -> str:
     run = flight.record.run
     head = f"{run['scenario']}, seed {run['seed']}, profile {flight.record.profile.value}: "
     head += f"{counted(flight.record.answers.ticks, 'tick')} flown against {software_text(flight)}"
-    return "\n".join([head, *(f"  {name:<20} {text}" for name, text in _lines(flight))])
+    lines = list(_lines(flight))
+    width = max(len(name) for name, _ in lines)
+    return "\n".join([head, *(f"  {name:<{width}} {text}" for name, text in lines)])
 
 
 def _lines(flight: JudgedFlight) -> Iterator[tuple[str, str]]:
