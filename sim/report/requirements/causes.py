@@ -147,6 +147,8 @@ OVER_DEG = 20.0
 """Error from which a body that gravity does not hold has fallen over."""
 HOPELESS = 0.25
 """Part of what gravity takes below which the highest level is too weak, however short the flight."""
+HONEST = 0.9
+"""Part of the time inside its own 3 sigma from which an estimate is honest."""
 UNSURE = 0.02
 """Part of the shadow from which an estimate that the control cannot use counts."""
 LATE = 0.4
@@ -229,8 +231,9 @@ def _tumbling(missed: Missed, evidence: FlightEvidence) -> str:
 
 
 def _shadow(missed: Missed, evidence: FlightEvidence) -> str:
-    if evidence.unsure_dark < UNSURE:
-        return ""
+    honest = evidence.within_3sigma is None or evidence.within_3sigma >= HONEST
+    if evidence.unsure_dark < UNSURE or not honest or beyond_bounds(evidence.scenario):
+        return ""  # less certain by what the bounds say, not by what contradicts them
     return (
         f"for {part(evidence.unsure_dark)} of its time in the Earth's shadow the estimate was less certain "
         "than the control can use, by the bounds of [flight.uncertainty]: it then damps rates alone"
@@ -248,10 +251,10 @@ def _estimate(missed: Missed, evidence: FlightEvidence) -> str:
     share = 1.0 if missed.name == "ake" else 0.4
     if missed.limit is None or missed.what == "spin" or evidence.estimate_deg < share * missed.limit:
         return ""
-    honest = evidence.within_3sigma
+    within = evidence.within_3sigma
     wrong = f"the estimate is wrong by {number(evidence.estimate_deg)} deg RMS"
-    if honest is not None and honest < 0.9:
-        return f"{wrong}, and dishonest: inside its own 3 sigma {part(honest)} of the time"
+    if within is not None and within < HONEST:
+        return f"{wrong}, and dishonest: inside its own 3 sigma {part(within)} of the time"
     return f"{wrong}, as it states itself"
 
 
@@ -304,8 +307,9 @@ def _gravity(missed: Missed, evidence: FlightEvidence) -> str:
     trend = evidence.trend
     if len(trend) < TREND or missed.what not in ("attitude", "axis") or trend[-1] < OVER_DEG:
         return ""
-    gravity = gravity_on(evidence.scenario)
-    return f"gravity {gravity_words(gravity)}" if gravity.falls_over or gravity.rests_elsewhere else ""
+    gravity, weak = gravity_on(evidence.scenario), _is_weaker_than_gravity(evidence)
+    turned = gravity.rests_elsewhere and not weak  # what weak coils cannot hold need not be much
+    return f"gravity {gravity_words(gravity)}" if gravity.falls_over or turned else ""
 
 
 def _coarse(missed: Missed, evidence: FlightEvidence) -> str:
@@ -329,7 +333,7 @@ def _coarse(missed: Missed, evidence: FlightEvidence) -> str:
 
 def _weak(missed: Missed, evidence: FlightEvidence) -> str:
     largest_am2, gradient_am2 = evidence.scenario.coils.largest_am2, gradient_level_am2(evidence.scenario)
-    if not evidence.own_software and largest_am2 >= gradient_am2:
+    if not evidence.own_software and not _is_weaker_than_gravity(evidence):
         return ""  # its gains may be too high, or it drives at the highest level alone
     most, of = _at_most(missed, evidence)
     if len(evidence.trend) < TREND and largest_am2 > HOPELESS * gradient_am2:
@@ -343,10 +347,15 @@ def _weak(missed: Missed, evidence: FlightEvidence) -> str:
     )
 
 
+def _is_weaker_than_gravity(evidence: FlightEvidence) -> bool:
+    """Whether the highest level is less than the largest gravity gradient takes."""
+    return evidence.scenario.coils.largest_am2 < gradient_level_am2(evidence.scenario)
+
+
 def _saturates(missed: Missed, evidence: FlightEvidence) -> str:
     largest_am2, gradient_am2 = evidence.scenario.coils.largest_am2, gradient_level_am2(evidence.scenario)
     most, of = _at_most(missed, evidence)
-    if evidence.own_software or not of or largest_am2 < gradient_am2 or len(evidence.trend) < TREND:
+    if evidence.own_software or not of or _is_weaker_than_gravity(evidence) or len(evidence.trend) < TREND:
         return ""
     return (
         f"the highest level is asked for in {part(most)} of {of}, and the coils are not too weak: "
@@ -416,6 +425,7 @@ POINTING = frozenset(("ape", "mpe", "rpe", "settling", "rate"))
 SETTLING = frozenset(("settling",))
 KNOWING = POINTING | {"ake"}
 ALL = KNOWING | {"duty", "energy"}
+BEFORE_KNOWING = frozenset(("isolated", "safe", "dark", "tumbling"))
 BEFORE_POINTING = frozenset(("safe", "dark", "tumbling", "shadow", "estimate"))
 CANNOT_POINT = frozenset(("isolated", "gravity", "unstable", "disturbance", "any_law"))
 POINT_IS_LOST = BEFORE_POINTING | CANNOT_POINT | {"coarse", "weak", "not_settled"}
@@ -430,14 +440,14 @@ CAUSES: Sequence[Diagnosis] = (
     Diagnosis("safe", KNOWING, _safe, frozenset(("isolated",))),
     Diagnosis("dark", KNOWING, _dark),
     Diagnosis("tumbling", KNOWING, _tumbling),
-    Diagnosis("shadow", KNOWING, _shadow, frozenset(("isolated", "safe", "dark", "tumbling"))),
-    Diagnosis("estimate", KNOWING, _estimate, frozenset(("isolated", "safe", "dark", "tumbling", "shadow"))),
+    Diagnosis("coarse", POINTING, _coarse, BEFORE_KNOWING),  # such pulses disturb the estimate, too
+    Diagnosis("shadow", KNOWING, _shadow, BEFORE_KNOWING | {"coarse"}),
+    Diagnosis("estimate", KNOWING, _estimate, BEFORE_KNOWING | {"coarse", "shadow"}),
     Diagnosis("mismatch", ALL, _mismatch),
     Diagnosis("gravity", POINTING, _gravity, BEFORE_POINTING | {"isolated"}),
     Diagnosis("any_law", POINTING, _any_law, frozenset(("gravity",))),
     Diagnosis("disturbance", ALL - {"ake"}, _disturbance, frozenset(("gravity",))),
     Diagnosis("unstable", ALL - {"ake"}, _unstable, frozenset(("gravity",))),
-    Diagnosis("coarse", POINTING, _coarse, BEFORE_POINTING | CANNOT_POINT),
     Diagnosis("weak", POINTING, _weak, BEFORE_POINTING | CANNOT_POINT),
     Diagnosis("saturates", POINTING, _saturates, BEFORE_POINTING | CANNOT_POINT | {"coarse"}),
     Diagnosis("not_settled", POINTING, _not_settled, CANNOT_POINT | {"safe", "shadow", "estimate", "coarse"}),

@@ -10,6 +10,7 @@ from sim.report.requirements.evidence import FlightEvidence
 from sim.report.requirements.sizing import balance, least_error_deg
 from sim.scenario.schema import load, parse_settings
 from sim.sizing.expectation import expect
+from sim.sizing.gravity import gravity_on
 from sim.sizing.levels import levels_against
 
 POINTED = {Mode.SAFE: 0.001, Mode.DETUMBLE: 0.02, Mode.ACQUIRE: 0.1, Mode.POINT: 0.879}
@@ -100,6 +101,33 @@ FOUND = {
 @pytest.mark.parametrize("cause", FOUND)
 def test_a_cause_is_found_and_no_other(cause):
     assert names(FOUND[cause], MISSED.get(cause, APE)) == [cause]
+
+
+@pytest.mark.parametrize("led", [{"valid_part": 0.46}, {"unsure_dark": 0.2}], ids=["estimate", "shadow"])
+def test_an_estimate_that_coarse_pulses_disturb_is_no_cause_beside_them(led):
+    assert names(replace(FOUND["coarse"], **led)) == ["coarse"]
+
+
+@pytest.mark.parametrize(
+    ("contradicted", "cause"),
+    [
+        (replace(FOUND["shadow"], within_3sigma=0.4, estimate_deg=7.0), "estimate"),
+        (replace(FOUND["mismatch"], unsure_dark=0.2), "mismatch"),
+    ],
+)
+def test_a_filter_is_unsure_by_its_bounds_only_where_nothing_contradicts_them(contradicted, cause):
+    assert names(contradicted) == [cause]
+
+
+def test_what_coils_too_weak_for_gravity_cannot_hold_is_not_the_fault_of_the_axes():
+    """By slight products of inertia the body rests some degrees off, which takes half of what they give."""
+    products = [[1.02, 0.02, 0.02], [0.02, 1.85, 0.02], [0.02, 0.02, 1.95]]
+    levels = ("coils.levels_am2=[0.03,0.08,0.2]", "coils.dipole_per_ampere_am2=0.5")
+    weak = sound(*levels, f"body.inertia_kgm2={products}")
+    fallen = replace(weak, levels=(0, 3, 50), trend=(80.0, 95.0, 120.0, 90.0))
+    assert gravity_on(weak.scenario).rests_elsewhere
+    assert "gravity" not in names(fallen)
+    assert {"weak", "disturbance"} & set(names(fallen))
 
 
 def test_every_cause_of_the_table_is_tried():
