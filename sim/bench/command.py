@@ -140,7 +140,7 @@ def hil(settings: HilSettings) -> int:
             numbers = _run(settings, spec, hub_pid, bus, processes, folder, table)
         finally:
             bus.close()
-        lost = [process for process in processes.by_name.values() if not process.alive]
+        lost = [process for process in processes.by_name.values() if process.is_lost]
         numbers["ended"] = {process.name: process.last_error() for process in lost}
     if settings.out is not None:
         run_dir.write_json(settings.out / NUMBERS, plain(numbers))
@@ -203,6 +203,8 @@ def _run(
         def on_tick(tick: int) -> None:
             memory.sample(tick)
             watch(tick)
+            if tick == ticks - 2:  # the last tick has begun, and PLANT_END comes next
+                fsw.may_end = settings.software is not None and fsw.alive
 
         commands = uplink(scenario.telecommand, tick_hz)
         loop = RealtimeLoop(bus, source, log, scenario.epoch_unix_s, tick_hz, on_tick, commands)

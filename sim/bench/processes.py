@@ -23,16 +23,25 @@ HUB_S = 30.0
 
 @dataclass
 class BenchProcess:
-    """One process, and the file that its errors go to."""
+    """One process, and the file that its errors go to.
+
+    ``may_end``: the end of the flight is near, which a flight software of one's own ends with.
+    """
 
     name: str
     popen: subprocess.Popen[bytes]
     errors: IO[bytes]
+    may_end: bool = False
 
     @property
     def alive(self) -> bool:
         """Whether it still runs."""
         return self.popen.poll() is None
+
+    @property
+    def is_lost(self) -> bool:
+        """Whether it has ended, but for one that may and has no error."""
+        return not self.alive and not (self.may_end and self.popen.returncode == 0)
 
     def last_error(self) -> str:
         """Why it has ended: a signal, which leaves no error, else the last line of its errors."""

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import time
 
 import pytest
@@ -40,3 +41,18 @@ def test_a_process_that_was_killed_is_said_to_be_whatever_it_wrote_before():
             process.popen.wait(20.0)
         assert killed.last_error() == "by signal 9 (Killed)"
         assert "--no-such-option" in wrong.last_error()
+
+
+@pytest.mark.parametrize(
+    ("may_end", "command", "lost"),
+    [(True, "exit 0", False), (True, "exit 4", True), (False, "exit 0", True), (False, "sleep 9", False)],
+)
+def test_a_process_is_lost_that_ends_before_it_may_or_with_an_error(tmp_path, may_end, command, lost):
+    (tmp_path / "errors").touch()
+    with BenchProcesses() as processes:
+        popen = subprocess.Popen(["sh", "-c", command])
+        process = processes.take("fsw", popen, tmp_path / "errors")
+        process.may_end = may_end
+        if command.startswith("exit"):
+            popen.wait()
+        assert process.is_lost == lost
