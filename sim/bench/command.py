@@ -203,7 +203,7 @@ def _run(
         def on_tick(tick: int) -> None:
             memory.sample(tick)
             watch(tick)
-            if tick == ticks - 2:  # the last tick has begun, and PLANT_END comes next
+            if tick == max(ticks - 2, 0):  # the last tick has begun, and PLANT_END comes next
                 fsw.may_end = settings.software is not None and fsw.alive
 
         commands = uplink(scenario.telecommand, tick_hz)
