@@ -32,6 +32,8 @@ LEAD = 0.3
 """Fraction of a tick before its end at which the source advances without the coil board's status."""
 MAX_FRAMES = 2000
 """Frames received in a tick: a babbling node does not stop the bench."""
+MAX_LATE_FRAMES = 50
+"""Of these, frames received after the next SYNC is due: they were on the bus before it."""
 START_S = 0.2
 
 
@@ -113,15 +115,18 @@ class RealtimeLoop:
         start_s = time.monotonic() + START_S
         self._received += boot_frames
         self._listen(-1, start_s, start_s)
+        sent_s = start_s
         for tick in range(ticks):
             due_s = start_s + tick * period_s
             sent = self._uplink(tick) + self._source.frames()
+            self._take_waiting(tick - 1, sent_s)
             self._bus.send(sent)
             sent_s = time.monotonic()
             self.measured.jitter.add(sent_s - due_s)
             self._settle(tick, sent)
             self._listen(tick, due_s + period_s, sent_s)
         end = PlantEnd(ticks).encode()
+        self._take_waiting(ticks - 1, sent_s)
         self._bus.send([end])
         self._settle(ticks, [end])
         return self.measured
@@ -148,19 +153,33 @@ class RealtimeLoop:
             if now_s >= until_s:
                 break
             frame = self._bus.receive((early_s if waits else until_s) - now_s)
-            if frame is None:
-                continue
-            self._received.append(frame)
-            if _answers(frame, tick):
-                self.measured.latency.add(time.monotonic() - sent_s)
-                self._answered = len(self._received)
-            elif self._source.receive(frame) and waits:
+            if frame is not None and self._take(frame, tick, sent_s) and waits:
                 self._source.advance()
                 waits = False
         else:  # a babbling node: the rest of its frames waits on the bus
             time.sleep(max(0.0, until_s - time.monotonic()))
         if waits:
             self._source.advance()
+
+    def _take(self, frame: Frame, tick: int, sent_s: float) -> bool:
+        """Take a frame of this tick: whether it is the coil board's status."""
+        self._received.append(frame)
+        if _answers(frame, tick):
+            self.measured.latency.add(time.monotonic() - sent_s)
+            self._answered = len(self._received)
+            return False
+        return self._source.receive(frame)
+
+    def _take_waiting(self, tick: int, sent_s: float) -> None:
+        """Take what came while this process was held up: it was on the bus before the SYNC that is sent next.
+
+        In a log that has it behind that SYNC, it would be of the next tick.
+        """
+        for _ in range(MAX_LATE_FRAMES):
+            frame = self._bus.receive(0.0)
+            if frame is None:
+                return
+            self._take(frame, tick, sent_s)
 
     def _tally(self) -> None:
         measured, received = self.measured, self._received

@@ -55,3 +55,31 @@ def test_an_answer_counts_only_if_its_frame_is_whole(answer, slips):
     measured = loop.run(TICKS)
     assert (measured.ticks, measured.slips) == (TICKS, slips)
     assert measured.latency.quantile(0.5) == float("inf") if slips else measured.latency.quantile(0.5) > 0.0
+
+
+class HeldUpBus(AnsweredBus):
+    """One whose host is held up once, past the next SYNC: the answer came in time, and waits to be read."""
+
+    def receive(self, timeout_s):
+        if self.waiting and timeout_s > 0.0:
+            time.sleep(1.5 / TICK_HZ)
+            return None
+        return super().receive(timeout_s)
+
+
+class FramesInOrder:
+    """A log that keeps the frames in order."""
+
+    def __init__(self):
+        self.frames = []
+
+    def write(self, _, frames):
+        self.frames += frames
+
+
+def test_what_came_while_the_bench_was_held_up_stands_before_the_sync_that_followed_it():
+    log = FramesInOrder()
+    measured = RealtimeLoop(HeldUpBus(whole), SyncOnly(0, TICK_HZ), log, 0, TICK_HZ).run(TICKS)
+    kinds = [frame.can_id for frame in log.frames if frame.can_id in (Sync.ID, TickDone.ID)]
+    assert kinds == [Sync.ID, TickDone.ID] * TICKS
+    assert measured.slips == 0
