@@ -101,7 +101,7 @@ def _fault(model: type[Any], detail: Nested) -> str:
     message = str(detail["msg"]).removeprefix("Value error, ")
     if detail["type"] in ("value_error", "json_invalid"):
         return f"{path}: {message}" if path else message
-    allowed = _allowed_range(model, detail["loc"]) or _KINDS.get(detail["type"], "")
+    allowed = _allowed_range(model, detail["loc"]) or _allowed_by(detail["type"], detail.get("ctx", {}))
     hint = f"allowed is {allowed}" if allowed else f"{message[0].lower()}{message[1:]}"
     if detail["type"] == "less_than_equal":
         hint += _unit_asked(str(detail["loc"][-1]), detail["input"], detail["ctx"]["le"])
@@ -169,10 +169,24 @@ _KINDS = {
     "float_type": "a number",
     "int_type": "a whole number",
     "bool_type": "true or false",
+    "finite_number": "a finite number",
+    "greater_than": "a number above {gt:g}",
+    "greater_than_equal": "a number at least {ge:g}",
+    "less_than": "a number below {lt:g}",
+    "less_than_equal": "a number at most {le:g}",
+    "literal_error": "{expected}",
+    "too_short": "a list of at least {min_length}",
+    "too_long": "a list of at most {max_length}",
+    "string_pattern_mismatch": "a text that matches {pattern}",
 }
-"""What a value of the wrong type should have been."""
+"""What a value should have been, by what is wrong with it."""
 
 _BOUNDS = (("gt", "above"), ("ge", "at least"), ("lt", "below"), ("le", "at most"))
+
+
+def _allowed_by(error_type: str, context: Nested) -> str:
+    """What pydantic allows at this place, in our words; empty where it is of another kind."""
+    return _KINDS.get(error_type, "").format_map(context)
 
 
 def _allowed_range(model: type[Any], location: tuple[int | str, ...]) -> str:

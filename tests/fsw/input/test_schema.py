@@ -33,6 +33,10 @@ class Inner(Section):
     kind: Literal["round", "square"] = "round"
     deep: Deep = Deep()
     pair: Annotated[tuple[str, str] | None, Strict(False)] = None
+    spare: Deep | None = None
+    ratio: Annotated[float, Field(gt=0.0)] | None = None
+    code: Annotated[str, Field(pattern="^[a-f]{2}$")] = "aa"
+    places: Annotated[tuple[float, ...], Strict(False), Field(min_length=1, max_length=2)] = (0.0,)
 
 
 class Outer(Section):
@@ -125,8 +129,23 @@ class TestValidated:
     def test_a_choice(self):
         assert (
             fault(kind="oval")
-            == "file.toml: inner.kind = 'oval' is not allowed: input should be 'round' or 'square'"
+            == "file.toml: inner.kind = 'oval' is not allowed: allowed is 'round' or 'square'"
         )
+
+    @pytest.mark.parametrize(
+        ("inner", "sentence"),
+        [
+            ({"spare": {"share": 1.5}}, "inner.spare.share = 1.5 is not allowed: allowed is a number at most 1"),
+            ({"spare": {"share": -1}}, "inner.spare.share = -1 is not allowed: allowed is a number at least 0"),
+            ({"ratio": 0.0}, "inner.ratio = 0.0 is not allowed: allowed is a number above 0"),
+            ({"ratio": float("nan")}, "inner.ratio = nan is not allowed: allowed is a finite number"),
+            ({"code": "xx"}, "inner.code = 'xx' is not allowed: allowed is a text that matches ^[a-f]{2}$"),
+            ({"places": []}, "inner.places = [] is not allowed: allowed is a list of at least 1"),
+            ({"places": [1, 2, 3]}, "inner.places = [1, 2, 3] is not allowed: allowed is a list of at most 2"),
+        ],
+    )
+    def test_what_may_be_left_out_and_what_has_a_length_is_told_in_the_same_words(self, inner, sentence):
+        assert fault(**inner) == f"file.toml: {sentence}"
 
     def test_a_section_within_a_section(self):
         assert fault(deep={"share": 1.5}) == (

@@ -1,19 +1,21 @@
 """Scenarios: those that ship are sound, settings are laid over them, and errors are one sentence."""
 
+import re
 from datetime import UTC, datetime
 from importlib import resources
-from math import hypot
+from math import hypot, nan
 from pathlib import Path
 
 import pytest
 
-from fsw.input.schema import TableError
+from fsw.input.schema import TableError, section_in
 from fsw.table.cells import QUANTUM
 from fsw.table.config import flight_config
+from fsw.table.table import FlightTable
 from fsw.wire.messages import MagField, SunVector
 from sim.plant.plant import Plant
 from sim.scenario.assemble import plant_config
-from sim.scenario.schema import flight_table, load, orbit_period_s, parse_settings, shipped
+from sim.scenario.schema import Scenario, flight_table, load, orbit_period_s, parse_settings, shipped
 from sim.scenario.sections import BUS_STEP_NT, BUS_STEP_PERCENT, BUS_STEP_SUN
 
 NAMES = [scenario.name for scenario in shipped()]
@@ -25,6 +27,15 @@ TLE = (
 
 def settings(*texts):
     return parse_settings(texts)
+
+
+def keys_of(model, path=()):
+    """Each key of a section and of those within it, as a path."""
+    for name, field in model.model_fields.items():
+        yield (*path, name)
+        section = section_in(field.annotation)
+        if section is not None:
+            yield from keys_of(section, (*path, name))
 
 
 def fault(name="microsat", **overrides):
@@ -204,6 +215,21 @@ class TestSettings:
         sentence = fault(**settings(text))
         assert sentence.startswith("scenario microsat: ")
         assert told in sentence
+
+    @pytest.mark.long
+    @pytest.mark.parametrize("value", ["x", [], {"a": 1}, -1.0, nan, [[1]], [{"kind": 3}]], ids=repr)
+    def test_no_key_answers_in_the_words_of_a_library(self, value):
+        refused = 0
+        for path in (*keys_of(Scenario), *(("flight", *path) for path in keys_of(FlightTable))):
+            laid_over = value
+            for part in reversed(path):
+                laid_over = {part: laid_over}
+            try:
+                load("microsat", laid_over)
+            except TableError as error:
+                refused += 1
+                assert not re.search(r"nput should|tuple|validation|union|instance", str(error)), path
+        assert refused > 100
 
 
 class TestOrbit:
