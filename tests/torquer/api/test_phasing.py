@@ -10,18 +10,20 @@ REVERSED = {"coils.wiring": [1, -2, 3]}
 
 
 @pytest.fixture(scope="module")
-def told(tmp_path_factory):
-    return torquer.phasing("microsat", set=REVERSED, out=tmp_path_factory.mktemp("phasing") / "run")
+def run(tmp_path_factory):
+    return tmp_path_factory.mktemp("phasing") / "run"
+
+
+@pytest.fixture(scope="module")
+def told(run):
+    return torquer.phasing("microsat", set=REVERSED, out=run)
 
 
 @pytest.mark.long
 def test_it_is_what_the_command_prints(told, command):
-    words = ("phasing", "microsat", "--set", "coils.wiring=[1,-2,3]")
-    result = command(*words)
+    result = command("phasing", "microsat", "--set", "coils.wiring=[1,-2,3]")
     assert result.stdout == f"{told}\n"
     assert (result.exit_code, told.ok) == (1, False)
-    printed = json.loads(command(*words, "--json").stdout)
-    assert printed | json.loads(json.dumps(told.values)) == printed
 
 
 @pytest.mark.long
@@ -32,9 +34,9 @@ def test_a_reversed_coil_is_told(told):
 
 
 @pytest.mark.long
-def test_the_log_of_a_run_tells_the_same_as_its_flight(told, tmp_path):
-    torquer.phasing("microsat", set=REVERSED, out=tmp_path / "run")
-    assert torquer.phasing(tmp_path / "run").values == told.values
+def test_the_log_of_a_run_tells_the_same_as_its_flight(told, run, command):
+    printed = json.loads(command("phasing", run, "--json").stdout)
+    assert printed | json.loads(json.dumps(told.values)) == printed
 
 
 @pytest.mark.long
