@@ -13,8 +13,7 @@ from pathlib import Path
 from argument_types import count
 
 from fsw.input.schema import TableError
-from sim.design.limits.page import Agreement, page
-from sim.design.limits.picture import draw
+from sim.design.limits.page import Agreement, draw, page
 from sim.design.limits.sweep import better_than_bound
 from sim.errors import HarnessError
 from sim.record.destination import check_file

@@ -7,7 +7,7 @@
 of the coils has died away when b is taken. While it measures no pulse begins, none is owed, and the residual
 dipole is not taken off; one that began before is driven to its end. On average a held dipole is half of
 ``act_s`` old. For each length of the cycle there are gains that are small enough
-(``sim/design/held_dipole.py``).
+(``sim/design/pd_limits.py``).
 
 Source: Ovchinnikov, Roldugin 2019, section 3.1, after Celani 2016a (the dipole constant over a control
 interval of several steps) and Celani 2016b (measuring and acting apart). The share, which keeps the mean

@@ -11,8 +11,7 @@ from typing import NamedTuple
 from fsw.core.algebra.vector import Vec3
 from fsw.input.schema import Nested, merge
 from fsw.table.config import flight_config
-from sim.design.limits.bound import least_deg
-from sim.design.limits.linear_flight import Passed, fly, orbits_of
+from sim.design.limits.linear_flight import Passed, fly, least_deg, orbits_of
 from sim.scenario.schema import Scenario, flight_table, load
 
 SCENARIO = "microsat"

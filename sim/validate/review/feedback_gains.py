@@ -11,14 +11,19 @@ from sim.campaign.claim import Claim, ClaimOutcome, Study, Threshold
 from sim.campaign.flight import Order
 from sim.campaign.study import Figure, Group, campaign, figure_of
 from sim.design.averaged_error import search
-from sim.design.gain_bifurcation import bifurcation
-from sim.design.held_dipole import longest_hold_s, weaker
-from sim.design.inertial_gains import best_of_all, best_on_line
-from sim.design.lqr_gains import lqr_gains
-from sim.design.minimax_gains import minimax, settling_orbits, spread_starts
-from sim.design.robust_gains import robust_share, worst_degree
+from sim.design.inertial_gains import (
+    best_of_all,
+    best_on_line,
+    minimax,
+    robust_share,
+    settling_orbits,
+    spread_starts,
+    worst_degree,
+)
+from sim.design.pd_limits import bifurcation, longest_hold_s, weaker
 from sim.design.theory.bodies import BODIES, Body
 from sim.design.theory.linear import Gains
+from sim.design.theory.periodic_lqr import lqr_gains
 from sim.validate.microsat import pointing_figures
 from sim.validate.review.fifty_kg import BODY, PD, flight, last_orbit_deg
 from sim.validate.review.figures import judged

@@ -6,9 +6,8 @@ from math import inf
 
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.design.theory.bodies import BODIES
-from sim.design.theory.controllability import conditioning
 from sim.design.theory.floquet import ROUGH_STEPS
-from sim.design.theory.linear import Gains
+from sim.design.theory.linear import Gains, conditioning
 from sim.design.theory.pulsed import PulsedLoop, Pulsing
 from sim.design.theory.robustness import margins
 from sim.design.theory.search import continuous

@@ -14,9 +14,16 @@ from fsw.core.laws.pd_boxed import boxed_dipole
 from fsw.core.laws.plan.riccati import periodic
 from fsw.core.laws.projection import torque_dipole
 from sim.campaign.claim import Claim, ClaimOutcome, Study
-from sim.design.h_infinity_gains import best_pd, pd_tabulated
-from sim.design.measured_h_infinity import Measured, central, least, norm
-from sim.design.periodic_norms import Norms, norms
+from sim.design.h_infinity import (
+    Measured,
+    Norms,
+    best_pd,
+    central_controller,
+    least_gamma,
+    measured_norm,
+    norms,
+    pd_tabulated,
+)
 from sim.design.riccati_by_subspace import periodic_cost
 from sim.design.theory.bodies import BODIES
 from sim.validate.review import regulators
@@ -187,9 +194,9 @@ def measured_norms() -> tuple[float, float, float]:
     """The bound, and the norms of the law made for it and of LQG."""
     problem, field = orbit_problem(*_orbit((0.0, 0.0, 0.0)), LqrGains())
     case = Measured(problem, field, _unit_nm(), ERROR * BODY.field_t)
-    lqg = norm(case, central(case, np.inf))
-    gamma, found = least(case, 0.3 * lqg, 1.1 * lqg)
-    return gamma, norm(case, found), lqg
+    lqg = measured_norm(case, central_controller(case, np.inf))
+    gamma, found = least_gamma(case, 0.3 * lqg, 1.1 * lqg)
+    return gamma, measured_norm(case, found), lqg
 
 
 def _orbit(wheel_nms: Vec3) -> tuple[Any, Vec3, float, float, float]:

@@ -10,9 +10,7 @@ from fsw.core.laws.horizon_roll import HorizonRollGains
 from fsw.core.laws.six_gain import SixGainGains
 from fsw.core.laws.wheel_relay import WheelRelayGains
 from sim.campaign.claim import Study
-from sim.design.pitch_wheel_damping import convergence
-from sim.design.pitch_wheel_ellipse import Ellipse, WheelLaw, decays
-from sim.design.pitch_wheel_gains import slowest
+from sim.design.pitch_wheel import Ellipse, WheelLaw, convergence, decays, slowest
 from sim.design.theory.bodies import Body, diagonal
 from sim.design.theory.floquet import monodromy, multipliers
 from sim.design.theory.linear import Gains, closed_loop

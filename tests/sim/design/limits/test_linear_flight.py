@@ -1,11 +1,23 @@
 """The linear body beside the plant's, and flights that keep the limits of the coils."""
 
+from math import degrees
+
 import numpy as np
 import pytest
 
 from fsw.core.algebra.quaternion import conjugate, multiply, normalise, rotate
 from fsw.table.config import flight_config
-from sim.design.limits.linear_flight import LOST_DEG, LinearBody, LinearFlight, fly, law_input, orbits_of
+from sim.design.from_scenario import body_of
+from sim.design.limits.linear_flight import (
+    LOST_DEG,
+    LinearBody,
+    LinearFlight,
+    fly,
+    law_input,
+    least_deg,
+    orbits_of,
+)
+from sim.design.theory.feedforward import least_error
 from sim.plant.dynamics.rigid_body import Motion, RigidBody
 from sim.plant.dynamics.torques import BodyTorque
 from sim.plant.environment.surroundings import Surroundings
@@ -125,3 +137,44 @@ class TestFlight:
             for backoff_s in (80.0, 160.0)
         ]
         assert errors_deg[0] < 1.05 * errors_deg[1]
+
+
+# --- The bound on the field that is flown, beside that of the direct dipole's and below the laws
+
+LARGER_TORQUE = (2e-8, 3e-8, 5e-8)
+NEAR_START = (0.005, 0.004, -0.006)
+UNEQUAL = {"body": {"inertia_kgm2": [1.02, 1.75, 2.05]}}
+
+
+@pytest.mark.long
+def test_on_the_direct_dipoles_field_it_comes_near_the_periodic_one_from_below():
+    """Another method, collocation of the periodic motion; here beginning and end are free, which helps."""
+    circle = {"tle": None, "altitude_km": 800.0, "inclination_deg": 98.6}
+    scenario = load("microsat", UNEQUAL | {"orbit": circle, "flight": {"field": {"model": "direct_dipole"}}})
+    config = config_of(scenario)
+    periodic = degrees(least_error(body_of(scenario), LARGER_TORQUE).rms_rad)
+    met = orbits_of(config)
+    one_orbit, three_orbits = (
+        least_deg(config, LARGER_TORQUE, met[: round(part * len(met))]) for part in (1 / 3, 1)
+    )
+    assert one_orbit < three_orbits < periodic
+    assert three_orbits > 0.93 * periodic
+
+
+@pytest.mark.long
+def test_it_is_in_proportion_to_the_torque(two_orbits):
+    config = config_of(load("microsat", UNEQUAL))
+    one, three = (
+        least_deg(config, tuple(n * part for part in LARGER_TORQUE), two_orbits) for n in (10.0, 30.0)
+    )
+    assert three == pytest.approx(3.0 * one, rel=0.01)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("law", ["mpc", "pulse_mpc"])
+@pytest.mark.parametrize("torque", [(0.0, 0.0, 0.0), LARGER_TORQUE])
+def test_no_law_is_below_it(law, torque, two_orbits):
+    changed = {"control": {"law": law}, "disturbance": {"torque_nm": list(torque)}}
+    scenario = load("microsat", UNEQUAL | changed)
+    flown = fly(scenario, NEAR_START, two_orbits).rms_deg()
+    assert least_deg(config_of(scenario), torque, two_orbits) < flown

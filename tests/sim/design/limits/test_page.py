@@ -5,8 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from sim.design.limits.page import Agreement, page
-from sim.design.limits.picture import draw
+from sim.design.limits.page import Agreement, draw, page
 from sim.design.limits.sweep import BOUND, QUANTITIES, Line, all_orders, orders_of
 
 FLOWN = {order.key: 0.4 if order.law == BOUND else 0.5 for order in all_orders()}

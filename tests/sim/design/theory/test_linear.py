@@ -1,9 +1,11 @@
 """The linearisation against the plant: its right-hand side, and an orbit of its nonlinear motion."""
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from fsw.core.laws.pd import attitude_error, pd_dipole
 from sim.design.theory.bodies import BODIES, Body, diagonal
@@ -11,8 +13,10 @@ from sim.design.theory.floquet import degree_of_stability, monodromy
 from sim.design.theory.linear import (
     Gains,
     closed_loop,
+    conditioning,
     dipole_field,
     free_motion,
+    gramian,
     projection,
     resting_torque,
     skew,
@@ -205,3 +209,34 @@ def test_the_exponents_are_those_of_the_nonlinear_plant(k_w, k_a):
 def test_gains_are_scaled_alike():
     assert Gains(2.0, 3.0, 4.0).scaled(1.5) == (3.0, 4.5, 6.0)
     assert Gains(2.0, 3.0).scaled(1.5) == (3.0, 4.5, None)
+
+
+# --- The Gramian of an orbit: by its definition, regular on an inclined orbit, singular over the equator
+
+FULL = Body("full", ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95)), 800.0, 98.6)
+
+
+def test_it_is_what_dipoles_of_an_orbit_reach():
+    """W' = F W + W F^T + P P^T from nothing, by an adaptive integrator."""
+    inertia = np.array(FULL.inertia_kgm2) / (np.trace(FULL.inertia_kgm2) / 3.0)
+    free = free_motion(FULL)
+
+    def change(u, flat):
+        reached, push = flat.reshape(6, 6), np.zeros((6, 3))
+        push[:3] = -np.linalg.solve(inertia, skew(dipole_field(np.array(u), FULL)))
+        return (free @ reached + reached @ free.T + push @ push.T).ravel()
+
+    flown = solve_ivp(change, (0.0, 2.0 * np.pi), np.zeros(36), method="DOP853", rtol=1e-10, atol=1e-12)
+    reached = flown.y[:, -1].reshape(6, 6)
+    assert gramian(FULL) == pytest.approx(reached, rel=1e-4, abs=1e-5 * np.abs(reached).max())
+
+
+@pytest.mark.parametrize("body", BODIES, ids=lambda body: body.name)
+def test_on_an_inclined_orbit_every_motion_can_be_stopped(body):
+    assert conditioning(body) > 1e-5
+
+
+@pytest.mark.parametrize("body", BODIES, ids=lambda body: body.name)
+def test_over_the_equator_pitch_cannot(body):
+    """The dipole's field stands along the normal: no torque about it."""
+    assert conditioning(replace(body, inclination_deg=0.0)) < 1e-12

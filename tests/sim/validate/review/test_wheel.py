@@ -6,7 +6,7 @@ import pytest
 
 from fsw.core.laws import wheel_integral
 from fsw.core.laws.six_gain import SixGainGains
-from sim.design.pitch_wheel_ellipse import WheelLaw
+from sim.design.pitch_wheel import WheelLaw
 from sim.validate.review import wheel
 
 
