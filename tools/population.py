@@ -24,8 +24,7 @@ from sim.progress import progress
 from sim.record.destination import check_file
 from sim.record.whole_file import replace_text
 from sim.validate.population import claims as population
-from sim.validate.population.page import page
-from sim.validate.population.pictures import draw_satellites, draw_sweep, spread_of
+from sim.validate.population.page import draw_satellites, draw_sweep, page, spread_of
 from sim.validate.population.sweep import QUANTITIES, sweep_order
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "population.md"

@@ -12,8 +12,8 @@ from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Spread, Thresh
 from sim.campaign.runner import StudyResult
 from sim.console import counted
 from sim.junit import JunitCase
+from sim.validate.flight_data.claims import passes_table
 from sim.validate.flight_data.passes import PassFigures
-from sim.validate.flight_data.table import as_table
 from sim.validate.reference.reference import FileResult
 
 _HEAD = """# Validation
@@ -62,7 +62,7 @@ def render(
         lines.append("")
     passes = [result for study in finished for result in study.results if isinstance(result, PassFigures)]
     if passes:
-        lines += [*as_table(passes), ""]
+        lines += [*passes_table(passes), ""]
     lines += [f"Wall time of the last run {wall_s:.0f} s. {platform_line()}.", ""]
     return "\n".join(lines)
 

@@ -17,9 +17,6 @@ from sim.validate.review import (
     driven_wheel,
     feedback_gains,
     feedback_laws,
-    feedback_linear,
-    feedback_neural,
-    fixed_wheel,
     one_axis,
     optimal,
     pointing,
@@ -31,8 +28,8 @@ from sim.validate.review import (
 
 MODULES: tuple[ModuleType, ...] = (
     *(computed, prediction, minimisers, posat1, microsat, shipped, optimal_pulses, cells),
-    *(damping, spin, wheel, one_axis, feedback_laws, feedback_gains, feedback_linear, feedback_neural),
-    *(sliding, optimal, predictive, fixed_wheel, pointing),
+    *(damping, spin, wheel, one_axis, feedback_laws, feedback_gains),
+    *(sliding, optimal, predictive, pointing),
     *(driven_wheel, claims, worlds, wirings, calibrated),
 )
 """Those that make studies, beside those of the reference files."""

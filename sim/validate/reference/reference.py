@@ -11,24 +11,16 @@ import numpy as np
 
 from sim.campaign.claim import Claim, ClaimOutcome, ClaimVerdict, Study
 from sim.errors import HarnessError
-from sim.validate.reference import (
-    attitude_check,
-    earth_check,
-    eclipse_check,
-    elements_check,
-    field_check,
-    floquet_check,
-    triad_check,
-)
+from sim.validate.reference import attitude_check, environment_check, floquet_check, triad_check
 from sim.validate.reference.comparison import ReferenceComparison
 from sim.validate.reference.reference_table import DATA, ReferenceTable
 
 Check = Callable[[ReferenceTable], Iterator[ReferenceComparison]]
 
 CHECKS: dict[str, Check] = {
-    "igrf14.csv": field_check.check,
-    "earth_sun.csv": earth_check.check,
-    "eclipse.csv": eclipse_check.check,
+    "igrf14.csv": environment_check.check_field,
+    "earth_sun.csv": environment_check.check_earth_and_sun,
+    "eclipse.csv": environment_check.check_eclipse,
     "attitude_*.csv": attitude_check.check,
     "floquet.csv": floquet_check.check,
     "triad_mekf.csv": triad_check.check,
@@ -82,8 +74,8 @@ def check_file(path: Path, pattern: str) -> FileResult:
     """
     try:
         if pattern == ELEMENTS:
-            outcomes = tuple(elements_check.check(path))
-            return FileResult(path.name, len(elements_check.read_elements(path)), (), outcomes)
+            outcomes = tuple(environment_check.check_elements(path))
+            return FileResult(path.name, len(environment_check.read_elements(path)), (), outcomes)
         table = ReferenceTable(path)
         outcomes = tuple(comparison.outcome(table) for comparison in CHECKS[pattern](table))
         return FileResult(path.name, len(table), tuple(table.unused), outcomes)

@@ -12,8 +12,7 @@ from fsw.core.laws.rate_damping_matrix import MatrixGains
 from sim.campaign.claim import Claim, Study, Threshold
 from sim.plant.dynamics.jacobi import jacobi_integral
 from sim.validate.review.figures import one_figure
-from sim.validate.review.law_flight import LawFlight, fly
-from sim.validate.review.law_history import LawHistory
+from sim.validate.review.law_flight import LawFlight, LawHistory, fly
 
 FULL = ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95))
 SPHERE = ((1.9, 0.0, 0.0), (0.0, 1.9, 0.0), (0.0, 0.0, 1.9))

@@ -18,8 +18,7 @@ from sim.plant.wheel_config import WheelConfig
 from sim.statistics.settling import settled_tick
 from sim.validate.review.fifty_kg import INERTIA
 from sim.validate.review.figures import FigureClaim
-from sim.validate.review.law_flight import ConstantTorque, LawFlight, fly
-from sim.validate.review.law_history import LawHistory
+from sim.validate.review.law_flight import ConstantTorque, LawFlight, LawHistory, fly
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section 2.4"
 WHEEL = WheelConfig((0.0, 0.0, 1.0), 2e-4, 2e-3, 0.12)

@@ -1,11 +1,13 @@
-"""Claims: gains of the simple feedback (section 3.1), found on the ground."""
+"""Claims: gains of the simple feedback, by theory and by training on the ground (sections 3.1, 3.4)."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from math import inf
 
 import numpy as np
 
+from fsw.core.laws.pd_neural import NeuralGains
 from fsw.input.schema import Nested
 from sim.campaign.claim import Claim, ClaimOutcome, Study, Threshold
 from sim.campaign.flight import Order
@@ -20,13 +22,18 @@ from sim.design.inertial_gains import (
     spread_starts,
     worst_degree,
 )
+from sim.design.neural_training import MOST_AM2, PD_GAINS, cost, orbit_rms_deg, trials
 from sim.design.pd_limits import bifurcation, longest_hold_s, weaker
 from sim.design.theory.bodies import BODIES, Body
-from sim.design.theory.linear import Gains
+from sim.design.theory.floquet import ROUGH_STEPS
+from sim.design.theory.linear import Gains, conditioning
 from sim.design.theory.periodic_lqr import lqr_gains
+from sim.design.theory.pulsed import PulsedLoop, Pulsing
+from sim.design.theory.robustness import margins
+from sim.design.theory.search import continuous
 from sim.validate.microsat import pointing_figures
 from sim.validate.review.fifty_kg import BODY, PD, flight, last_orbit_deg
-from sim.validate.review.figures import judged
+from sim.validate.review.figures import judged, one_figure
 
 SECTION = "Ovchinnikov, Roldugin 2019, section 3.1"
 BEST = Gains(**PD)
@@ -43,7 +50,11 @@ TANGO_ORBITS = 7.0
 
 def studies() -> list[Study]:
     """All of this module."""
-    return [scheme(), limit(), robust(), settling(), hold(), tango(), averaged()]
+    return [
+        *(scheme(), limit(), robust(), settling(), hold(), tango(), averaged()),
+        *linear_studies(),
+        *neural_studies(),
+    ]
 
 
 def scheme() -> Study:
@@ -262,3 +273,103 @@ def tango_order(dipole_am2: float) -> Order:
         "control": control,
     }
     return Order("microsat", overrides, orbits=TANGO_ORBITS, measure=pointing_figures)
+
+
+# --- What linear theory decides: margins of the inertia, pulses, controllability
+
+REVIEW = "Ovchinnikov, Roldugin 2019"
+BOOM = next(body for body in BODIES if body.name == "boom")
+BOOM_BEST = Gains(3.2433e8, 4.7969e4)
+"""Its best gains by Floquet theory."""
+
+
+def linear_studies() -> list[Study]:
+    """All of this section."""
+    return [
+        Study("review.feedback.inertia", (inertia_margin,), _judge_inertia),
+        Study("review.feedback.pulses", (pulsed_degree,), _judge_pulses),
+        Study("review.controllability", (controlled,), _judge_controlled),
+    ]
+
+
+def inertia_margin() -> float:
+    """The least relative error of the moments that makes the best gains of a boom satellite unstable."""
+    found = margins(BOOM, BOOM_BEST, continuous(BOOM, ROUGH_STEPS)).moments
+    return inf if found is None else found
+
+
+def pulsed_degree() -> float:
+    """Degree of stability of the 50 kg satellite under pulses, 1/rad."""
+    return float(PulsedLoop(BODY, Pulsing(3.0, 100.0, 300.0, True)).degree(Gains(**PD)))
+
+
+def _judge_inertia(found: Sequence[float]) -> list[ClaimOutcome]:
+    claim = Claim(
+        "review.feedback.inertia.margin",
+        "Least error of the moments at which the best gains of a satellite with a boom become unstable",
+        f"{REVIEW}, section 3.1 [73]",
+        "1",
+        high=0.02,
+    )
+    return [claim.judge(found[0])]
+
+
+def _judge_pulses(found: Sequence[float]) -> list[ClaimOutcome]:
+    claim = Claim(
+        "review.feedback.pulses.degree",
+        "Degree of stability of 50 kg with its best gains, the dipole in pulses of 3 s each 103 s",
+        f"{REVIEW}, section 3.1 [78, 79]",
+        "1/rad",
+        high=-0.2,
+    )
+    return [claim.judge(found[0])]
+
+
+def controlled() -> tuple[float, float]:
+    """Least over greatest eigenvalue of the Gramian of an orbit: of 50 kg, and the same at the equator."""
+    return conditioning(BODY), conditioning(replace(BODY, inclination_deg=0.0))
+
+
+def _judge_controlled(found: Sequence[tuple[float, float]]) -> list[ClaimOutcome]:
+    source = f"{REVIEW}, introduction [4, 5, 9]"
+    statement = "Least over greatest eigenvalue of the Gramian of an orbit, 50 kg, direct dipole"
+    inclined = Claim("review.controllability.orbit", statement, source, "1", low=0.01)
+    equator = Claim(
+        "review.controllability.equator",
+        f"{statement}, orbit over the equator",
+        source,
+        "1",
+        high=1e-12,
+        wide="it is zero but for rounding",
+    )
+    return [inclined.judge(found[0][0]), equator.judge(found[0][1])]
+
+
+# --- Gains that trained units choose (section 3.4), on flights that the training has not seen
+
+SEEDS, FLIGHTS = (101, 102, 103), 24
+"""Not those of the training."""
+CONSTANT = (0.0,) * 6
+"""Weights with which the factors of both gains are 1."""
+
+
+def neural_studies() -> list[Study]:
+    """All of this section."""
+    claim = Claim(
+        "review.feedback.neural",
+        "RMS angle of pd_neural over that of pd with its best constant gains, geometric mean of orbits, "
+        f"{len(SEEDS) * FLIGHTS} flights with unknown torque and dipole, none of them trained on",
+        "Ovchinnikov, Roldugin 2019, section 3.4, after Das, Sinha, Misra 2012 [113]",
+        "1",
+        high=0.98,
+    )
+    return [one_figure(claim, partial(ratio, NeuralGains()))]
+
+
+def ratio(gains: NeuralGains) -> float:
+    """Of the mean RMS angles, with these weights and with none."""
+    trained = (gains.w0, gains.w1, gains.w2, gains.a0, gains.a1, gains.a2, gains.lag_orbits)
+    members = np.array([trained, (*CONSTANT, gains.lag_orbits)])
+    costs = [cost(orbit_rms_deg(BODY, PD_GAINS, members, trials(FLIGHTS, seed), MOST_AM2)) for seed in SEEDS]
+    neural, constant = np.mean(costs, axis=0)
+    return float(np.exp(neural - constant))

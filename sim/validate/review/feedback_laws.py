@@ -17,8 +17,7 @@ from sim.plant.environment.orbit import Array, CircularOrbit
 from sim.plant.rotation import Vec3
 from sim.validate.review.fifty_kg import BODY, INERTIA, PD, SPHERE, flight, last_orbit_deg
 from sim.validate.review.figures import judged
-from sim.validate.review.law_flight import LawFlight, fly
-from sim.validate.review.law_history import LawHistory, angle_deg
+from sim.validate.review.law_flight import LawFlight, LawHistory, angle_deg, fly
 
 SECTION = "Ovchinnikov, Roldugin 2019, section 3.1"
 OFF_DEG = 40.0

@@ -21,8 +21,7 @@ from sim.plant.rotation import Mat3, Vec3, transform
 from sim.validate.review import effects
 from sim.validate.review.fifty_kg import INERTIA
 from sim.validate.review.figures import FlownClaim, one_figure
-from sim.validate.review.law_flight import LawFlight, fly
-from sim.validate.review.law_history import LawHistory, angle_deg
+from sim.validate.review.law_flight import LawFlight, LawHistory, angle_deg, fly
 
 # --- A 3U satellite with feathers, which the air holds by one axis
 

@@ -1,7 +1,7 @@
-"""Claims on the laws that hold the whole attitude (sections 3.1, 3.2), flown rigidly."""
+"""Claims on laws that hold the whole attitude, by coils alone or beside a wheel of constant speed."""
 
 from collections.abc import Sequence
-from math import pi
+from math import cos, degrees, pi, radians, sin
 
 import numpy as np
 
@@ -131,7 +131,7 @@ def other_trials() -> list[Trial]:
 
 def studies() -> list[Study]:
     """All of this module."""
-    return [trial.study() for trial in (*feedback_trials(), *other_trials())]
+    return [trial.study() for trial in (*wheel_trials(), *feedback_trials(), *other_trials())]
 
 
 def _final(name: str, what: str, high: float) -> TrialFigure:
@@ -163,3 +163,71 @@ def _cost(flight: RigidFlight) -> float:
     unit_am2 = mean_kgm2 * (2.0 * pi / flight.orbit_s) ** 2 / BODY.field_t
     dipoles = np.sum((flight.m_body_am2 / unit_am2) ** 2)
     return float(np.sum(np.radians(flight.pointing_deg) ** 2) + LqrGains().effort * dipoles)
+
+
+# --- The laws of a satellite with a wheel of constant speed (section 2.2)
+
+NORMAL = (0.0, -sin(radians(98.6)), cos(radians(98.6)))
+"""Of the orbit, eci."""
+PITCH_RAD = 0.5
+WHEEL: Nested = {"body": {"inertia_kgm2": [1.9, 1.95, 2.0], "wheel_nms": [0.0, 0.0, 0.05]}}
+
+
+def wheel_trials() -> list[Trial]:
+    """Dual spin, and field tracking with the wheel and without."""
+    stiff = {"pitch_rad": PITCH_RAD, "stiffness": 2.0}
+    return [
+        Trial(
+            "review.wheel.dual_spin",
+            "section 2.2 [18, 40]",
+            (RigidTrial("dual_spin", over(WHEEL, NEAR, gains("dual_spin", 1e7, stiff, 4000.0)), 4.0),),
+            (
+                TrialFigure(
+                    "tilt",
+                    "The momentum from the orbit normal after 4 orbits, from 11 deg",
+                    "deg",
+                    lambda flights: float(flights[0].momentum_to_deg(NORMAL)[-1]),
+                    high=1.2,
+                ),
+                TrialFigure(
+                    "pitch",
+                    "The body from its pitch of 0.5 rad then",
+                    "deg",
+                    lambda flights: abs(_pitch_deg(flights[0]) - degrees(PITCH_RAD)),
+                    high=1.0,
+                ),
+            ),
+        ),
+        Trial(
+            "review.wheel.tracking",
+            "section 2.2 [42]",
+            (
+                RigidTrial(
+                    "field_tracking", over(WHEEL, NEAR, gains("field_tracking", 1e7, k_a=2000.0)), 4.0
+                ),
+                RigidTrial("field_tracking", over(NEAR, gains("field_tracking", 6.27e6, k_a=1614.0)), 4.0),
+            ),
+            (
+                TrialFigure(
+                    "wheel",
+                    "Attitude error by field tracking with a wheel after 4 orbits, from 20 deg",
+                    "deg",
+                    lambda flights: float(flights[0].pointing_deg[-1]),
+                    high=0.5,
+                ),
+                TrialFigure(
+                    "bare",
+                    "The same without a wheel, by gains that suit the PD law: it is driven away",
+                    "deg",
+                    lambda flights: float(flights[1].pointing_deg[flights[1].orbit(-1)].min()),
+                    low=20.0,
+                ),
+            ),
+        ),
+    ]
+
+
+def _pitch_deg(flight: RigidFlight) -> float:
+    """Turn about axis 3, body from orbit."""
+    q0, _, _, q3 = flight.q_body_from_orbit[-1]
+    return degrees(2.0 * np.arctan2(q3, q0))

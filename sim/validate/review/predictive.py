@@ -1,21 +1,29 @@
-"""Claims: prediction, adaptation and the papers of PoSAT-1 (sections 3.3, 3.4)."""
+"""Claims: prediction and adaptation, with less knowledge too, and the slew of least time (3.2, 3.3)."""
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import inf, radians
+from functools import partial
+from math import cos, inf, radians, sin
 from typing import Any
 
 import numpy as np
 
 from fsw.core.laws.lqr import LqrGains, orbit_problem, schedule
 from fsw.core.laws.mpc_box import programme
+from fsw.core.laws.nmpc import NmpcGains, NmpcReferenceGains
 from fsw.core.laws.plan.box import box_minimum
 from fsw.core.laws.plan.riccati import Array
 from fsw.core.laws.plan.tumbling import Tumbling, costs, descend
+from fsw.input.schema import Nested
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.design.explicit_mpc import pieces
-from sim.design.theory.bodies import BODIES
-from sim.validate.review import field_prediction, time_optimal_slew
+from sim.design.theory.bodies import BODIES, diagonal
+from sim.design.time_optimal_slew import Slew, best, flown
+from sim.tuning.flown import RigidFlight
+from sim.validate.review.fifty_kg import DIRECTION, PD, flight
+from sim.validate.review.figures import judged
+from sim.validate.review.law_flight import LawFlight, fly
+from sim.validate.review.rigid_trial import NEAR, RigidTrial, Trial, TrialFigure, over
 
 BODY = BODIES[2]
 REVIEW = "Ovchinnikov, Roldugin 2019, section 3.3"
@@ -25,7 +33,7 @@ TUMBLING_DEGPS, HORIZON_S, STEPS = 5.0, 60.0, 12
 
 def studies() -> list[Study]:
     """All of this section."""
-    return [limits(), explicit(), stopping(), *field_prediction.studies(), *time_optimal_slew.studies()]
+    return [limits(), explicit(), stopping(), *field_studies(), *slew_studies()]
 
 
 def limits() -> Study:
@@ -131,3 +139,187 @@ def _states() -> Array:
     drawn: Array = np.random.default_rng(8).uniform(-1.0, 1.0, (STATES, 6))
     states: Array = drawn * np.repeat([ANGLE_RAD * BODY.rate_radps, ANGLE_RAD], 3)
     return states
+
+
+# --- Prediction with less knowledge of the field, and for a tumbling body (section 3.3)
+
+TRUE_FIELD: Nested = {"field": {"model": "igrf14"}, "disturbance": {"torque_nm": [1e-7, 1e-7, 1e-7]}}
+SOON, LATE = 0.04, 0.125
+"""Horizons, orbits."""
+RATE_RADPS = (radians(2.5), radians(-3.5), radians(2.55))
+SECONDS = 120.0
+DAMPING_GAIN = 1e10
+"""Of the damping law: its coils are at their limits."""
+
+
+def field_studies() -> list[Study]:
+    """All of this section."""
+    return [fitted().study(), held().study(), tumbling()]
+
+
+def fitted() -> Trial:
+    """The plan along a fit of the true field beside that along the field, and beside the direct dipole's."""
+    return Trial(
+        "review.predictive.fitted",
+        "section 3.3 [12, 49]",
+        tuple(RigidTrial(law, over(NEAR, TRUE_FIELD), 3.0, 20.0) for law in ("mpc_fitted", "mpc", "lqr")),
+        (
+            TrialFigure(
+                "model",
+                "RMS in the third orbit, the true field fitted by five functions over the field itself",
+                "1",
+                lambda flights: _rms_deg(flights[0]) / _rms_deg(flights[1]),
+                high=1.3,
+            ),
+            TrialFigure(
+                "dipole",
+                "The same over that of the regulator, which takes the field for the direct dipole's",
+                "1",
+                lambda flights: _rms_deg(flights[0]) / _rms_deg(flights[2]),
+                high=0.8,
+            ),
+        ),
+    )
+
+
+def held() -> Trial:
+    """The field held over a short and a long horizon."""
+    return Trial(
+        "review.predictive.held",
+        "section 3.3 [109]",
+        tuple(RigidTrial("mpc_held", over(NEAR, _horizon(orbits)), 3.0, 20.0) for orbits in (SOON, LATE)),
+        (
+            TrialFigure(
+                "short",
+                f"The field held over {SOON:g} orbit: error in the third orbit from 20 deg",
+                "deg RMS",
+                lambda flights: _rms_deg(flights[0]),
+                high=0.6,
+            ),
+            TrialFigure(
+                "long",
+                f"The field held over {LATE:g} orbit",
+                "deg RMS",
+                lambda flights: _rms_deg(flights[1]),
+                low=10.0,
+            ),
+        ),
+    )
+
+
+def tumbling() -> Study:
+    """What prediction takes of the energy of a tumble in two minutes."""
+    claims = (
+        Claim(
+            "review.predictive.tumbling.rule",
+            "Energy taken from 5 deg/s in 2 min, searches ended by the rule over those to the end",
+            f"{REVIEW} [111]",
+            "1",
+            low=0.95,
+        ),
+        Claim(
+            "review.predictive.tumbling.reference",
+            "The same near the damping law's course, over what that law takes with its coils at their limits",
+            f"{REVIEW} [112]",
+            "1",
+            low=0.9,
+        ),
+    )
+    flights = (
+        partial(energy_taken, "nmpc_damping", NmpcGains()),
+        partial(energy_taken, "nmpc_damping", NmpcGains(gamma=-1.0)),
+        partial(energy_taken, "nmpc_reference", NmpcReferenceGains()),
+        partial(energy_taken, "rate_damping"),
+    )
+
+    def conclude(found: Sequence[Any]) -> list[ClaimOutcome]:
+        by_rule, to_the_end, by_reference, law = found
+        return judged(claims, (by_rule / to_the_end, by_reference / law))
+
+    return Study("review.predictive.tumbling", flights, conclude)
+
+
+def energy_taken(law: str, gains: object = None, seconds: float = SECONDS) -> float:
+    """The share of the energy of rotation that is gone."""
+    flown = fly(
+        LawFlight(
+            law,
+            BODY.inertia_kgm2,
+            k_w=DAMPING_GAIN,
+            gains=gains,
+            rotation_rad=(0.2, -0.3, 0.4),
+            omega_body_radps=RATE_RADPS,
+            orbits=seconds * BODY.rate_radps / (2.0 * np.pi),
+            step_s=2.5,
+            most_am2=2.0,
+        )
+    )
+    omega = flown.omega_body_radps[[0, -1]]
+    first, last = np.einsum("ti,ij,tj->t", omega, np.array(BODY.inertia_kgm2), omega)
+    return float(1.0 - last / first)
+
+
+def _horizon(orbits: float) -> Nested:
+    return {"control": {"gains": {"mpc_held": {"horizon_orbits": orbits}}}}
+
+
+def _rms_deg(flight: RigidFlight) -> float:
+    """Over the last orbit."""
+    return float(np.sqrt(np.mean(flight.pointing_deg[flight.orbit(-1)] ** 2)))
+
+
+# --- The slew of least time beside a law's, and where it ends when flown open loop (section 3.2)
+
+SLEW_SOURCE = "Ovchinnikov, Roldugin 2019, section 3.2"
+ANGLE_DEG = 60.0
+SLEW_AM2, NEAR_DEG = 2.0, 1.0
+OFF = (1.05, 0.95, 1.05)
+"""The true moments over those of the plan."""
+
+
+def slew_studies() -> list[Study]:
+    """All of this section."""
+    claims = (
+        Claim(
+            "review.predictive.slew.time",
+            f"Time of the PD law from {ANGLE_DEG:g} deg to within {NEAR_DEG:g} deg for good, over the least",
+            f"{SLEW_SOURCE} [107]",
+            "1",
+            low=10.0,
+        ),
+        Claim(
+            "review.predictive.slew.copy",
+            "Error at the end of the slew of least time flown open loop with moments 5 % off",
+            f"{SLEW_SOURCE} [107]: the course is to be followed",
+            "deg",
+            low=1.0,
+        ),
+    )
+
+    def conclude(found: Sequence[Any]) -> list[ClaimOutcome]:
+        (seconds, copied), by_law = found
+        return [claims[0].judge(by_law / seconds, f"{seconds:.0f} s"), claims[1].judge(copied)]
+
+    return [Study("review.predictive.slew", (least_time, law_time), conclude)]
+
+
+def slew() -> Slew:
+    """The slew, from rest in the orbital frame."""
+    half, size = 0.5 * radians(ANGLE_DEG), float(np.linalg.norm(DIRECTION))
+    a, b, c = (sin(half) * part / size for part in DIRECTION)
+    return Slew(BODY, (cos(half), a, b, c), (0.0, 0.0, 0.0), SLEW_AM2)
+
+
+def least_time() -> tuple[float, float]:
+    """Its least time, s, and the error at its end with other moments, deg."""
+    case = slew()
+    found = best(case, 700.0)
+    moments = [BODY.inertia_kgm2[axis][axis] * OFF[axis] for axis in range(3)]
+    other = replace(BODY, inertia_kgm2=diagonal((moments[0], moments[1], moments[2])))
+    return found.seconds, flown(replace(case, body=other), found).error_deg
+
+
+def law_time() -> float:
+    """Until the PD law stays near, s."""
+    run = fly(flight("pd", ANGLE_DEG, orbits=6.0, most_am2=SLEW_AM2, **PD))
+    return float(run.t_s[run.angle_deg > NEAR_DEG].max())

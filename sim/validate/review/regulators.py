@@ -17,8 +17,7 @@ from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.plant.rotation import ZERO, Mat3, Vec3, cross, transform
 from sim.validate.review.fifty_kg import BODY
 from sim.validate.review.figures import judged
-from sim.validate.review.law_flight import Extra, LawFlight, fly
-from sim.validate.review.law_history import LawHistory
+from sim.validate.review.law_flight import Extra, LawFlight, LawHistory, fly
 from sim.validate.review.rigid_trial import RigidTrial, Trial, TrialFigure
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section 3.2"

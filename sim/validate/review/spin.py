@@ -15,10 +15,9 @@ from fsw.core.laws.target_precession import PrecessionGains
 from sim.campaign.claim import Claim, Study
 from sim.design import roll_precession_gain
 from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2, Array
-from sim.validate.review import three_term
+from sim.validate.review.fifty_kg import BODY
 from sim.validate.review.figures import FlownClaim, one_figure
-from sim.validate.review.law_flight import LawFlight, fly
-from sim.validate.review.law_history import LawHistory, angle_deg
+from sim.validate.review.law_flight import LawFlight, LawHistory, angle_deg, fly
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section 2.1"
 INERTIA = ((1.2, 0.0, 0.0), (0.0, 1.2, 0.0), (0.0, 0.0, 2.0))
@@ -241,7 +240,7 @@ def studies() -> list[Study]:
     """All of this section."""
     return [
         *(row.study("spin", f"{REVIEW},", flown_figure) for row in ROWS),
-        three_term.study(),
+        three_term_gain(),
         one_figure(
             Claim(
                 "review.spin.roll_floquet",
@@ -283,3 +282,56 @@ def roll_decays() -> float:
     case = replace(SPINNING, law="roll_precession", gains=RollGains(3.0, k_h), most_am2=20.0, orbits=5.0)
     angle = angle_deg(fly(case).momentum_eci_nms, NORMAL)
     return float(np.log(angle[0] / angle[-1]) / (-roll_precession_gain.degree(GAIN_C) * 10.0 * np.pi))
+
+
+# --- The gain of the spin in the law of three terms
+
+FIFTY_NORMAL = (
+    0.0,
+    -float(np.sin(np.radians(BODY.inclination_deg))),
+    float(np.cos(np.radians(BODY.inclination_deg))),
+)
+"""Of the orbit, eci."""
+LACKING = LawFlight(
+    "three_term",
+    ((1.2, 0.0, 0.0), (0.0, 1.2, 0.0), (0.0, 0.0, 2.0)),
+    k_w=3e6,
+    spin_radps=SPIN_RADPS,
+    gains=ThreeTermGains(3.0, *FIFTY_NORMAL),
+    omega_body_radps=(0.0, 0.0, 0.5 * SPIN_RADPS),
+    gravity=False,
+    step_s=4.0,
+    most_am2=5.0,
+    orbits=0.1,
+)
+"""Along its target already, and lacking half of the spin."""
+
+
+def three_term_gain() -> Study:
+    """The momentum that lacks along the target is an error of the spin and of the momentum alike.
+
+    The torque about the axis is (k_spin + k_h) times it and the square of the field across the axis.
+    """
+    gains = ThreeTermGains()
+    claim = Claim(
+        "review.spin.three_term_gain",
+        "Three terms, the momentum along its target: decay of the spin that lacks, over that without k_spin; "
+        f"(k_spin + k_h) / k_h = {(gains.k_spin + gains.k_h) / gains.k_h:g}",
+        "Ovchinnikov, Roldugin 2019, section 2.1, [36]: nutation, spin and direction by one law",
+        "1",
+        low=1.9,
+        high=2.1,
+    )
+    return one_figure(claim, three_term_ratio)
+
+
+def three_term_ratio() -> float:
+    """With the term of the spin over without it."""
+    without = replace(LACKING, gains=ThreeTermGains(3.0, *FIFTY_NORMAL, k_spin=0.0))
+    return lacking_decay(LACKING) / lacking_decay(without)
+
+
+def lacking_decay(case: LawFlight) -> float:
+    """The logarithm of the lacking spin at the start over that at the end."""
+    lacking = case.spin_radps - fly(case).omega_body_radps[:, 2]
+    return float(np.log(lacking[0] / lacking[-1]))

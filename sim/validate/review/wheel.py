@@ -18,8 +18,7 @@ from sim.plant.environment.orbit import Array
 from sim.plant.rotation import Vec3
 from sim.validate.review import gurwin
 from sim.validate.review.figures import FigureClaim
-from sim.validate.review.law_flight import ConstantTorque, LawFlight, fly
-from sim.validate.review.law_history import LawHistory
+from sim.validate.review.law_flight import ConstantTorque, LawFlight, LawHistory, fly
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section 2.2"
 WHEEL_NMS: Vec3 = (0.0, 0.0, 0.05)

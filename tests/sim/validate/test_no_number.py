@@ -17,7 +17,7 @@ from sim.validate import optimal_pulses
 from sim.validate.consat import minimisers, posat1, prediction
 from sim.validate.guard import guarded
 from sim.validate.population.claims import quiet_and_honest
-from sim.validate.reference import elements_check, reference
+from sim.validate.reference import environment_check, reference
 from sim.validate.reference.reference_table import DATA
 from sim.validate.review import damping, driven_wheel, effects, law_flight, regulators, wheel
 from sim.validate.review import feedback_gains as gains
@@ -147,7 +147,7 @@ def test_the_worst_axis_is_the_one_without_a_number():
 
 def test_elements_whose_distance_is_none(monkeypatch):
     distance = second_is_none(1e-9)
-    monkeypatch.setattr(elements_check, "_largest_distances", lambda *given: (distance(), 1e-12))
+    monkeypatch.setattr(environment_check, "_largest_distances", lambda *given: (distance(), 1e-12))
     position, velocity = reference.check_file(DATA / "tle.txt", "tle.txt").outcomes
     assert (position.verdict, velocity.verdict) == (ClaimVerdict.FAIL, ClaimVerdict.PASS)
 

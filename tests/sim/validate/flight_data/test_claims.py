@@ -7,9 +7,8 @@ import pytest
 from sim.campaign.claim import ClaimVerdict
 from sim.errors import HarnessError
 from sim.validate.flight_data import claims
-from sim.validate.flight_data.claims import conclude, conclude_believed
+from sim.validate.flight_data.claims import conclude, conclude_believed, passes_table
 from sim.validate.flight_data.passes import CALIBRATED_BY, Believed, NotToldError, PassFigures
-from sim.validate.flight_data.table import as_table
 
 
 def figures(name, rows=200, span_s=199.0, converged=True, **changes):
@@ -120,7 +119,7 @@ def test_of_a_pass_that_is_not_believed_no_motion_is_claimed():
     lost = figures("s3_20240702T000000Z", 40, converged=False, field_direction_deg_rms=80.0)
     found = outcomes(*PASSES, lost)
     assert {one.verdict for one in found.values()} == {ClaimVerdict.PASS}
-    assert "not converged: two motions" in "\n".join(as_table([lost]))
+    assert "not converged: two motions" in "\n".join(passes_table([lost]))
 
 
 def test_a_wrong_motion_that_is_believed_fails():
@@ -132,6 +131,6 @@ def test_a_wrong_motion_that_is_believed_fails():
 
 
 def test_the_table_says_what_is_not_claimed():
-    lines = as_table(PASSES)
+    lines = passes_table(PASSES)
     assert lines[-1].startswith("Not claimed: the absolute attitude")
     assert len(lines) == 2 + len(PASSES) + 2

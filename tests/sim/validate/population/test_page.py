@@ -11,12 +11,14 @@ from sim.validate.population.claims import SOURCE
 from sim.validate.population.page import (
     HEAD,
     TOLERANCES,
+    draw_satellites,
+    draw_sweep,
     page,
     reached_table,
     satellites_table,
+    spread_of,
     why_not_pointed,
 )
-from sim.validate.population.pictures import draw_satellites, draw_sweep, spread_of
 from sim.validate.population.sweep import QUANTITIES
 
 FIGURES = {

@@ -7,8 +7,7 @@ import pytest
 
 from fsw.core.laws.field_tracking import HandOverGains
 from sim.plant.dynamics.jacobi import jacobi_integral
-from sim.validate.review.law_flight import LawFlight, fly
-from sim.validate.review.law_history import angle_deg
+from sim.validate.review.law_flight import LawFlight, angle_deg, fly
 
 FULL = ((1.02, 0.03, -0.02), (0.03, 1.85, 0.05), (-0.02, 0.05, 1.95))
 IDLE = LawFlight(

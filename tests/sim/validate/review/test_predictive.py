@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from sim.validate.review import field_prediction as prediction
+from sim.validate.review import predictive as prediction
 
 
 def test_a_horizon_too_long_misses_the_claim_of_the_short_one():
