@@ -28,13 +28,11 @@ from jinja2 import Environment, StrictUndefined
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.definition.campaign_file import load_campaign
 from sim.campaign.executors.cluster import Cluster
-from sim.campaign.executors.interface import Executor
 from sim.campaign.executors.processes import Processes
-from sim.campaign.one_run import Keep, RunTask
+from sim.campaign.one_run import Executor, Keep, RunTask
 from sim.campaign.report.analysis import analyse
 from sim.campaign.report.page import write_page
-from sim.campaign.results.row import RunRow
-from sim.campaign.results.store import RESULTS, open_results
+from sim.campaign.results.store import RESULTS, RunRow, open_results
 from sim.errors import HarnessError
 from sim.record.whole_file import replace_text
 

@@ -19,14 +19,21 @@ from sim.campaign.code_digest import code_digest
 from sim.campaign.definition.campaign import FILE, SCENARIO, Campaign
 from sim.campaign.definition.campaign_file import load_campaign
 from sim.campaign.executors.cluster import Cluster
-from sim.campaign.executors.interface import Executor
 from sim.campaign.executors.processes import Processes
-from sim.campaign.one_run import Keep, RunTask
+from sim.campaign.one_run import Executor, Keep, RunTask
 from sim.campaign.report.analysis import CampaignAnalysis, analyse
 from sim.campaign.report.verdicts import CampaignVerdict, verdicts
-from sim.campaign.results.parquet import check_parquet, export
-from sim.campaign.results.row import RunRow, Status
-from sim.campaign.results.store import CODE, LOCK, RESULTS, Results, open_results
+from sim.campaign.results.store import (
+    CODE,
+    LOCK,
+    RESULTS,
+    Results,
+    RunRow,
+    Status,
+    check_parquet,
+    export,
+    open_results,
+)
 from sim.console import detail, warn
 from sim.errors import HarnessError
 from sim.progress import note, progress

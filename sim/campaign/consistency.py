@@ -11,9 +11,8 @@ from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures.attitude_arrays import angle_rad, law_attitude
 from sim.report.figures.estimate_error import converged_tick, estimate_error, nees, within_3sigma
-from sim.report.figures.spans import spans
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
-from sim.statistics.settling import settled_tick
+from sim.statistics.settling import settled_tick, spans
 from sim.value_types import Array
 
 POINTED_DEG = 10.0

@@ -4,9 +4,11 @@ The loop, the bus, the audit and the summary are those of ``torquer sil --bus vi
 input is in memory instead of files, and only as much as they need.
 """
 
+import hashlib
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
@@ -14,17 +16,16 @@ from fsw.input.schema import Nested
 from fsw.node import FlightNode
 from fsw.table.config import flight_config
 from fsw.wire.frame import Frame
-from fsw.wire.messages import NAMES, CoilRefused, PlantEnd
+from fsw.wire.messages import NAMES, CoilDipole, CoilFire, CoilRefused, PlantEnd
 from sim.audit.auditor import AuditReport
 from sim.audit.limits import limits_in
 from sim.audit.whole_entries import JUDGED
-from sim.campaign.frame_digest import FrameDigest
 from sim.faults.section import make_plant
 from sim.flight.flight_loop import fly
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.flight.virtual_bus import VirtualBus
 from sim.plant.truth_row import TruthRow
-from sim.record.candump import LogEntry
+from sim.record.candump import LogEntry, read_log
 from sim.record.estimates import EstimateRecorder, Estimates
 from sim.record.run_record import FlightRecord
 from sim.record.truth import COLUMNS, Histories
@@ -35,6 +36,54 @@ from sim.scenario.assemble import effects_of, plant_config
 from sim.scenario.schema import Scenario, flight_table, load
 from sim.scenario.telecommands import uplink
 from sim.value_types import Json
+
+# --- SHA-256 of the frames of a flight: of all, and of the commands to the coils alone
+
+COMMANDS = frozenset({CoilFire.ID, CoilDipole.ID})
+
+
+class FrameDigest:
+    """Digests of frames in their order.
+
+    Two flights with the same digest of all frames are equal to the last bit: each TICK_DONE has the CRC of
+    the flight state. Each frame is sealed by a CRC of its own that includes its identifier, so that the data
+    suffice.
+    """
+
+    def __init__(self) -> None:
+        self._all, self._commands = hashlib.sha256(), hashlib.sha256()
+
+    def take(self, frames: Sequence[Frame]) -> None:
+        """Add the frames of a tick."""
+        self._all.update(b"".join([frame.data for frame in frames]))
+        for frame in frames:
+            if frame.can_id in COMMANDS:
+                self._commands.update(frame.data)
+
+    @property
+    def frames(self) -> str:
+        """Of all frames, in hex."""
+        return self._all.hexdigest()
+
+    @property
+    def commands(self) -> str:
+        """Of the commands, in hex."""
+        return self._commands.hexdigest()
+
+
+def digest_of(log: Path) -> FrameDigest:
+    """The digest of a bus log.
+
+    Raises:
+        HarnessError: it cannot be read.
+    """
+    digest = FrameDigest()
+    for entry in read_log(log):
+        digest.take((entry.frame,))
+    return digest
+
+
+# --- The flight
 
 Figures = dict[str, float]
 Measure = Callable[[Scenario, Histories, Estimates], Figures]

@@ -5,11 +5,12 @@ import os
 import socket
 import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from fsw.input.schema import TableError
 from sim.campaign.definition.campaign import Campaign, DrawnRun, StatisticsSection
 from sim.campaign.definition.columns import Cell, cells, input_cells, requirement_cells
 from sim.campaign.flight import RecordedFlight, record_scenario
-from sim.campaign.results.row import RunRow, Status
+from sim.campaign.results.store import RunRow, Status
 from sim.campaign.runner import LOST
 from sim.errors import HarnessError
 from sim.flight.record_flight import ticks_of
@@ -211,3 +212,17 @@ def _failed(drawn: DrawnRun, sentence: str) -> RunRow:
 def _place(error: Exception) -> str:
     frame = traceback.extract_tb(error.__traceback__)[-1]
     return f"{Path(frame.filename).name}:{frame.lineno}"
+
+
+# --- What flies the runs of a campaign
+
+
+class Executor(Protocol):
+    """Flies runs somewhere. A run may be flown again when its worker is lost; its row comes once."""
+
+    def rows(self, task: RunTask, runs: Sequence[int]) -> Iterator[RunRow]:
+        """The rows of the runs, each as it is done, in any order.
+
+        Raises:
+            HarnessError: the executor itself is lost; runs without a row can be flown by another.
+        """

@@ -6,9 +6,8 @@ from pathlib import Path
 from sim.campaign.definition.campaign import FILE
 from sim.campaign.definition.campaign_file import load_campaign
 from sim.campaign.definition.columns import Cell
-from sim.campaign.frame_digest import digest_of
-from sim.campaign.results.row import Status
-from sim.campaign.results.store import DIGESTS, read_results
+from sim.campaign.flight import digest_of
+from sim.campaign.results.store import DIGESTS, Status, read_results
 from sim.errors import HarnessError
 from sim.record import run_dir
 from sim.scenario.schema import Scenario

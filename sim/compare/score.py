@@ -17,10 +17,9 @@ from sim.report.charts.drawn_flight import whole_flight
 from sim.report.figures.coil_effort import dipole_squared_a2m4s, driven_s
 from sim.report.figures.controlled import error_vectors
 from sim.report.figures.histories import FlightHistories
-from sim.report.figures.spans import spans
 from sim.scenario.controlled import Controlled
 from sim.scenario.schema import Scenario, orbit_period_s
-from sim.statistics.settling import settled_tick
+from sim.statistics.settling import settled_tick, spans
 from sim.value_types import Array
 
 POINTS_AN_ORBIT = 60

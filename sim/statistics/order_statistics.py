@@ -7,6 +7,7 @@ P(B >= k) (David and Nagaraja, Order Statistics, 2003, section 7.1).
 
 from dataclasses import dataclass
 from math import ceil, isfinite, log
+from typing import NamedTuple
 
 import numpy as np
 
@@ -81,3 +82,28 @@ def least_part_bounded(count: int, confidence: float, above: int = 0) -> float:
 def runs_needed(probability: float, confidence: float) -> int:
     """The least number of values whose largest bounds the quantile with the confidence (Wilks 1941)."""
     return ceil(log(1.0 - confidence) / log(probability) - 1e-9)
+
+
+# --- How a percentile settles as runs are added
+
+CONVERGENCE_STEPS = 60
+
+
+class Convergence(NamedTuple):
+    """A percentile with its bounds by number of runs; NaN where there are too few for a bound."""
+
+    runs: Array
+    value: Array
+    low: Array
+    high: Array
+
+
+def convergence(values: Array, probability: float, confidence: float) -> Convergence:
+    """The percentile of the first n values, for some ``CONVERGENCE_STEPS`` n."""
+    counts = np.unique(np.geomspace(min(2, len(values)), len(values), CONVERGENCE_STEPS).round().astype(int))
+    found = [percentile(values[:count], probability, confidence) for count in counts]
+    bounds = [
+        np.array([np.nan if bound is None else bound for bound in side])
+        for side in ([each.low for each in found], [each.high for each in found])
+    ]
+    return Convergence(counts.astype(float), np.array([each.value for each in found]), *bounds)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from math import ceil
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.value_types import Flags
 
@@ -54,3 +55,12 @@ def settled_tick(holds: Flags, tick_hz: float, held_s: float = HELD_S) -> int | 
     settling = Settling(held_ticks(tick_hz, held_s))
     settling.take(holds)
     return settling.tick
+
+
+# --- Spans of ticks over which something holds
+
+
+def spans(holds: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """The first tick of each span and the one past its last, in order."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], holds.astype(np.int8), [0]))))
+    return [(int(first), int(past)) for first, past in zip(edges[::2], edges[1::2], strict=True)]

@@ -13,8 +13,8 @@ from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures.attitude_arrays import angle_rad
 from sim.report.figures.estimate_error import estimate_error
-from sim.report.figures.spans import spans
 from sim.scenario.schema import Scenario, flight_table
+from sim.statistics.settling import spans
 from sim.value_types import Array
 
 SCENARIO = "cubesat-cells"

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from fsw.input.own_code import refuse_while_loading
 from sim.campaign import command
 from sim.campaign.command import PAGE, CampaignOptions, FlownCampaign
+from sim.campaign.report.documents import as_json
 from sim.campaign.report.text import lines
-from sim.campaign.report.values import as_json
 from sim.campaign.rerun import campaign_run
 from sim.progress import shown
 from sim.scenario.settings import nested

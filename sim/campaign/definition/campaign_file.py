@@ -15,10 +15,10 @@ from sim.campaign.definition.campaign import (
     IndexLimits,
     StatisticsSection,
     laid_over,
+    nominal_values,
+    value_at,
 )
-from sim.campaign.definition.dispersion import Shape
-from sim.campaign.definition.distributions import AnyDispersion
-from sim.campaign.definition.keys import nominal_values, value_at
+from sim.campaign.definition.distributions import AnyDispersion, Shape
 from sim.campaign.definition.requirements import requirements_in
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.scenario.names import Name

@@ -14,7 +14,7 @@ from typing import Any
 
 from sim.campaign.code_digest import code_digest
 from sim.campaign.one_run import RunTask, lost_run
-from sim.campaign.results.row import RunRow
+from sim.campaign.results.store import RunRow
 from sim.errors import FlightError, HarnessError, needing
 
 CHUNKS_A_THREAD = 4

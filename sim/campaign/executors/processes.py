@@ -14,7 +14,7 @@ from threading import Thread
 from types import ModuleType
 
 from sim.campaign.one_run import RunTask, lost_run
-from sim.campaign.results.row import RunRow
+from sim.campaign.results.store import RunRow
 from sim.campaign.runner import children_ignore_interrupt, end_workers, start_pool
 
 MOST_LOSSES = 3

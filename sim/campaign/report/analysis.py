@@ -12,8 +12,7 @@ from sim.campaign.definition.requirements import FigureRequirement
 from sim.campaign.definition.words import FIGURE_WORDS, ColumnWords, input_words
 from sim.campaign.one_run import ERROR_HISTORY
 from sim.campaign.report.shares import RequirementShare, requirement_shares
-from sim.campaign.results.row import Status
-from sim.campaign.results.store import Results
+from sim.campaign.results.store import Results, Status
 from sim.statistics.indices import INDICES, POINTS, IndexPercentile, Interpretation, table
 from sim.statistics.order_statistics import Percentile, percentile
 from sim.statistics.proportion import Proportion, clopper_pearson

@@ -3,16 +3,18 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+
 from sim.campaign.definition.campaign import Campaign
+from sim.campaign.definition.distributions import AnyDispersion, Choice
 from sim.campaign.definition.words import percent
 from sim.campaign.report import pictures, scenario_requirements, text
 from sim.campaign.report.analysis import CampaignAnalysis
-from sim.campaign.report.drawn import drawn_tables
 from sim.campaign.report.verdicts import value_words, verdicts
 from sim.console import counted
 from sim.drawing.canvas import NARROW_IN, style
 from sim.drawing.inline_svg import chart
-from sim.drawing.page_parts import PageHeader, PageSection, Tile, sections_page
+from sim.drawing.page_parts import PageHeader, PageSection, Table, Tile, sections_page
 from sim.record.whole_file import replace_text
 
 MOST_TILES = 4
@@ -121,3 +123,36 @@ def _sections(folder: Path, campaign: Campaign, analysis: CampaignAnalysis) -> I
                f"Percentile of the {first} over the first runs, by their number.",
                narrow=pictures.converging(analysis, campaign.statistics, NARROW_IN)),
     ))  # fmt: skip
+
+
+# --- What a campaign draws for each run: lists by the section of the scenario, with what was really drawn
+
+_HEAD = ("drawn", "distribution", "least", "median", "largest")
+_APPLIED = {"replace": "", "add": ", added to the scenario's", "multiply": ", times the scenario's"}
+
+
+def drawn_tables(campaign: Campaign, analysis: CampaignAnalysis) -> list[Table]:
+    """A table for each section of the scenario of which something is drawn, a row per number or text."""
+    rows: dict[str, list[tuple[str, ...]]] = {}
+    for column, words in analysis.input_words.items():
+        entry = _dispersion_of(campaign, column)
+        values = analysis.inputs.get(column)
+        if values is None or not len(values):
+            figures: tuple[str, ...] = ("–",) * 3
+        else:
+            figures = tuple(f"{value:.4g}" for value in (values.min(), np.median(values), values.max()))
+        rows.setdefault(words.kind, []).append((str(words), _in_words(entry), *figures))
+    return [Table(_HEAD, listed, caption=kind) for kind, listed in sorted(rows.items())]
+
+
+def _dispersion_of(campaign: Campaign, column: str) -> AnyDispersion:
+    """The dispersion that draws a column: of those whose key it begins with, the one of the longest key."""
+    keys = {f"input_{key.replace('.', '_')}": entry for entry in campaign.disperse for key in entry.targets}
+    return keys[max((key for key in keys if f"{column}_".startswith(f"{key}_")), key=len)]
+
+
+def _in_words(entry: AnyDispersion) -> str:
+    applied = _APPLIED[entry.apply]
+    if isinstance(entry, Choice):
+        return f"choice of {len(entry.values)}{applied}"
+    return f"{entry.distribution.replace('_', '-')}{applied}"

@@ -12,8 +12,7 @@ from sim.campaign.definition.campaign import IndexLimits, StatisticsSection
 from sim.campaign.definition.words import ColumnWords, percent
 from sim.campaign.report.analysis import WORST, CampaignAnalysis, FigureStatistics, falls
 from sim.drawing.canvas import AXES_COLOURS, INK, LIMIT, MORE_COLOURS, MUTED, WIDTH_IN, legend, log_x, log_y
-from sim.statistics.convergence import convergence
-from sim.statistics.order_statistics import Percentile
+from sim.statistics.order_statistics import Percentile, convergence
 from sim.statistics.proportion import clopper_pearson
 from sim.value_types import Array
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim.campaign.definition.campaign import Campaign
-from sim.campaign.results.row import Status
-from sim.campaign.results.store import Results
+from sim.campaign.results.store import Results, Status
 from sim.report.requirements.judge import Outcome, pointed
+from sim.report.requirements.words import limit_words
 from sim.scenario.requirements import in_words
 from sim.scenario.schema import scenario_of
 from sim.statistics.proportion import Proportion, clopper_pearson
@@ -62,9 +62,10 @@ class RequirementShare:
     @property
     def limit(self) -> str:
         """The limit in words, of all runs."""
-        limits = np.unique(self.limits[np.isfinite(self.limits)])
-        span = " or ".join(f"{limit:g}" for limit in limits) if len(limits) < 3 else "its own limit,"
-        return f"at most {span} {self.unit}" if len(limits) else _ABSENT
+        known = np.unique(self.limits[np.isfinite(self.limits)])
+        if len(known) > 2:
+            return f"at most its own limit, {self.unit}"
+        return limit_words(known, self.unit) if len(known) else _ABSENT
 
 
 def requirement_shares(campaign: Campaign, results: Results, failed: int) -> tuple[RequirementShare, ...]:

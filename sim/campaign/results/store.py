@@ -9,8 +9,11 @@ import json
 import sqlite3
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from enum import StrEnum
 from importlib.metadata import version
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -19,10 +22,52 @@ from sim.campaign.code_digest import code_digest
 from sim.campaign.definition.campaign import Campaign
 from sim.campaign.definition.columns import NUMBERS, TEXTS, Cell, input_cells, requirement_kinds
 from sim.campaign.results.consistency import find_contradiction, quoted
-from sim.campaign.results.row import RunRow, Status
-from sim.errors import HarnessError
+from sim.errors import HarnessError, needing
 from sim.record.run_dir import fingerprint
+from sim.record.whole_file import replacing
 from sim.value_types import Array
+
+# --- The result of a run, as it travels from a worker to the results
+
+
+class Status(StrEnum):
+    """What became of a run."""
+
+    DONE = "done"
+    FAILED = "failed"
+    """It was not flown to its end; ``failure`` says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunRow:
+    """A run.
+
+    Attributes:
+        run: its number.
+        status: whether it was flown.
+        failure: why it was not, in a sentence; otherwise empty.
+        seed: of the plant's random streams.
+        success: whether it meets all requirements and kept the limits of the coils.
+        missed: the requirements that it does not meet, as text.
+        cells: inputs, figures and digests by column.
+        profiles: by name, arrays of 4-byte floats, little-endian.
+        wall_s: how long it took.
+        worker: which process flew it.
+    """
+
+    run: int
+    status: Status
+    failure: str
+    seed: int
+    success: bool
+    missed: str
+    cells: dict[str, Cell]
+    profiles: dict[str, bytes] = field(default_factory=dict)
+    wall_s: float = 0.0
+    worker: str = ""
+
+
+# --- The file
 
 RESULTS, LOCK = "results.sqlite", "campaign.lock"
 CODE = "code_digest"
@@ -240,3 +285,39 @@ def _check_campaign(results: Results, campaign: Campaign) -> None:
 
 def _marks(values: dict[str, Cell]) -> str:
     return ", ".join("?" * len(values))
+
+
+# --- Export of the results to Parquet, for pandas, DuckDB, Spark and the like
+
+ROWS_A_GROUP = 10_000
+
+
+def check_parquet() -> None:
+    """Check that the results can be exported, before anything is flown.
+
+    Raises:
+        HarnessError: the package pyarrow is missing.
+    """
+    with needing("--parquet", "pyarrow", "parquet"):
+        import pyarrow.parquet  # noqa: F401, PLC0415  an extra
+
+
+def export(results: Results, path: Path) -> None:
+    """Write table ``runs``, column by column as in SQLite; numbers are doubles, a missing figure is null.
+
+    Raises:
+        HarnessError: the package pyarrow is missing.
+    """
+    check_parquet()
+    import pyarrow as pa  # noqa: PLC0415  an extra
+    import pyarrow.parquet as pq  # noqa: PLC0415  an extra
+
+    kinds = {"INTEGER": pa.int64(), "TEXT": pa.string(), "REAL": pa.float64(), "NUMERIC": pa.float64()}
+    schema = pa.schema([(name, kinds[kind]) for name, kind in results.kinds().items()])
+    schema = schema.with_metadata(results.all_meta())
+    rows = results.each(schema.names)
+    with replacing(path) as temporary, pq.ParquetWriter(temporary, schema) as writer:
+        while block := list(islice(rows, ROWS_A_GROUP)):
+            columns = zip(*block, strict=True)
+            arrays = [pa.array(column, kind) for column, kind in zip(columns, schema.types, strict=True)]
+            writer.write_table(pa.Table.from_arrays(arrays, schema=schema))

@@ -9,8 +9,8 @@ from sim.record.estimates import Estimates
 from sim.record.truth import OF_WHEEL, Histories
 from sim.report.figures.coil_effort import driven_coils
 from sim.report.figures.histories import FlightHistories
-from sim.report.figures.spans import spans
 from sim.scenario.schema import Scenario, orbit_period_s
+from sim.statistics.settling import spans
 from sim.value_types import Array
 
 # --- Attitude, field, Sun and position of a flight as samples for a moving picture, gathered block by block

@@ -5,7 +5,7 @@ import numpy as np
 from sim.record.estimates import Estimates
 from sim.record.truth import Histories
 from sim.report.figures.attitude_arrays import normal_in_body, relative, rotation_vectors
-from sim.report.figures.spans import spans
+from sim.statistics.settling import spans
 from sim.value_types import Array, Flags
 
 CONVERGED_DEG = 2.0

@@ -20,12 +20,11 @@ from sim.report.figures.estimate_error import (
     within_3sigma,
 )
 from sim.report.figures.mean import Mean
-from sim.report.figures.spans import spans
 from sim.report.requirements.judge import Judgement
 from sim.scenario.controlled import SETTLED_DEG, SLOW_DEGPS, SLOWEST_DEGPS, controlled
 from sim.scenario.schema import Scenario, orbit_period_s
 from sim.statistics.indices import magnitudes
-from sim.statistics.settling import Settling, held_ticks
+from sim.statistics.settling import Settling, held_ticks, spans
 from sim.value_types import Array, Json
 
 BLOCK_TICKS = 4096

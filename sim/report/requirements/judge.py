@@ -21,9 +21,8 @@ from sim.report.requirements.words import number, orbits
 from sim.scenario.controlled import controlled
 from sim.scenario.requirements import DEG, INDICES, ORBITS, RequirementSection, in_words
 from sim.scenario.schema import Scenario, orbit_period_s
-from sim.statistics.indices import magnitudes
+from sim.statistics.indices import Windows, magnitudes
 from sim.statistics.settling import HELD_S, Settling, held_ticks
-from sim.statistics.windows import Windows
 from sim.value_types import Array, Json
 
 # --- Gathers one index over the window of a requirement, block by block, in constant memory

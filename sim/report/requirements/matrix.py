@@ -7,7 +7,7 @@ from typing import Any
 
 from sim.drawing.page_parts import Table, TableCell
 from sim.report.requirements.judge import Outcome
-from sim.report.requirements.words import number
+from sim.report.requirements.words import limit_words, number
 from sim.scenario.requirements import in_words
 from sim.value_types import Json
 
@@ -70,8 +70,7 @@ class MatrixRow:
     @property
     def limit(self) -> str:
         """The limit in words, of all runs."""
-        limits = sorted({cell.limit for cell in self.cells if cell is not None})
-        return f"at most {' or '.join(f'{limit:g}' for limit in limits)} {self.unit}"
+        return limit_words(sorted({cell.limit for cell in self.cells if cell is not None}), self.unit)
 
     @property
     def share(self) -> str:

@@ -1,5 +1,7 @@
 """Numbers of verdicts and their causes in words."""
 
+from collections.abc import Iterable
+
 
 def number(value: float) -> str:
     """Three significant digits, without an exponent where it reads well."""
@@ -16,3 +18,8 @@ def orbits(value: float) -> str:
 def part(value: float) -> str:
     """A fraction in percent."""
     return f"{100.0 * value:.0f} %"
+
+
+def limit_words(values: Iterable[float], unit: str) -> str:
+    """The limits that runs have."""
+    return f"at most {' or '.join(f'{value:g}' for value in values)} {unit}"

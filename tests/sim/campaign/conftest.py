@@ -8,7 +8,7 @@ import pytest
 
 from sim.campaign.definition.campaign_file import load_campaign
 from sim.campaign.definition.columns import input_cells
-from sim.campaign.results.row import RunRow, Status
+from sim.campaign.results.store import RunRow, Status
 from sim.statistics.indices import INDICES, POINTS
 
 CAMPAIGN = """

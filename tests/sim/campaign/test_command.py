@@ -9,8 +9,7 @@ import pytest
 
 from sim.campaign.code_digest import code_digest
 from sim.campaign.command import CampaignOptions, FlownCampaign, _watch, campaign
-from sim.campaign.results.row import RunRow, Status
-from sim.campaign.results.store import CODE, RESULTS, open_results
+from sim.campaign.results.store import CODE, RESULTS, RunRow, Status, open_results
 from sim.errors import HarnessError
 
 

@@ -9,10 +9,9 @@ import pytest
 from sim.campaign import one_run
 from sim.campaign.definition.campaign_file import load_campaign
 from sim.campaign.definition.columns import cells
-from sim.campaign.flight import record_scenario
-from sim.campaign.frame_digest import digest_of
+from sim.campaign.flight import digest_of, record_scenario
 from sim.campaign.one_run import ERROR_HISTORY, LIMITS, Keep, RunTask, lost_run, run_folder
-from sim.campaign.results.row import Status
+from sim.campaign.results.store import Status
 from sim.errors import HarnessError
 from sim.record import run_dir
 from sim.report.conclude import conclude

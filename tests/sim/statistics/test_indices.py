@@ -4,8 +4,16 @@ import numpy as np
 import pytest
 from scipy.special import ndtri, stdtrit
 
-from sim.statistics.indices import POINTS, Interpretation, index_histories, percentile, profile, table
-from sim.statistics.windows import Windows, mean_and_relative
+from sim.statistics.indices import (
+    POINTS,
+    Interpretation,
+    Windows,
+    index_histories,
+    mean_and_relative,
+    percentile,
+    profile,
+    table,
+)
 
 TEMPORAL, ENSEMBLE, MIXED = Interpretation.TEMPORAL, Interpretation.ENSEMBLE, Interpretation.MIXED
 

@@ -7,6 +7,7 @@ import pytest
 from scipy import stats
 
 from sim.statistics.order_statistics import (
+    convergence,
     least_part_bounded,
     lower_bound,
     percentile,
@@ -88,3 +89,21 @@ def test_what_all_but_some_values_bound_is_a_binomial_sum(count, above):
     part = least_part_bounded(count, 0.9, above)
     assert confidence_of(count - above, count, part) == pytest.approx(0.9)
     assert least_part_bounded(count, 0.9, count) == 0.0
+
+
+# --- A percentile by number of runs ends with that of all
+
+
+def test_it_ends_with_all_runs_and_its_bounds_close():
+    values = np.random.default_rng(7).gamma(2.0, size=500)
+    found, whole = convergence(values, 0.5, 0.9), percentile(values, 0.5, 0.9)
+    assert found.runs[-1] == 500.0
+    assert (found.value[-1], found.low[-1], found.high[-1]) == (whole.value, whole.low, whole.high)
+    widths = found.high - found.low
+    assert widths[-1] < 0.5 * np.nanmax(widths)
+    assert np.isnan(found.high[0])
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_few_runs_are_no_error(count):
+    assert convergence(np.arange(float(count)), 0.95, 0.9).runs[-1] == count

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.statistics.settling import HELD_S, Settling, held_ticks, settled_tick
+from sim.statistics.settling import HELD_S, Settling, held_ticks, settled_tick, spans
 
 
 def flags(ticks):
@@ -39,3 +39,20 @@ def test_it_is_the_same_block_by_block(ticks, expected, block):
 
 def test_the_least_time_is_not_cut_by_a_tick():
     assert (held_ticks(1.0), held_ticks(4.0), held_ticks(1.0 / 7.0)) == (600, 2400, 86)
+
+
+# --- Spans of ticks
+
+
+@pytest.mark.parametrize(
+    ("ticks", "expected"),
+    [
+        ("", []),
+        ("...", []),
+        ("###", [(0, 3)]),
+        (".##.", [(1, 3)]),
+        ("#.##..#", [(0, 1), (2, 4), (6, 7)]),
+    ],
+)
+def test_each_span_has_its_first_tick_and_the_one_past_its_last(ticks, expected):
+    assert spans(np.array([tick == "#" for tick in ticks], dtype=bool)) == expected

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 import torquer
-from sim.campaign.frame_digest import digest_of
+from sim.campaign.flight import digest_of
 
 pytestmark = pytest.mark.long
 

@@ -15,7 +15,7 @@ import pytest
 from sim.campaign.code_digest import code_digest
 from sim.campaign.executors.cluster import Cluster, ClusterLostError
 from sim.campaign.one_run import Keep, RunTask
-from sim.campaign.results.row import RunRow, Status
+from sim.campaign.results.store import RunRow, Status
 from sim.errors import HarnessError
 
 ROOT = Path(__file__).resolve().parents[4]

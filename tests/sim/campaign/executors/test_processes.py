@@ -11,7 +11,7 @@ import pytest
 
 from sim.campaign.executors.processes import Processes
 from sim.campaign.one_run import Keep, RunTask
-from sim.campaign.results.row import RunRow, Status
+from sim.campaign.results.store import RunRow, Status
 
 pytestmark = pytest.mark.long
 

@@ -8,8 +8,7 @@ import pytest
 from sim.campaign.definition.columns import input_cells
 from sim.campaign.one_run import ERROR_HISTORY
 from sim.campaign.report.analysis import analyse
-from sim.campaign.results.row import RunRow, Status
-from sim.campaign.results.store import open_results
+from sim.campaign.results.store import RunRow, Status, open_results
 from sim.statistics.indices import INDICES, profile
 
 

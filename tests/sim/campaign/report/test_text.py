@@ -7,7 +7,7 @@ import numpy as np
 from sim.campaign.definition.campaign import StatisticsSection
 from sim.campaign.report import text
 from sim.campaign.report.analysis import analyse
-from sim.campaign.report.values import as_json
+from sim.campaign.report.documents import as_json
 from sim.campaign.results.store import open_results
 
 

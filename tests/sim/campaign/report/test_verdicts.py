@@ -10,9 +10,8 @@ from sim.campaign.definition.campaign import IndexLimits
 from sim.campaign.definition.requirements import FigureRequirement
 from sim.campaign.report import text
 from sim.campaign.report.analysis import analyse
-from sim.campaign.report.documents import suites
+from sim.campaign.report.documents import as_json, suites
 from sim.campaign.report.page import write_page
-from sim.campaign.report.values import as_json
 from sim.campaign.report.verdicts import meets, verdicts
 from sim.campaign.results.store import open_results
 from sim.junit import junit_xml

@@ -5,8 +5,7 @@ from contextlib import closing
 
 import pytest
 
-from sim.campaign.results.row import Status
-from sim.campaign.results.store import RESULTS, open_results, read_results
+from sim.campaign.results.store import RESULTS, Status, open_results, read_results
 from sim.errors import HarnessError
 
 CONTRADICTIONS = {
