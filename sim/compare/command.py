@@ -29,7 +29,7 @@ from sim.progress import note, progress
 from sim.record.destination import check_folder, new_folder
 from sim.record.run_dir import RUN, write_json
 from sim.record.whole_file import replace_text
-from sim.report.summary_text import last_orbit
+from sim.report.summary import last_orbit
 from sim.scenario.controlled import SETTLED_DEG, Controlled, controlled
 from sim.scenario.schema import Scenario, flight_table, load, orbit_period_s, shipped_names
 from sim.scenario.settings import settings_texts

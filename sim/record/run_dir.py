@@ -7,7 +7,7 @@ import platform
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import numpy as np
 
@@ -232,3 +232,23 @@ def _cpu_model() -> str:
     return " ".join(
         values.get(key, "") for key in ("vendor_id", "model name", "cpu family", "model", "stepping")
     ).strip()
+
+
+# --- The figures for papers
+
+FigureKind = Literal["pdf", "svg"]
+FIGURES = "figures"
+"""In that of the run."""
+
+
+def figure_folder(run: Path) -> Path:
+    """The folder, made if it is not there.
+
+    Raises:
+        HarnessError: it cannot be written, or is a link, which may lead out of the run.
+    """
+    folder = run / FIGURES
+    if folder.is_symlink():
+        raise HarnessError(f"{folder} is a symbolic link, through which nothing is written")
+    check_folder(folder)
+    return folder

@@ -12,7 +12,7 @@ from sim.audit.auditor import AuditReport
 from sim.audit.findings import COILS, seconds_text
 from sim.drawing.page_parts import Table
 from sim.record.run_record import RunRecord
-from sim.report.summary_text import last_orbit
+from sim.report.summary import last_orbit
 from sim.scenario.schema import Scenario, orbit_period_s
 from sim.scenario.written import values_of
 from sim.value_types import Json

@@ -23,11 +23,11 @@ from sim.progress import progress as progress_of
 from sim.record import run_dir
 from sim.record.binding import require_sources, sign_run
 from sim.record.pace import parse_pace
+from sim.record.run_dir import FigureKind, figure_folder
 from sim.record.signature import private_key, signature_path
 from sim.report.charts.lines import Lines
 from sim.report.conclude import conclude
 from sim.report.follow import follow
-from sim.report.paper.kind import FigureKind, figure_folder
 from sim.scenario.schema import Scenario, expecting, orbit_period_s
 from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
 from torquer.api.audit import optional_key
@@ -200,6 +200,6 @@ def _draw(
     path: Path, kind: FigureKind, drawn: list[Path], scenario: Scenario, lines: Lines, audit: AuditReport
 ) -> None:
     from sim.report.charts.drawn_flight import DrawnFlight  # noqa: PLC0415  matplotlib
-    from sim.report.paper.files import write_figures  # noqa: PLC0415  as that
+    from sim.report.paper import write_figures  # noqa: PLC0415  as that
 
     drawn += write_figures(path, DrawnFlight.of(scenario, lines, audit), kind)

@@ -10,10 +10,8 @@ from pydantic import Field
 
 from fsw.input.schema import Section, TableError
 from sim.errors import HarnessError
-from sim.report.charts.drawn_flight import DrawnFlight
-from sim.report.drawn_run import flight_as_estimated, flight_as_flown
-from sim.report.paper.figures import FIGURES
-from sim.report.paper.look import COLUMN_IN, paper_style
+from sim.report.charts.drawn_flight import DrawnFlight, flight_as_estimated, flight_as_flown
+from sim.report.paper import COLUMN_IN, FIGURES, paper_style
 from sim.scenario.law_named import with_law_named
 from sim.scenario.schema import Scenario
 from torquer.api.arguments import checked

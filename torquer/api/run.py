@@ -12,7 +12,7 @@ from sim.errors import HarnessError
 from sim.record import run_dir
 from sim.record.run_record import RunRecord
 from sim.replay.command import ReplayReport
-from sim.report.summary_text import summary_text
+from sim.report.summary import summary_text
 from sim.report.verdict import Verdict
 from sim.scenario.law_named import with_law_named
 from torquer.api.arguments import path_text

@@ -91,11 +91,11 @@ def _report_one(rebuilt: "Run", figures: str | None, junit: Path | None) -> int:
 
 def _say_figures(rebuilt: "Run", figures: str | None) -> None:
     from sim.console import say
-    from sim.report.paper.kind import FOLDER
+    from sim.record.run_dir import FIGURES
 
     if figures is not None:
         names = ", ".join(file.name for file in rebuilt.figures) or "nothing to draw"
-        say(f"figures: {rebuilt.path / FOLDER}: {names}")
+        say(f"figures: {rebuilt.path / FIGURES}: {names}")
 
 
 def _report_several(rebuilt: "Sequence[Run]", figures: str | None, page: Path, junit: Path | None) -> int:
@@ -103,8 +103,13 @@ def _report_several(rebuilt: "Sequence[Run]", figures: str | None, page: Path, j
     from sim.console import answer, fail, say
     from sim.junit import write_junit
     from sim.report.requirements.documents import suites
-    from sim.report.requirements.matrix import matrix, matrix_json, matrix_lines
-    from sim.report.requirements.page import judged_runs, write_matrix_page
+    from sim.report.requirements.matrix import (
+        judged_runs,
+        matrix,
+        matrix_json,
+        matrix_lines,
+        write_matrix_page,
+    )
     from sim.report.verdict import flight_failed
 
     judged = judged_runs([(one.path, one.summary) for one in rebuilt], page)
@@ -151,7 +156,7 @@ def _prepared_page(runs: Sequence[Path], out: Path | None) -> Path:
         HarnessError: one is no run, or the page cannot be written.
     """
     from sim.record import run_dir
-    from sim.report.requirements.page import PAGE
+    from sim.report.requirements.matrix import PAGE
     from sim.result_files import check_results
 
     whole = [os.path.realpath(run) for run in runs]

@@ -1,17 +1,29 @@
 """A flight as the charts of the report draw it: lines and spans over time, and the pulses."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 
+from fsw.table.config import flight_config
 from fsw.wire.messages import Mode
 from sim.audit.auditor import AuditReport
-from sim.audit.findings import COILS, DrivenPulse
+from sim.audit.check import limits_beside
+from sim.audit.findings import COILS, AuditLimits, DrivenPulse
 from sim.drawing.canvas import Span, TimeAxis
+from sim.faults.section import forge_answers
+from sim.record import run_dir
+from sim.record.candump import read_log
+from sim.record.estimates import EstimateRecorder
+from sim.record.truth import TruthReader
+from sim.replay.log_replay import replay
 from sim.report.charts.lines import Lines
-from sim.scenario.schema import Scenario, orbit_period_s
+from sim.report.figures.performance import BLOCK_TICKS
+from sim.report.flight_audit import audit_flight
+from sim.report.history_blocks import HistoryBlocks
+from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 from sim.value_types import Array
 
 
@@ -128,3 +140,48 @@ def _driven_s(pulses: Sequence[DrivenPulse], at_s: Array) -> Array:
     total_s = np.stack((done - lengths, done), axis=1)
     result: Array = np.interp(at_s, edges.ravel(), total_s.ravel())
     return result
+
+
+# --- A run that was flown before, read to be drawn
+
+Watch = Callable[[int], None]
+
+
+def flight_as_flown(path: Path, scenario: Scenario) -> DrawnFlight:
+    """What the plant's histories and the log tell: nothing that the flight software has estimated.
+
+    Raises:
+        HarnessError: log or histories are missing or damaged.
+    """
+    with TruthReader(path / run_dir.TRUTH) as truth:
+        lines = Lines(truth.complete, scenario)
+        for first in range(0, truth.complete, BLOCK_TICKS):
+            past = min(first + BLOCK_TICKS, truth.complete)
+            lines.take(truth.rows(first, past), EstimateRecorder(past - first).estimates())
+    return _drawn(path, scenario, lines)
+
+
+def flight_as_estimated(path: Path, scenario: Scenario, watch: Watch = lambda tick: None) -> DrawnFlight:
+    """The same with the estimates of the flight software, by a replay of the log.
+
+    Args:
+        path: the run directory.
+        scenario: of the run, with a law of its own that may be executed.
+        watch: called with each tick that was replayed.
+
+    Raises:
+        HarnessError: log or histories are missing or damaged.
+    """
+    with TruthReader(path / run_dir.TRUTH) as truth:
+        lines = Lines(truth.complete, scenario)
+        blocks = HistoryBlocks(truth, lines.take)
+        config, forged = flight_config(flight_table(scenario)), forge_answers(scenario.fault)
+        replay(run_dir.bus_log(path), config, blocks.take, forged)
+        blocks.finish()
+    return _drawn(path, scenario, lines)
+
+
+def _drawn(path: Path, scenario: Scenario, lines: Lines) -> DrawnFlight:
+    log = run_dir.bus_log(path)
+    limits = limits_beside(log) or AuditLimits()
+    return DrawnFlight.of(scenario, lines, audit_flight(read_log(log), limits, scenario))

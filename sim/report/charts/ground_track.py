@@ -9,8 +9,8 @@ from sim.drawing.canvas import AXES_COLOURS, INK, WIDTH_IN, legend
 from sim.drawing.coastline import coastlines
 from sim.drawing.time_chart import DrawnChart
 from sim.plant.environment.earth import gmst82_rad, turn_about_pole
+from sim.report.charts.coils import shown
 from sim.report.charts.drawn_flight import DrawnFlight
-from sim.report.charts.pulse_lanes import shown
 from sim.report.figures.histories import DARK
 from sim.value_types import Array
 

@@ -12,7 +12,7 @@ from sim.record import run_dir
 from sim.record.candump import read_log
 from sim.record.truth import read_truth
 from sim.report.conclude import conclude
-from sim.report.summary_text import summary_text
+from sim.report.summary import summary_text
 
 CONTRACT = {
     "scenario": None,

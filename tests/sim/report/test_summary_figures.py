@@ -13,8 +13,7 @@ from sim.record.candump import LogEntry
 from sim.record.estimates import Estimates
 from sim.report.figures.estimate_error import nees, within_3sigma
 from sim.report.figures.performance import perform
-from sim.report.summary import MAX_EVENTS, BusTally, summarise
-from sim.report.summary_text import summary_text
+from sim.report.summary import MAX_EVENTS, BusTally, summarise, summary_text
 from sim.scenario.schema import load, orbit_period_s, parse_settings
 
 TICKS = 2400

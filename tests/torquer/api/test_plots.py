@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import torquer
-from sim.report.paper.figures import FIGURES
+from sim.report.paper import FIGURES
 
 LABELS = {
     "pointing": "pointing error [deg]",

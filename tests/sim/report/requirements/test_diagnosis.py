@@ -5,7 +5,7 @@ import pytest
 from sim.campaign.flight import record_scenario
 from sim.report.requirements.diagnosis import FINDINGS, diagnose
 from sim.report.requirements.evidence import FlightEvidence
-from sim.report.summary_text import summary_text
+from sim.report.summary import summary_text
 from sim.scenario.controlled import controlled
 from sim.scenario.schema import load, parse_settings
 

@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from sim.audit.findings import DrivenPulse
-from sim.report.charts.pulse_lanes import MOST_PULSES, pulse_lanes, shown
+from sim.report.charts.coils import MOST_PULSES, pulse_lanes, shown
 
 
 def pulses(count):

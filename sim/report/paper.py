@@ -1,19 +1,84 @@
-"""The figures: what of a flight each of them draws, on axes of any size."""
+"""Figures of a run for papers: their look, what each draws, and their files."""
 
-from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
 
+import matplotlib
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Patch
 
-from sim.drawing.canvas import ECLIPSE, TimeAxis, shade
+from sim.drawing.canvas import ECLIPSE, INK, SETTINGS, TimeAxis, shade
 from sim.drawing.time_chart import Panel, draw_lines
+from sim.errors import writing
+from sim.record.destination import check_folder
+from sim.record.run_dir import FigureKind, figure_folder
+from sim.record.whole_file import replacing
 from sim.report.charts import over_time
 from sim.report.charts.coils import draw_raster
 from sim.report.charts.drawn_flight import DrawnFlight
+
+# --- How figures for papers look: a column wide, with letters that stay readable in it
+
+COLUMN_IN = 3.5
+"""Width of a column of most journals."""
+_STYLE: dict[Any, Any] = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 7.5,
+    "axes.labelsize": 7.5,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "legend.fontsize": 6.5,
+    "axes.linewidth": 0.6,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "axes.axisbelow": True,
+    "axes.grid": True,
+    "grid.color": "#dfe4ea",
+    "grid.linewidth": 0.4,
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.major.size": 2.5,
+    "ytick.major.size": 2.5,
+    "lines.linewidth": 0.9,
+    "legend.frameon": False,
+    "legend.handlelength": 1.4,
+    "legend.handletextpad": 0.5,
+    "legend.columnspacing": 1.1,
+    "legend.borderaxespad": 0.25,
+    "legend.borderpad": 0.1,
+    "figure.constrained_layout.use": True,
+    "figure.constrained_layout.h_pad": 0.02,
+    "figure.constrained_layout.w_pad": 0.02,
+    "pdf.fonttype": 42,  # TrueType, as publishers ask for
+    "svg.fonttype": "path",  # looks the same wherever it is opened
+    "svg.hashsalt": "torquer",
+}
+
+
+@contextmanager
+def paper_style() -> Iterator[None]:
+    """The look of a paper, whatever the user's own matplotlib settings are; they are left as they were."""
+    with SETTINGS, matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(_STYLE)
+        yield
+
+
+# --- The figures: what of a flight each of them draws, on axes of any size
 
 PanelOf = Callable[[DrawnFlight], Panel]
 LINE_WIDTH = 0.75
@@ -121,3 +186,35 @@ def fitting_columns(lengths: Sequence[int], letters: float) -> int:
         if sum(widest) + HANDLE_LETTERS * columns <= letters:
             return columns
     return 1
+
+
+# --- The figures of a run as files: vector graphics, the same for the same run
+
+_UNDATED: dict[str, dict[str, Any]] = {
+    "pdf": {"Creator": "torquer", "Producer": None, "CreationDate": None},
+    "svg": {"Creator": "torquer", "Date": None},
+}
+
+
+def write_figures(run: Path, flight: DrawnFlight, kind: FigureKind) -> list[Path]:
+    """Write each figure that the flight has something for into the folder ``figures`` of the run.
+
+    Raises:
+        HarnessError: a file cannot be written.
+    """
+    folder = figure_folder(run)
+    shown = {name: figure for name, figure in FIGURES.items() if not figure.why_not(flight)}
+    files = [folder / f"{name}.{kind}" for name in shown]
+    check_folder(folder, [file.name for file in files])
+    with paper_style(), writing(folder):
+        for file, figure in zip(files, shown.values(), strict=True):
+            with replacing(file) as temporary:
+                _drawn(figure, flight).savefig(temporary, format=kind, metadata=_UNDATED[kind])
+    return files
+
+
+def _drawn(figure: PaperFigure, flight: DrawnFlight) -> Figure:
+    """Within ``paper_style``."""
+    drawn = Figure(figsize=(COLUMN_IN, figure.aspect * COLUMN_IN))
+    figure.draw(drawn.subplots(), flight)
+    return drawn

@@ -4,8 +4,7 @@ import matplotlib.pyplot as plt
 import pytest
 from matplotlib.figure import Figure
 
-from sim.report.paper.figures import FIGURES, fitting_columns
-from sim.report.paper.look import COLUMN_IN, paper_style
+from sim.report.paper import COLUMN_IN, FIGURES, fitting_columns, paper_style
 
 
 @pytest.mark.parametrize(
