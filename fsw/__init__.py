@@ -1,7 +1,6 @@
 """Torquer flight software: node, core, onboard table, and its way onto the bus."""
 
-from fsw.compiled import install
-from fsw.kernel import refuse_stale_kernel
+from fsw.compiled import install, refuse_stale_kernel
 
 install()
 refuse_stale_kernel()

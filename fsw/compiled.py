@@ -6,6 +6,7 @@ library. Where anything has changed since the build, or ``TORQUER_INTERPRETED=1`
 them run interpreted.
 """
 
+import hashlib
 import json
 import os
 import sys
@@ -195,3 +196,25 @@ def install() -> None:
     """Put the finder before those of Python, once a process."""
     if not any(isinstance(finder, Finder) for finder in sys.meta_path):
         sys.meta_path.insert(0, Finder())
+
+
+# --- The filter's kernel: one that was built from another source than its own does not fly
+
+KERNEL = "fsw.core.estimation._kalman_kernel"
+KERNEL_FOLDER = Path(__file__).parent / "core" / "estimation"
+KERNEL_SOURCE = "kalman_kernel.c"
+
+
+def refuse_stale_kernel(folder: Path = KERNEL_FOLDER) -> None:
+    """Let no module import a kernel that was built from another source; without its source, none is stale.
+
+    The binary holds the SHA-256 of its source. It is not imported here, which would load numpy.
+    """
+    binaries = [folder / f"_kalman_kernel{suffix}" for suffix in EXTENSION_SUFFIXES]
+    try:
+        digest = hashlib.sha256((folder / KERNEL_SOURCE).read_bytes()).hexdigest().encode()
+        stale = any(digest not in path.read_bytes() for path in binaries if path.exists())
+    except OSError:
+        return
+    if stale:
+        sys.modules[KERNEL] = None  # type: ignore[assignment]  # an import of it raises ImportError

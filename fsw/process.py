@@ -2,11 +2,11 @@
 
 import os
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 
 import click
 
-from fsw.bus.disarmed import Disarmed
 from fsw.bus.interface import Bus, BusClosed, BusError
 from fsw.bus.open_bus import join_bus, open_bus, resolve
 from fsw.input.error_text import error_text
@@ -15,6 +15,33 @@ from fsw.node import End, FlightNode
 from fsw.table.config import flight_config
 from fsw.table.own_law import LawError
 from fsw.table.table import FlightTable
+from fsw.wire.frame import Frame
+from fsw.wire.messages import CoilDipole, CoilFire, WheelTorque
+
+# --- A bench that is not armed: no request to drive a coil or a wheel reaches the bus
+
+REQUESTS = frozenset((CoilFire.ID, CoilDipole.ID, WheelTorque.ID))
+
+
+class Disarmed:
+    """A :class:`fsw.bus.interface.Bus` that passes all but the requests of the flight software."""
+
+    def __init__(self, bus: Bus) -> None:
+        self.name = bus.name
+        self._bus = bus
+
+    def send(self, frames: Sequence[Frame]) -> None:
+        """Send the frames that ask for no current and no torque."""
+        self._bus.send([frame for frame in frames if frame.can_id not in REQUESTS])
+
+    def receive(self, timeout_s: float | None) -> Frame | None:
+        """The next frame, or None if none came within ``timeout_s``."""
+        return self._bus.receive(timeout_s)
+
+    def close(self) -> None:
+        """Leave the bus."""
+        self._bus.close()
+
 
 # --- Runs a flight node on a bus until the run ends or the bus is gone
 

@@ -14,8 +14,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import NamedTuple
 
-from fsw.compiled import ROOT, SWITCH, standing
-from fsw.kernel import KERNEL
+from fsw.compiled import KERNEL, ROOT, SWITCH, standing
 from sim.console import answer, say
 
 SYSTEM = Path("/sys/class/net")

@@ -6,10 +6,10 @@ from typing import Any
 
 import can
 
-from fsw.bus.can_message import frame_of, message_of
 from fsw.bus.interface import DEFAULT_LOOP_PORT, BusError
 from fsw.bus.link import LoopLink
 from fsw.bus.open_bus import resolve
+from fsw.bus.python_can import frame_of, message_of
 from fsw.wire.frame import Frame
 
 

@@ -68,7 +68,7 @@ def open_bus(spec: str) -> Bus:
         from fsw.bus.python_can import open_python_can  # noqa: PLC0415  (loaded if it is used)
 
         return open_python_can(resolved)
-    from fsw.bus.slcan import open_slcan  # noqa: PLC0415  (loaded if it is used)
+    from fsw.bus.python_can import open_slcan  # noqa: PLC0415  (loaded if it is used)
 
     return open_slcan(argument)
 
@@ -91,7 +91,7 @@ def host_bus(listener: int, *ends: int) -> Bus:
     """
     from socket import socket  # noqa: PLC0415  (loaded if it is used)
 
-    from fsw.bus.host_link import HostLink  # noqa: PLC0415  (loaded if it is used)
+    from fsw.bus.link import HostLink  # noqa: PLC0415  (loaded if it is used)
 
     return HostLink(socket(fileno=listener), [socket(fileno=end) for end in ends])
 

@@ -10,9 +10,43 @@ from typing import Any
 
 import can
 
-from fsw.bus.can_message import frame_of, message_of
 from fsw.bus.interface import Bus, BusClosed, BusError
-from fsw.wire.frame import Frame
+from fsw.wire.frame import ERROR_FLAG, EXTENDED_FLAG, REMOTE_FLAG, Frame
+
+# --- Frames as python-can's messages, and back
+
+_FLAGS = EXTENDED_FLAG | REMOTE_FLAG | ERROR_FLAG
+
+
+def message_of(frame: Frame, timestamp_s: float = 0.0, channel: str | None = None) -> can.Message:
+    """The frame as python-can's message."""
+    can_id, data = frame.can_id, frame.data
+    remote = bool(can_id & REMOTE_FLAG)
+    return can.Message(
+        timestamp=timestamp_s,
+        channel=channel,
+        arbitration_id=can_id & ~_FLAGS,
+        is_extended_id=bool(can_id & EXTENDED_FLAG),
+        is_remote_frame=remote,
+        is_error_frame=bool(can_id & ERROR_FLAG),
+        dlc=len(data),
+        data=None if remote else data,
+    )
+
+
+def frame_of(message: can.Message) -> Frame:
+    """The message as a frame; a remote one holds as many zeros as it asks for."""
+    can_id = message.arbitration_id
+    if message.is_extended_id:
+        can_id |= EXTENDED_FLAG
+    if message.is_error_frame:
+        can_id |= ERROR_FLAG
+    if message.is_remote_frame:
+        return Frame(can_id | REMOTE_FLAG, bytes(message.dlc))
+    return Frame(can_id, bytes(message.data))
+
+
+# --- A bus
 
 SEND_PATIENCE_S = 5.0
 """An adapter that accepts no data for this long has stalled."""
@@ -143,3 +177,23 @@ def _configuration(spec: str, given: dict[str, str]) -> Mapping[str, Any]:
 def _name(interface: str, channel: str) -> str:
     """A name for logs: one word."""
     return re.sub(r"[^A-Za-z0-9_.:-]", "_", PurePath(channel).name)[:LONGEST_NAME] or interface
+
+
+# --- Serial CAN adapters by the slcan protocol, at the bit rate of the bench
+
+SLCAN_BITRATE = 500_000
+
+
+def open_slcan(port: str) -> Bus:
+    """The serial CAN adapter at ``port``, set to 500 kbit/s.
+
+    Raises:
+        BusError: pyserial is missing, or there is no adapter.
+    """
+    try:
+        bus = can.Bus(interface="slcan", channel=port, bitrate=SLCAN_BITRATE)
+    except can.CanInterfaceNotImplementedError as error:
+        raise BusError("a serial CAN adapter needs pyserial: install it with pip install pyserial") from error
+    except (can.CanError, OSError, ValueError) as error:
+        raise BusError(f"there is no serial CAN adapter at {port}: {error}") from error
+    return PythonCan(bus, PurePath(port).name, f"slcan:{port}")

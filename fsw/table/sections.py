@@ -1,5 +1,6 @@
 """The sections of an onboard table, and their checks, in deg, nT and km."""
 
+from collections.abc import Mapping
 from dataclasses import fields
 from datetime import UTC, date, datetime
 from typing import Annotated, Literal, Self
@@ -7,6 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, Strict, ValidationInfo, field_validator, model_validator
 
 from fsw.core.algebra.vector import Mat3, Vec3
+from fsw.core.laws.entry import Aim
 from fsw.core.laws.interface import MAX_GAIN, MAX_SPIN_RADPS
 from fsw.core.laws.plan.law_axes import LawAxes, law_axes
 from fsw.core.laws.table import LAWS
@@ -16,7 +18,6 @@ from fsw.input.near import did_you_mean
 from fsw.input.own_code import given_as, short_name
 from fsw.input.schema import NotNegative, Positive, Section, Square, StepNt, StepOfOne, Triple
 from fsw.table.inertia import check_inertia, three_numbers, without_rounding
-from fsw.table.law_names import laws_by_aim
 
 CIRCULAR_KEYS = ("altitude_km", "inclination_deg", "raan_deg", "u0_deg")
 """Keys of a circular orbit; the other kind has ``tle``."""
@@ -347,3 +348,20 @@ def parse_utc(text: str) -> int:
     if moment.microsecond:
         raise ValueError(f"'{text}' is not a whole second")
     return int(moment.timestamp())
+
+
+# --- The laws by what they are for, as a message lists them: some of each kind, and how many more there are
+
+FEW = 5
+"""Named of a kind."""
+
+
+def laws_by_aim(aims: Mapping[str, Aim]) -> str:
+    """``three_axis (pd, lqr and 35 more), rate (...)``, of laws with their aims, in their order."""
+    kinds = []
+    for aim in Aim:
+        names = [name for name, its in aims.items() if its is aim]
+        more = f" and {len(names) - FEW} more" if len(names) > FEW else ""
+        if names:
+            kinds.append(f"{aim.value} ({', '.join(names[:FEW])}{more})")
+    return ", ".join(kinds)

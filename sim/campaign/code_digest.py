@@ -17,7 +17,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import sim
-from fsw.kernel import KERNEL
+from fsw.compiled import KERNEL
 
 PROJECT = Path(sim.__file__).resolve().parents[1]
 PACKAGES = ("fsw", "hil_stub", "sim", "torquer")

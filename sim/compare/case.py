@@ -8,8 +8,8 @@ from fsw.core.laws.table import LAWS
 from fsw.input.near import did_you_mean
 from fsw.input.own_code import given_as
 from fsw.input.schema import Nested, merge
-from fsw.table.law_names import laws_by_aim
 from fsw.table.own_law import declared
+from fsw.table.sections import laws_by_aim
 from fsw.table.table import lay_over
 from sim.campaign.flight import Order
 from sim.errors import HarnessError

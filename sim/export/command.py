@@ -12,7 +12,7 @@ import numpy as np
 from h5py import string_dtype
 from numpy.typing import NDArray
 
-from fsw.bus.can_message import message_of
+from fsw.bus.python_can import message_of
 from sim.console import counted
 from sim.errors import HarnessError, needing
 from sim.export import mcap

@@ -9,7 +9,7 @@ from pathlib import Path
 from fsw.core.laws.table import LAWS
 from fsw.input.near import did_you_mean
 from fsw.input.schema import Nested, merge
-from fsw.table.law_names import laws_by_aim
+from fsw.table.sections import laws_by_aim
 from sim.campaign.claim import Study
 from sim.campaign.runner import StudyResult, run
 from sim.campaign.study_cache import with_cache

@@ -5,13 +5,28 @@ import os
 import shutil
 import subprocess
 import sys
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 from zlib import crc32
 
 import pytest
 
 from fsw import compiled
-from fsw.compiled import FOLDER, MANIFEST, ROOT, SWITCH, Build, BuildError, CodeStanding, Finder, standing
+from fsw.compiled import (
+    FOLDER,
+    KERNEL,
+    KERNEL_FOLDER,
+    KERNEL_SOURCE,
+    MANIFEST,
+    ROOT,
+    SWITCH,
+    Build,
+    BuildError,
+    CodeStanding,
+    Finder,
+    refuse_stale_kernel,
+    standing,
+)
 
 SAY = "import {}; from fsw.compiled import standing; print(standing()); print({}.__spec__.loader)"
 MODULE = "fsw.core.algebra.vector"
@@ -188,3 +203,51 @@ def test_a_module_lies_beside_its_source_compiled_too():
     file = Path(vector.__file__)
     assert file.parent == ROOT / "fsw" / "core" / "algebra"
     assert file.name.partition(".")[0] == "vector"
+
+
+# --- A kernel flies only if it was built from the source that is there
+
+KERNEL_BINARY = f"_kalman_kernel{EXTENSION_SUFFIXES[0]}"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A source, and a binary that holds its digest; what is imported stays as it is."""
+    monkeypatch.setitem(sys.modules, KERNEL, sys.modules.get(KERNEL))
+    monkeypatch.delitem(sys.modules, KERNEL)
+    digest = "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08"
+    (tmp_path / KERNEL_SOURCE).write_bytes(b"test")
+    (tmp_path / KERNEL_BINARY).write_bytes(b"\x7fELF" + digest.encode() + b"\x00")
+    return tmp_path
+
+
+def test_a_kernel_of_this_source_is_imported(folder):
+    refuse_stale_kernel(folder)
+    assert KERNEL not in sys.modules
+
+
+def test_one_of_another_source_is_not(folder):
+    (folder / KERNEL_SOURCE).write_bytes(b"another")
+    refuse_stale_kernel(folder)
+    assert sys.modules[KERNEL] is None
+
+
+@pytest.mark.parametrize("missing", [KERNEL_SOURCE, KERNEL_BINARY])
+def test_nothing_is_stale_where_one_of_the_two_is_missing(missing, folder):
+    (folder / missing).unlink()
+    refuse_stale_kernel(folder)
+    assert KERNEL not in sys.modules
+
+
+@pytest.mark.long
+def test_a_flight_with_a_stale_kernel_is_by_filterpy(tmp_path):
+    """A whole copy of the package, its source changed by a comment."""
+    shutil.copytree(KERNEL_FOLDER.parents[1], tmp_path / "fsw")
+    source = tmp_path / "fsw" / "core" / "estimation" / KERNEL_SOURCE
+    source.write_text(source.read_text() + "/* changed */\n")
+    asked = "from fsw.core.estimation.kalman import Algebra, available; print(available(Algebra.KERNEL))"
+    done = subprocess.run(
+        [sys.executable, "-c", asked], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.strip() == "filterpy"
+    assert compiled.KERNEL_FOLDER == KERNEL_FOLDER

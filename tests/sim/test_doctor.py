@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fsw.compiled import SWITCH, CodeStanding
-from fsw.kernel import KERNEL
+from fsw.compiled import KERNEL, SWITCH, CodeStanding
 from sim import doctor
 from sim.console import Console, speaking
 from sim.doctor import Finding, Presence, can_interfaces, examine, report

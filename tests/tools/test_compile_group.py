@@ -153,7 +153,7 @@ class TestCompiling:
 def root(tmp_path_factory):
     root = tmp_path_factory.mktemp("small")
     (root / "fsw").mkdir()
-    for name in ("__init__.py", "compiled.py", "kernel.py"):
+    for name in ("__init__.py", "compiled.py"):
         shutil.copy(ROOT / "fsw" / name, root / "fsw")
     (root / "fsw" / "small.py").write_text(SMALL)
     (root / "fsw" / "outside.py").write_text("from typing import Final\n\nLIMIT: Final = 2.0\n")

@@ -6,8 +6,8 @@ import time
 import can
 import pytest
 
-from fsw.bus.can_message import frame_of
 from fsw.bus.open_bus import open_bus
+from fsw.bus.python_can import frame_of
 from fsw.wire.frame import Frame
 
 PATIENCE_S = 10.0

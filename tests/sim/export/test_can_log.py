@@ -3,7 +3,7 @@
 import can
 import pytest
 
-from fsw.bus.can_message import frame_of
+from fsw.bus.python_can import frame_of
 from fsw.wire.frame import Frame
 from sim.errors import HarnessError
 from sim.export.command import write_asc, write_blf

@@ -4,7 +4,7 @@ import re
 
 from fsw.core.laws.entry import Aim
 from fsw.core.laws.table import LAWS
-from fsw.table.law_names import FEW, laws_by_aim
+from fsw.table.sections import FEW, laws_by_aim
 
 
 def test_a_few_of_each_kind_are_named_in_their_order():
