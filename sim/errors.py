@@ -1,7 +1,7 @@
 """What ends a command with a sentence instead of a traceback."""
 
 import errno
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
@@ -19,6 +19,20 @@ class FlightError(HarnessError):
     """The flight ended before its time."""
 
     exit_code = 1
+
+
+def refuse(given: Mapping[str, object], why: str) -> None:
+    """Refuse options that would do nothing.
+
+    Args:
+        given: by option, what was given for it; nothing that is false was.
+        why: the rest of the sentence.
+
+    Raises:
+        HarnessError: one of them is given.
+    """
+    if named := [option for option, value in given.items() if value]:
+        raise HarnessError(f"{', '.join(named)}: {why}")
 
 
 def is_out_of_memory(error: BaseException) -> bool:

@@ -11,7 +11,7 @@ from fsw.input.schema import Section
 from sim.commissioning.calibrate.command import PARAMETERS, calibrate_recorded, fault_of_ratios
 from sim.commissioning.calibrate.flown import command as flown
 from sim.commissioning.report import CommissioningReport
-from sim.errors import HarnessError
+from sim.errors import HarnessError, refuse
 from sim.progress import shown
 from torquer.api.arguments import Settings, checked, laid_over, optional_path, path_text
 from torquer.api.commissioning import CommissioningResult
@@ -81,7 +81,7 @@ def calibrate(
     of_log = None if scenario is None else path_text(scenario, "scenario")
     with shown(progress):
         if path.suffix.lower() == ".csv":
-            _refuse(
+            refuse(
                 {"--scenario": of_log is not None, "--set": bool(over)},
                 f"recorded telemetry in {path} is calibrated without a scenario",
             )
@@ -91,7 +91,7 @@ def calibrate(
             "--inertia-ratios": options.inertia_ratios is not None,
             "--parameters": options.parameters != PARAMETERS[0],
         }
-        _refuse(of_telemetry, f"{path} is no PASS.csv")
+        refuse(of_telemetry, f"{path} is no PASS.csv")
         return SatelliteCalibration(flown.calibrate(path, of_log, over, file, drawn))
 
 
@@ -104,13 +104,3 @@ def _of_telemetry(
     if ratios is not None and (fault := fault_of_ratios(ratios)):
         raise HarnessError(f"--inertia-ratios: {fault}")
     return calibrate_recorded(path, tle, out, page, ratios, options.parameters)
-
-
-def _refuse(options: Mapping[str, bool], why: str) -> None:
-    """Refuse options that would do nothing.
-
-    Raises:
-        HarnessError: one of them is given.
-    """
-    if given := [option for option, is_given in options.items() if is_given]:
-        raise HarnessError(f"{', '.join(given)}: {why}")

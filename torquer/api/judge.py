@@ -13,7 +13,7 @@ from fsw.input.own_code import refuse_while_loading
 from fsw.input.schema import Nested, Section, read_toml
 from hil_stub.bench import DEADMAN_MS
 from sim.campaign.definition.campaign_file import load_campaign
-from sim.errors import HarnessError
+from sim.errors import HarnessError, refuse
 from sim.fault_table.rows.table import choose_rows
 from sim.flight.fsw_answers import Patience
 from sim.flight.node_command import parse_command
@@ -281,6 +281,4 @@ def _refuse(what: str, given: Mapping[str, object]) -> None:
     Raises:
         HarnessError: one was given.
     """
-    wrong = [option for option, value in given.items() if value]
-    if wrong:
-        raise HarnessError(f"{', '.join(wrong)}: {what} has no such option")
+    refuse(given, f"{what} has no such option")

@@ -19,7 +19,7 @@ from sim.commissioning.phasing.bench_log import bench_responses, is_bench_log, r
 from sim.commissioning.phasing.judge import Known, phasing
 from sim.commissioning.report import CommissioningReport, ReportLine, in_lines
 from sim.console import Console, detail, speaking
-from sim.errors import HarnessError
+from sim.errors import HarnessError, refuse
 from sim.flight.virtual import fly_virtual
 from sim.progress import progress
 from sim.record import run_dir
@@ -102,10 +102,8 @@ class PhasingOptions:
         Raises:
             HarnessError: one of them is given.
         """
-        given = [name for name in _given(self) if name in names]
-        if given:
-            named = (f"--{OPTIONS.get(name, name).replace('_', '-')}" for name in given)
-            raise HarnessError(f"{', '.join(named)}: {why}")
+        of = set(names)
+        refuse({f"--{OPTIONS.get(name, name).replace('_', '-')}": name in of for name in _given(self)}, why)
 
 
 def _given(options: PhasingOptions) -> Iterator[str]:
