@@ -1,6 +1,6 @@
 """The auditor's own reading of a scenario's limits.
 
-Scheduler and boards take theirs from the checked table (``fsw.table.config``, ``sim.scenario.coil_limits``).
+Scheduler and boards take theirs from the checked table (``fsw.table.config``, ``sim.scenario.assemble``).
 The auditor reads the plain keys again, on purpose by code of its own: a mistake in either reading shows as a
 violation and is not shared.
 """

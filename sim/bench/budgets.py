@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from sim.bench.bus_load import BITRATE
-from sim.bench.realtime_loop import BenchMeasurements
-from sim.bench.time_histogram import TimeHistogram
+from sim.bench.realtime_loop import BenchMeasurements, TimeHistogram
 from sim.value_types import Json
 
 

@@ -22,7 +22,6 @@ from sim.errors import HarnessError
 from sim.flight.bus_in_use import FLIGHT_NODES, refuse_bus_in_use
 from sim.flight.node_command import NodeCommand
 from sim.flight.second_senders import describe_senders
-from sim.flight.table_file import write_flight_table
 from sim.progress import progress
 from sim.record import run_dir
 from sim.record.binding import bind
@@ -33,6 +32,7 @@ from sim.record.whole_file import replace_text
 from sim.scenario.assemble import effects_of, plant_config
 from sim.scenario.schema import Scenario
 from sim.scenario.telecommands import uplink
+from sim.scenario.written import write_flight_table
 from sim.value_types import Json
 
 BOARDS = {"coil": "COIL", "magnetometer": "MAG", "sun": "SUN", "cells": "SUN"}

@@ -19,7 +19,7 @@ from sim.conformance.board_under_test import BoardLimits, BoardUnderTest
 from sim.conformance.checks import expect_dead_man, wake_dead_man
 from sim.console import answer, say
 from sim.errors import HarnessError
-from sim.scenario.coil_limits import coil_limits
+from sim.scenario.assemble import coil_limits
 from sim.scenario.schema import Scenario
 
 # --- The checks of a board's clock and count of ticks: ticks held, repeated, in a burst, backwards

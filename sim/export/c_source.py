@@ -15,7 +15,7 @@ from fsw.core.laws.plan.pulse_model import AXES
 from hil_stub.bench import DEADMAN_MS
 from sim.errors import needing
 from sim.export.dictionary import DBC
-from sim.scenario.coil_limits import coil_limits
+from sim.scenario.assemble import coil_limits
 from sim.scenario.schema import Scenario, flight_table
 
 HEADER, SOURCE, CRC, CONSTANTS = "torquer.h", "torquer.c", "torquer_crc.h", "torquer_scenario.h"

@@ -16,11 +16,11 @@ from fsw.bus.python_can import message_of
 from sim.console import counted
 from sim.errors import HarnessError, needing
 from sim.export import mcap
-from sim.export.destination import whole_file
 from sim.export.history_table import AXES, Block, HistoryTable
 from sim.export.source import LogPass, Source, open_source
 from sim.progress import Watch, progress
 from sim.record import run_dir
+from sim.result_files import whole_file
 
 # --- Histories as CSV and Parquet: a row a tick, a column a component, its unit in its name
 

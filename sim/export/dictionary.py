@@ -1,5 +1,6 @@
 """The bus contract as data: messages and signals with units, enumerations and comments, from the DBC."""
 
+import re
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -104,3 +105,15 @@ def _signal(found: Any) -> Signal:  # noqa: ANN401  of cantools, which may be mi
         {number: str(label) for number, label in sorted((found.choices or {}).items())},
         found.comment or "",
     )
+
+
+# --- The DBC for other tools, its cycle times at any tick rate
+
+_CYCLE = re.compile(r'(?m)^(BA_ "GenMsgCycleTime" BO_ \d+ )1000;$')
+"""The cycle time of a message that is sent every tick; the others are in seconds, whatever the tick rate."""
+
+
+def dbc_text(tick_hz: int) -> str:
+    """The DBC, messages of every tick being ``tick_hz`` times a second."""
+    text = DBC.read_text(encoding="utf-8")
+    return _CYCLE.sub(rf"\g<1>{round(1000 / tick_hz)};", text)

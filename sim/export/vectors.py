@@ -16,9 +16,9 @@ from fsw.wire.candump_line import frame_text
 from fsw.wire.frame import Frame
 from fsw.wire.messages import SENDERS, PlantEnd, Sync, TickDone, intact
 from sim.errors import HarnessError
-from sim.export.destination import whole_file
 from sim.export.source import LogPass, Source
 from sim.record.candump import LogEntry
+from sim.result_files import whole_file
 
 FORMAT = "torquer-vectors/1"
 MAGIC = b"torquer-vec/1\r\n\0"

@@ -24,9 +24,9 @@ from sim.fault_rig.record import FaultFlightRecord
 from sim.faults.faulty_plant import FaultyPlant
 from sim.flight.fsw_answers import has_answer
 from sim.flight.sil import start_node
-from sim.flight.table_file import write_flight_table
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario
+from sim.scenario.written import write_flight_table
 
 ALONE_S = 0.01
 """Duration of a tick without an answer."""

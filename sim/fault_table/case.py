@@ -12,10 +12,9 @@ from fsw.input.schema import merge
 from fsw.table.config import flight_config
 from sim.campaign import population
 from sim.fault_rig import currents
-from sim.fault_rig.clock_rig import ClockRig
 from sim.fault_rig.process_rig import ProcessRig, random_strikes
 from sim.fault_rig.record import FaultFlightRecord
-from sim.fault_rig.rig import Rig
+from sim.fault_rig.rig import ClockRig, Rig
 from sim.fault_table import checks
 from sim.fault_table.isolation import isolation_s
 from sim.fault_table.row import SCENARIO, CaseResult, FaultRow, When

@@ -25,7 +25,7 @@ from sim.fault_table.isolation import (
 from sim.fault_table.row import Bounds, Check, CheckOutcome, CheckVerdict, FaultRow
 from sim.fault_table.wrong_estimates import never_wrong_for_long
 from sim.faults.kinds import KINDS
-from sim.scenario.coil_limits import coil_limits
+from sim.scenario.assemble import coil_limits
 from sim.scenario.schema import Scenario, orbit_period_s
 
 GOOD_DEG = 2.0

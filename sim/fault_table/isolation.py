@@ -10,7 +10,7 @@ from hil_stub.coils.events import CoilEventCode
 from sim.fault_rig.record import FaultFlightRecord, ReportedEvent
 from sim.fault_table.row import Bounds, FaultRow, RowFault
 from sim.faults.kinds import KINDS
-from sim.flight.isolations import UNITS, isolated_unit
+from sim.report.event_words import UNITS, isolated_unit
 
 # --- Where a fault shows: what the flight software has no means to see it need not report
 

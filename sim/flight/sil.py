@@ -20,10 +20,10 @@ from sim.flight.bus_in_use import ALL_NODES, refuse_bus_in_use
 from sim.flight.flight_loop import ProgressCallback
 from sim.flight.fsw_answers import ANSWER_TIMEOUT_S, Patience
 from sim.flight.second_senders import describe_senders
-from sim.flight.table_file import write_flight_table
 from sim.record import run_dir
 from sim.record.candump import last_lines
 from sim.scenario.schema import Scenario
+from sim.scenario.written import write_flight_table
 
 # --- Detects a stalled flight from outside: its log does not grow
 

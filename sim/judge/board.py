@@ -37,7 +37,7 @@ from sim.record.candump import whole_entries
 from sim.record.destination import check_folder
 from sim.report.requirements.judge import Outcome
 from sim.report.verdict import Verdict
-from sim.scenario.coil_limits import coil_limits
+from sim.scenario.assemble import coil_limits
 from sim.scenario.schema import Scenario
 from sim.value_types import Json
 

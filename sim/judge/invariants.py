@@ -20,7 +20,7 @@ from sim.judge.unheard import tell_unheard
 from sim.record.run_record import RunRecord
 from sim.report.requirements.judge import Outcome
 from sim.report.verdict import Verdict
-from sim.scenario.coil_limits import coil_limits
+from sim.scenario.assemble import coil_limits
 from sim.scenario.schema import Scenario
 from sim.value_types import Json
 

@@ -6,7 +6,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from itertools import groupby, islice, zip_longest
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from fsw.bus.open_bus import open_bus
 from fsw.input.own_code import display
@@ -297,3 +297,27 @@ def _after_boot(log: Path, channel: str | None) -> Iterator[LogEntry]:
     """The whole entries after FSW_BOOT, up to where the log is cut."""
     with suppress(LogTruncatedError):
         yield from islice(read_log(log, channel=channel), 1, None)
+
+
+# --- The result of a replay for programs
+
+
+def as_json(report: ReplayReport) -> dict[str, Any]:
+    """Whether it is as exact as it must be and, for a replay through the flight software, how exact."""
+    values: dict[str, Any] = {"ok": report.ok, "lines": report.lines}
+    result = report.result
+    if result is None:
+        return values
+    return values | {
+        "bit_exact": result.bit_exact,
+        "command_exact": result.command_exact,
+        "ticks": result.ticks,
+        "frames": result.frames,
+        "first_bit_difference": _text(result.first_bit_difference),
+        "first_command_difference": _text(result.first_command_difference),
+        "complete": result.ended,
+    }
+
+
+def _text(difference: object) -> str | None:
+    return None if difference is None else str(difference)

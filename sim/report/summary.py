@@ -6,10 +6,9 @@ from dataclasses import dataclass, field
 from fsw.wire.messages import CLASSES, NAMES, SENDERS, CoilRefused, FswEvent, intact
 from sim.audit.auditor import AuditReport
 from sim.audit.findings import DipoleCount
-from sim.flight.isolations import isolated_unit, readmitted_unit
 from sim.record.candump import LogEntry
 from sim.record.run_record import FlightRecord
-from sim.report.event_words import event_names, events_left_out, in_words
+from sim.report.event_words import event_names, events_left_out, in_words, isolated_unit, readmitted_unit
 from sim.report.figures.performance import Performance
 from sim.report.requirements.judge import Outcome
 from sim.scenario.controlled import SLOW_DEGPS

@@ -4,6 +4,8 @@ from math import cos, hypot, radians, sin
 
 from fsw.core.algebra.quaternion import conjugate, multiply
 from fsw.input.schema import TableError
+from fsw.table.sections import CoilTable
+from hil_stub.coils.interlock import CoilLimits
 from sim.plant.config import (
     BodyConfig,
     CoilConfig,
@@ -18,7 +20,6 @@ from sim.plant.config import (
 from sim.plant.own_effects import OwnEffects
 from sim.plant.sensor_config import AS_NAMED, CellConfig, MagnetometerConfig, SunCellsConfig, SunSensorConfig
 from sim.plant.wheel_config import WheelConfig
-from sim.scenario.coil_limits import coil_limits
 from sim.scenario.own_effects import own_effects
 from sim.scenario.schema import Scenario, orbit_period_s
 from sim.scenario.sections import CellsSection, ScenarioWheel
@@ -229,3 +230,20 @@ def _unit(v: Vec3) -> Vec3:
 
 def _radians(v: Vec3) -> Vec3:
     return (radians(v[0]), radians(v[1]), radians(v[2]))
+
+
+# --- The limits of a coil driver board, from the table of the coils: for plant, bench, faults and tools
+
+
+def coil_limits(coils: CoilTable, tick_hz: int) -> CoilLimits:
+    """What the interlock enforces; the times to the nearest millisecond.
+
+    The scheduler takes its own limits from the same table, rounded to whole ticks (``fsw.table.config``), so
+    that neither relies on the arithmetic of the other.
+    """
+    return CoilLimits(
+        tick_hz=tick_hz,
+        pulse_ms=round(1000.0 * coils.pulse_s),
+        backoff_ms=round(1000.0 * coils.backoff_s),
+        shared=coils.shared,
+    )

@@ -17,7 +17,8 @@ from typing import Any, NamedTuple
 
 from sgp4.io import compute_checksum
 
-from fsw.core.orbit.tle import plain_line, read_tle, tle_elements
+from fsw.core.orbit.propagation import TleOrbit, sgp4_orbit
+from fsw.core.orbit.tle import plain_line, read_tle, tle_elements, tle_epoch_unix_s
 from fsw.input.text_file import read_text
 from sim.errors import HarnessError, reading
 
@@ -276,3 +277,35 @@ def _two_lines(lines: list[str]) -> Iterator[FiledElements]:
 def _name(text: str) -> str:
     """A satellite's name as it is shown."""
     return "".join(letter for letter in text if letter.isprintable())[:LONGEST_NAME].strip()
+
+
+# --- Of a file of element sets the one nearest in time
+
+DAY_S = 86400.0
+
+
+class ElementSet(NamedTuple):
+    """An orbit, and its epoch as Unix time."""
+
+    orbit: TleOrbit
+    epoch_unix_s: int
+
+    def age_days(self, unix_s: float) -> float:
+        """How old it is at a time."""
+        return (unix_s - self.epoch_unix_s) / DAY_S
+
+
+def nearest_elements(path: Path, unix_s: float) -> ElementSet:
+    """The set of the file whose epoch is nearest to a time.
+
+    Raises:
+        HarnessError: the file cannot be read, holds no set, a malformed one, or sets of several satellites.
+    """
+    found = read_element_file(path)
+    check_one_satellite(path, found)
+    epochs = [tle_epoch_unix_s(*one.lines) for one in found]
+    number = min(range(len(found)), key=lambda one: abs(epochs[one] - unix_s))
+    try:
+        return ElementSet(sgp4_orbit(*found[number].lines), epochs[number])
+    except ValueError as error:
+        raise HarnessError(f"{path}: {found[number].where}: {error}") from None

@@ -2,13 +2,15 @@
 
 import tomllib
 from collections.abc import Callable
+from pathlib import Path
 
 import tomli_w
 from pydantic import BaseModel
 
 from fsw.input.schema import Nested, TableError
 from fsw.input.toml_text import MOST_BYTES, BoundsError, parse_toml
-from sim.scenario.schema import Scenario, scenario_of
+from fsw.table import table as onboard
+from sim.scenario.schema import Scenario, flight_table, scenario_of
 
 
 def scenario_toml(scenario: Scenario, source: str = "scenario") -> str:
@@ -61,3 +63,23 @@ def checked_toml(values: Nested, source: str) -> str:
 def values_of(model: BaseModel) -> Nested:
     """The values of a model as in its file: what is not set is left out."""
     return model.model_dump(mode="json", exclude_none=True)
+
+
+# --- The onboard table of a scenario as a file, for flight software in a process of its own
+
+FLIGHT_TABLE = "flight.toml"
+
+
+def write_flight_table(folder: Path, scenario: Scenario) -> Path:
+    """Write the resolved table into a folder, and return its path.
+
+    Raises:
+        TableError: the scenario's ``[flight]`` holds what the onboard table does not take, or the table could
+            not be read again.
+        OSError: it cannot be written.
+    """
+    path = folder / FLIGHT_TABLE
+    source = f"onboard table of scenario {scenario.name}"
+    text = toml_of(flight_table(scenario), lambda values: onboard.flight_table(values, source), source)
+    path.write_text(text, encoding="utf-8")
+    return path

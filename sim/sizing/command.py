@@ -10,8 +10,7 @@ import numpy as np
 from sim.console import answer, say
 from sim.design.from_scenario import body_of
 from sim.scenario.schema import Scenario
-from sim.sizing.detumbling import detumbling, detumbling_words
-from sim.sizing.expectation import Expectation, expect
+from sim.sizing.expectation import Expectation, detumbling, detumbling_words, expect
 from sim.sizing.gravity import Gravity, gravity_on, gravity_words, moments_of
 from sim.sizing.levels import MOST_LOAD, Levels, levels_against
 from sim.value_types import Json

@@ -10,7 +10,7 @@ from firmware_bench import BOARD, LEVELS_MA, NO_COMPILER, limit, limits_header
 from planted_firmware import PLANTED, Planted, compile_planted
 
 from hil_stub.bench import DEADMAN_MS
-from sim.scenario.coil_limits import coil_limits
+from sim.scenario.assemble import coil_limits
 from sim.scenario.schema import load
 
 CORE = sorted((BOARD / "src").glob("*.[ch]"))

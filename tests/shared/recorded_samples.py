@@ -13,10 +13,10 @@ from scipy.spatial.transform import Rotation
 from sgp4.api import Satrec
 
 from sim.commissioning.recorded.along import along
-from sim.commissioning.recorded.element_sets import nearest_elements
 from sim.commissioning.recorded.recorded_pass import read_pass
 from sim.plant.environment.field import RotatingIgrf
 from sim.plant.environment.sun import sun_eci_m
+from sim.scenario.element_file import nearest_elements
 
 DATA = Path(__file__).parent / "suchai3"
 TLE = DATA / "tle.txt"

@@ -5,7 +5,7 @@ import os
 import pytest
 
 from sim.errors import HarnessError
-from sim.result_files import check_results, write_result
+from sim.result_files import check_results, whole_file, write_result, write_text
 
 
 @pytest.fixture
@@ -64,3 +64,21 @@ def test_a_result_that_cannot_be_written_is_one_sentence(tmp_path):
     (tmp_path / "no").mkdir()
     with pytest.raises(HarnessError, match=r"no: cannot be written \(Is a directory\)"):
         write_result(tmp_path / "no", "x")
+
+
+# --- An export leaves a whole file or none
+
+
+def test_a_block_that_fails_leaves_nothing(tmp_path):
+    with pytest.raises(TypeError), whole_file(tmp_path / "run.csv", False) as path:
+        path.write_text(None)  # it opens the file first
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_is_there_is_kept_without_force(tmp_path):
+    write_text(tmp_path / "run.csv", "old", force=False)
+    with pytest.raises(HarnessError, match="already exists: name another file"):
+        write_text(tmp_path / "run.csv", "new", force=False)
+    assert (tmp_path / "run.csv").read_text() == "old"
+    write_text(tmp_path / "run.csv", "new", force=True)
+    assert (tmp_path / "run.csv").read_text() == "new"

@@ -8,8 +8,7 @@ import soak
 from fsw.wire.messages import CoilRefused
 from sim.bench import command
 from sim.bench.budgets import Budgets, judge
-from sim.bench.realtime_loop import BenchMeasurements
-from sim.bench.time_histogram import TimeHistogram
+from sim.bench.realtime_loop import BenchMeasurements, TimeHistogram
 from torquer.cli import main as cli
 
 

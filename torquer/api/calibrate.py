@@ -14,8 +14,8 @@ from sim.commissioning.report import CommissioningReport
 from sim.errors import HarnessError, refuse
 from sim.progress import shown
 from torquer.api.arguments import Settings, checked, laid_over, optional_path, path_text
-from torquer.api.commissioning import CommissioningResult
 from torquer.api.errors import one_sentence
+from torquer.api.printed import CommissioningResult
 
 
 class _CalibrateOptions(Section):

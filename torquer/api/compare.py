@@ -22,8 +22,7 @@ from torquer.api.arguments import (
     path_text,
     scenario_source,
 )
-from torquer.api.errors import one_sentence
-from torquer.api.extras import required
+from torquer.api.errors import one_sentence, required
 from torquer.api.laws import LawLike, law_given
 from torquer.api.printed import PrintedResult
 

@@ -18,7 +18,7 @@ from sim.replay.log_replay import replay
 from sim.report.figures.attitude_arrays import angle_rad, axis1_angle_rad, law_attitude
 from sim.report.figures.histories import FlightHistories
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
-from torquer.api.extras import required
+from torquer.api.errors import required
 
 if TYPE_CHECKING:
     from pathlib import Path

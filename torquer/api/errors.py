@@ -2,12 +2,14 @@
 
 from collections.abc import Callable
 from functools import wraps
+from importlib import import_module
+from types import ModuleType
 from typing import ParamSpec, TypeVar
 
 from fsw.bus.interface import BusError
 from fsw.input.error_text import error_text
 from fsw.input.schema import TableError
-from sim.errors import HarnessError
+from sim.errors import HarnessError, needing
 from sim.plant.errors import PlantError
 
 Parameters = ParamSpec("Parameters")
@@ -45,3 +47,16 @@ def one_sentence(function: Callable[Parameters, Result]) -> Callable[Parameters,
             raise (InputError(sentence) if code == 2 else Error(sentence, code)) from None
 
     return call
+
+
+# --- Packages that not everybody needs
+
+
+def required(package: str, for_what: str) -> ModuleType:
+    """A package of the extra ``torquer[data]``.
+
+    Raises:
+        HarnessError: it is missing.
+    """
+    with needing(for_what, package, "data"):
+        return import_module(package)

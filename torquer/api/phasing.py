@@ -18,8 +18,8 @@ from torquer.api.arguments import (
     path_text,
     scenario_source,
 )
-from torquer.api.commissioning import CommissioningResult
 from torquer.api.errors import one_sentence
+from torquer.api.printed import CommissioningResult
 
 
 class _GivenPhasing(Section):

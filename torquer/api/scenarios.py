@@ -6,7 +6,7 @@ from typing import Self
 
 from fsw.input.schema import merge
 from sim.errors import HarnessError
-from sim.export.destination import write_text
+from sim.result_files import write_text
 from sim.scenario import schema
 from sim.scenario.schema import shipped
 from sim.scenario.settings import nested

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from sim.audit.findings import AuditReport
 from sim.campaign.results.store import read_results
 from sim.scenario.schema import Scenario
-from torquer.api.extras import required
+from torquer.api.errors import required
 
 if TYPE_CHECKING:
     import pandas as pd

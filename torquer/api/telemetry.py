@@ -9,8 +9,8 @@ from fsw.input.schema import Section
 from sim.commissioning.telemetry import command
 from sim.progress import shown
 from torquer.api.arguments import checked, optional_path, path_text
-from torquer.api.commissioning import CommissioningResult
 from torquer.api.errors import one_sentence
+from torquer.api.printed import CommissioningResult
 
 
 class _TelemetryOptions(Section):

@@ -14,8 +14,7 @@ from sim.validate import command
 from sim.validate.command import ValidateOptions, ValidationReport
 from sim.validate.page import as_json, line
 from torquer.api.arguments import checked, optional_path
-from torquer.api.errors import one_sentence
-from torquer.api.extras import required
+from torquer.api.errors import one_sentence, required
 from torquer.api.printed import PrintedResult
 
 if TYPE_CHECKING:

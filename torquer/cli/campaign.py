@@ -5,8 +5,7 @@ from pathlib import Path
 import click
 
 from torquer.cli.completions import of_scenarios
-from torquer.cli.numbers import Number, WholeNumber
-from torquer.cli.options import JSON, JUNIT, examples, law_and_settings, sentences
+from torquer.cli.options import JSON, JUNIT, Number, WholeNumber, examples, law_and_settings, sentences
 
 EXAMPLES = examples(
     "torquer campaign cubesat3u --runs 20 --orbits 3 --out series",

@@ -5,10 +5,11 @@ from pathlib import Path
 import click
 
 from torquer.cli.completions import of_laws
-from torquer.cli.numbers import Number, WholeNumber
 from torquer.cli.options import (
     JSON,
     SEEDS,
+    Number,
+    WholeNumber,
     examples,
     law_and_settings,
     load_scenario,

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.numbers import WholeNumber
-from torquer.cli.options import FORCE, TEXT_OUT, examples, sentences, write_text_out
+from torquer.cli.options import FORCE, TEXT_OUT, WholeNumber, examples, sentences, write_text_out
 
 EXAMPLES = examples(
     "torquer dbc > torquer.dbc",
@@ -26,6 +25,6 @@ EXAMPLES = examples(
 @sentences
 def dbc(out: Path | None, tick_hz: int, force: bool) -> None:
     """Write the messages of the bus as a DBC with cycle times, for CANalyzer, SavvyCAN, cantools."""
-    from sim.export.dbc import dbc_text
+    from sim.export.dictionary import dbc_text
 
     write_text_out(out, dbc_text(tick_hz), force)

@@ -5,8 +5,7 @@ from pathlib import Path
 import click
 
 from torquer.cli.completions import of_laws
-from torquer.cli.numbers import WholeNumber
-from torquer.cli.options import JSON, examples, law_and_settings, scenario_argument, sentences
+from torquer.cli.options import JSON, WholeNumber, examples, law_and_settings, scenario_argument, sentences
 
 EXAMPLES = examples(
     "torquer design microsat",

@@ -5,8 +5,7 @@ from pathlib import Path
 import click
 
 from torquer.cli.completions import of_fault_rows
-from torquer.cli.numbers import WholeNumber
-from torquer.cli.options import JSON, JUNIT, examples, sentences
+from torquer.cli.options import JSON, JUNIT, WholeNumber, examples, sentences
 
 EXAMPLES = examples(
     "torquer faults --list",

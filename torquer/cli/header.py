@@ -29,7 +29,7 @@ def header(scenario: str, out: Path, force: bool, settings: tuple[str, ...]) -> 
     """Write C99 that packs and unpacks the messages, and limits, levels and wiring of SCENARIO."""
     from sim.console import say
     from sim.export.c_source import c_files
-    from sim.export.destination import write_text
+    from sim.result_files import write_text
     from sim.scenario.schema import load, parse_settings
 
     files = c_files(load(scenario, parse_settings(settings)))

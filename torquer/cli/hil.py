@@ -5,10 +5,11 @@ from pathlib import Path
 import click
 
 from sim.errors import HarnessError
-from torquer.cli.numbers import Number, WholeNumber
 from torquer.cli.options import (
     JSON,
     SEEDS,
+    Number,
+    WholeNumber,
     bus_option,
     examples,
     law_and_settings,

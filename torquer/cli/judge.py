@@ -7,12 +7,13 @@ import click
 
 from sim.errors import HarnessError
 from torquer.cli.completions import of_buses, of_fault_rows
-from torquer.cli.numbers import Number, WholeNumber
 from torquer.cli.options import (
     JSON,
     JUNIT,
     SEEDS,
     SETTINGS,
+    Number,
+    WholeNumber,
     examples,
     load_scenario,
     scenario_argument,

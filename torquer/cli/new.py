@@ -6,8 +6,7 @@ from typing import Any
 
 import click
 
-from torquer.cli.numbers import Number
-from torquer.cli.options import JSON, examples, sentences
+from torquer.cli.options import JSON, Number, examples, sentences
 from torquer.cli.satellite_options import asked, satellite, satellite_options
 
 EXAMPLES = examples(

@@ -13,11 +13,27 @@ import click
 from fsw.bus.open_bus import KINDS
 from sim.console import Console, detail, fail, print_document, speaking, warn
 from torquer.cli.completions import of_buses, of_laws, of_paces, of_scenarios, of_settings
-from torquer.cli.numbers import WholeNumber
 
 if TYPE_CHECKING:
     from sim.commissioning.report import CommissioningReport
     from sim.scenario.schema import Scenario
+
+# --- Numbers as arguments: named as a reader would, in the help and where one is wrong
+
+
+class Number(click.FloatRange):
+    """A number within limits."""
+
+    name = "number"
+
+
+class WholeNumber(click.IntRange):
+    """A whole number within limits."""
+
+    name = "whole number"
+
+
+# --- Options
 
 Parameters = ParamSpec("Parameters")
 
@@ -256,7 +272,7 @@ def write_text_out(out: Path | None, text: str, force: bool) -> None:
         HarnessError: it cannot be written, or is there and may not be replaced.
     """
     from sim.console import say
-    from sim.export.destination import write_text
+    from sim.result_files import write_text
 
     if out is None:
         if force:

@@ -8,12 +8,13 @@ from click.core import ParameterSource
 
 from fsw.bus.open_bus import KINDS
 from torquer.cli.completions import of_buses
-from torquer.cli.numbers import Number, WholeNumber
 from torquer.cli.options import (
     JSON,
     SCENARIO_OF_LOG,
     SEEDS,
     SETTINGS,
+    Number,
+    WholeNumber,
     examples,
     load_scenario,
     say_report,

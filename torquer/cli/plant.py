@@ -5,11 +5,11 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.numbers import Number
 from torquer.cli.options import (
     COMPRESS,
     PACE,
     SEEDS,
+    Number,
     bus_option,
     examples,
     law_and_settings,

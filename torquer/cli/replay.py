@@ -46,7 +46,7 @@ def replay(
 ) -> int:
     """Replay a log through the flight software and compare its answers byte for byte."""
     from sim.console import answer, say
-    from sim.replay.documents import as_json
+    from sim.replay.command import as_json
     from sim.scenario.schema import parse_settings
     from torquer.api.replay import replay
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sim.errors import HarnessError
-from torquer.cli.numbers import Number
+from torquer.cli.options import Number
 
 if TYPE_CHECKING:
     from sim.new_scenario.satellite import NewSatellite

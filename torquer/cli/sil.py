@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 import click
 
 from sim.errors import HarnessError
-from torquer.cli.numbers import Number, WholeNumber
 from torquer.cli.options import (
     COMPRESS,
     JSON,
@@ -14,6 +13,8 @@ from torquer.cli.options import (
     PACE,
     SEEDS,
     SIGN,
+    Number,
+    WholeNumber,
     bus_option,
     examples,
     law_and_settings,

@@ -34,8 +34,7 @@ def size(
     in docs/sizing.md.
     """
     from sim.console import warn
-    from sim.new_scenario.command import scenario_made, scenario_text
-    from sim.new_scenario.figure_warnings import figure_warnings, in_options
+    from sim.new_scenario.command import figure_warnings, in_options, scenario_made, scenario_text
     from sim.scenario.schema import parse_settings
     from sim.sizing.command import size as command
     from sim.sizing.scenario_warnings import scenario_warnings

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import click
 
-from torquer.cli.numbers import Number
-from torquer.cli.options import JSON, examples, say_report, sentences
+from torquer.cli.options import JSON, Number, examples, say_report, sentences
 
 EXAMPLES = examples(
     "torquer telemetry PASS.csv --tle tle.txt --calibration calibration.toml",

@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from torquer.cli.numbers import WholeNumber
-from torquer.cli.options import JSON, JUNIT, examples, sentences
+from torquer.cli.options import JSON, JUNIT, WholeNumber, examples, sentences
 
 if TYPE_CHECKING:
     from sim.campaign.claim import ClaimOutcome

@@ -3,8 +3,7 @@
 import click
 
 from torquer.cli.completions import of_buses, of_paces, of_scenarios
-from torquer.cli.numbers import WholeNumber
-from torquer.cli.options import examples, sentences
+from torquer.cli.options import WholeNumber, examples, sentences
 
 EXAMPLES = examples(
     "torquer watch socketcan:vcan0",

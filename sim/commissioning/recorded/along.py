@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from fsw.core.orbit.ephemeris import EphemerisModel, Reference, advance, ephemeris_model, reference_at
 from fsw.table.flown_elements import check_flown
-from sim.commissioning.recorded.element_sets import ElementSet, nearest_elements
 from sim.commissioning.recorded.recorded_pass import RecordedPass
 from sim.commissioning.recorded.strays import stray_currents, stray_strengths, stray_values
 from sim.console import warn
 from sim.errors import HarnessError
+from sim.scenario.element_file import ElementSet, nearest_elements
 from sim.value_types import Array
 
 Integers = NDArray[np.int64]

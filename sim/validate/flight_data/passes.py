@@ -12,11 +12,11 @@ from sim.commissioning.calibrate.magnetometer import fit_magnetometer
 from sim.commissioning.calibrate.recorded import calibrate_pass
 from sim.commissioning.recorded.along import Along, along, screened
 from sim.commissioning.recorded.calibration import PassCalibration
-from sim.commissioning.recorded.element_sets import nearest_elements
 from sim.commissioning.recorded.recorded_pass import read_pass
 from sim.commissioning.telemetry.follow import Noise
 from sim.commissioning.telemetry.judge import figures, judge, rank_motions
 from sim.errors import HarnessError
+from sim.scenario.element_file import nearest_elements
 
 ELEMENTS, CALIBRATED_BY = "tle.txt", "s3_20231211T151930Z"
 INERTIA = np.array([38478.7, 38528.7, 6873.7])

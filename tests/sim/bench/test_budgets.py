@@ -3,8 +3,7 @@
 import pytest
 
 from sim.bench.budgets import Budgets, judge, percentiles, render
-from sim.bench.realtime_loop import BenchMeasurements
-from sim.bench.time_histogram import TimeHistogram
+from sim.bench.realtime_loop import BenchMeasurements, TimeHistogram
 
 BOARDS = ("coil", "sun")
 BUDGETS = Budgets(jitter_ms=10.0, latency_ms=50.0, slips=1, load_percent=20.0, memory_percent=2.0)

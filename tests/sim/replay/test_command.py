@@ -11,8 +11,7 @@ from sim.errors import HarnessError
 from sim.record import run_dir
 from sim.record.binding import Binding
 from sim.record.candump import read_log
-from sim.replay.command import LoggedRun, through_flight_software, through_plant
-from sim.replay.documents import as_json
+from sim.replay.command import LoggedRun, as_json, through_flight_software, through_plant
 
 
 @pytest.fixture

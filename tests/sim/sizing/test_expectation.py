@@ -1,13 +1,83 @@
 """What pointing to expect, against theory and against flights."""
 
+from dataclasses import replace
 from math import sqrt
 
+import numpy as np
 import pytest
 
+from sim.campaign.flight import record_scenario
 from sim.design.from_scenario import body_of
+from sim.new_scenario.command import scenario_made, scenario_text
+from sim.new_scenario.satellite import NewSatellite
+from sim.report.figures.attitude_arrays import angle_rad
+from sim.report.figures.estimate_error import estimate_error
 from sim.scenario.schema import load, parse_settings
-from sim.sizing.expectation import expect, field_across
+from sim.sizing.expectation import detumbling, detumbling_words, expect, field_across, knowledge_of
 from sim.sizing.torques import surface_torque
+
+THREE_U = NewSatellite("three-u", None, 550.0, 97.6, 4.5, (0.1, 0.1, 0.34), continuous=True, dipole_am2=0.2)
+ONE_U = NewSatellite("one-u", None, 500.0, 97.4, 1.3, (0.1, 0.1, 0.1135))
+
+
+def made(satellite, settings=None):
+    return scenario_made(scenario_text(satellite, "mine.toml"), settings)
+
+
+def test_nothing_is_unknown_where_the_plant_tells_the_attitude():
+    found = knowledge_of(load("microsat", {"knowledge": "perfect"}))
+    assert (found.rms_deg, found.most_deg) == (0.0, 0.0)
+
+
+def test_a_small_body_in_a_low_orbit_is_lost_in_the_shadow_and_a_large_high_one_is_not():
+    assert knowledge_of(made(ONE_U)).most_deg > 10.0
+    assert knowledge_of(made(replace(ONE_U, altitude_km=800.0))).most_deg < knowledge_of(made(ONE_U)).most_deg
+    assert knowledge_of(load("microsat")).most_deg < 1.0
+
+
+def test_where_the_orbit_has_no_shadow_the_sun_holds_it():
+    """A dawn-dusk orbit: the node is 90 deg from the Sun, which is at right ascension 0 at the equinox."""
+    dark, lit = ({"orbit": {"raan_deg": raan_deg, "inclination_deg": 98.0}} for raan_deg in (0.0, 90.0))
+    assert knowledge_of(made(ONE_U, lit)).most_deg < 0.3 * knowledge_of(made(ONE_U, dark)).most_deg
+
+
+@pytest.mark.parametrize(
+    "tighter",
+    [
+        {"torque_nm": 1e-9},
+        {"magnetometer_shadow_nt": 0.0},
+        {"shadow_impulse_nms": 0.0},
+        {"remanence_percent": 0.0},
+        {"storm_nt": 0.0},
+    ],
+)
+def test_a_tighter_bound_is_worth_something(tighter):
+    known, of_all = (knowledge_of(made(ONE_U, {"flight": {"uncertainty": keys}})) for keys in (tighter, {}))
+    assert known.rms_deg < of_all.rms_deg
+
+
+@pytest.mark.parametrize("up", ["x", "z"])
+def test_the_names_of_the_axes_make_no_difference(up):
+    body = {"inertia_kgm2": [0.008, 0.04, 0.041]} if up == "x" else {"inertia_kgm2": [0.04, 0.041, 0.008]}
+    body |= {"up": up, "ahead": {"x": "y", "z": "x"}[up]}
+    expected = knowledge_of(
+        made(THREE_U, {"body": {"inertia_kgm2": [0.008, 0.04, 0.041], "up": "x", "ahead": "y"}})
+    )
+    assert knowledge_of(made(THREE_U, {"body": body})).rms_deg == pytest.approx(expected.rms_deg, rel=1e-6)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [201, 202])
+def test_a_flight_is_wrong_by_a_third_to_three_times_of_it(seed):
+    scenario = made(THREE_U)
+    record = record_scenario(scenario, seed, 4.0)
+    last = slice(-5700, None)
+    error_deg = np.degrees(angle_rad(estimate_error(record.truth, record.estimates)[last]))
+    flown = float(np.sqrt(np.mean(error_deg**2)))
+    assert 1.0 / 3.0 < flown / knowledge_of(scenario).rms_deg < 3.0
+
+
+# --- What pointing to expect, against theory and against flights
 
 RESIDUAL = ("flight.uncertainty.residual_dipole_am2=0.1",)
 FLOWN_DEG = {
@@ -118,3 +188,54 @@ def test_perfect_knowledge_leaves_no_error_of_the_estimate():
 def test_the_field_across_a_coil_is_two_thirds_of_the_field_by_its_square():
     body = body_of(scenario("cubesat3u", "orbit.inclination_deg=90"))
     assert field_across(body) == pytest.approx(body.field_t * sqrt(2.5 * 2.0 / 3.0))
+
+
+# --- How long a tumble takes: by what it depends on, and against flights
+
+TUMBLES = "initial.rate_degps=[3,3,3]"
+FREE = ("coils.driver=continuous", "coils.max_dipole_am2=0.05")
+
+
+def forecast(*settings, name="cubesat6u"):
+    return detumbling(load(name, parse_settings(settings)))
+
+
+def test_it_is_as_long_as_momentum_over_torque():
+    found = forecast(TUMBLES)
+    heavier = forecast(TUMBLES, "body.inertia_kgm2=[0.102,0.24,0.308]")
+    assert heavier.to_slow_s == pytest.approx(2.0 * found.to_slow_s)
+    assert forecast(TUMBLES, "coils.levels_am2=[0.02,0.1,1.0]").to_slow_s == pytest.approx(
+        0.5 * found.to_slow_s
+    )
+    faster = forecast("initial.rate_degps=[6,6,6]")
+    assert faster.to_slow_s == pytest.approx(
+        found.to_slow_s * (faster.rate_degps - 1.0) / (found.rate_degps - 1.0)
+    )
+
+
+def test_the_limits_of_pulses_are_what_takes_long():
+    pulsed, each = forecast(TUMBLES), forecast(TUMBLES, "coils.backoff=per_coil")
+    assert pulsed.to_slow_s > each.to_slow_s > 10.0 * each.continuous_to_slow_s
+    assert pulsed.continuous_to_slow_s == each.continuous_to_slow_s
+    free = forecast(TUMBLES, "coils.driver=continuous", "coils.max_dipole_am2=0.5")
+    assert free.to_slow_s == pytest.approx(pulsed.continuous_to_slow_s)
+
+
+def test_a_slow_start_is_taken_for_a_usual_tumble():
+    assert forecast("initial.rate_degps=[0.05,0,0]").rate_degps == pytest.approx(17.32, abs=0.01)
+
+
+def test_it_is_said_in_hours_and_orbits_with_what_would_be_faster():
+    words = detumbling_words(forecast(TUMBLES), continuous=False)
+    assert words.startswith("from 5.2 deg/s under 1 deg/s in ")
+    assert 'without pulse limits, coils.driver = "continuous"' in words
+    assert "without" not in detumbling_words(forecast(TUMBLES, *FREE), continuous=True)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [31, 32])
+@pytest.mark.parametrize(("settings", "orbits"), [(FREE, 1.5), (("coils.backoff=per_coil",), 3.5)])
+def test_flights_take_no_more_than_twice_as_long_and_no_less_than_half(settings, orbits, seed):
+    scenario = load("cubesat6u", parse_settings((TUMBLES, *settings)))
+    flown_s = record_scenario(scenario, seed, orbits).summary()["rate_degps"]["under_1_s"]
+    assert 0.5 < flown_s / detumbling(scenario).to_slow_s < 2.0

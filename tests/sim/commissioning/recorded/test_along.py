@@ -7,9 +7,9 @@ import pytest
 from recorded_samples import DATA, TLE, made_up
 
 from sim.commissioning.recorded.along import along, placed, sample_hz, sampled
-from sim.commissioning.recorded.element_sets import nearest_elements
 from sim.commissioning.recorded.recorded_pass import read_pass
 from sim.errors import HarnessError
+from sim.scenario.element_file import nearest_elements
 
 
 def test_field_and_sun_are_those_of_the_plant(tmp_path):

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from recorded_samples import DATA, MATRIX, OFFSET_NT, TLE, made_up
 
 from sim.commissioning.recorded.along import along, screened
-from sim.commissioning.recorded.element_sets import nearest_elements
 from sim.commissioning.recorded.recorded_pass import read_pass
 from sim.commissioning.recorded.strays import (
     stray_currents,
@@ -16,6 +15,7 @@ from sim.commissioning.recorded.strays import (
     stray_strengths,
     stray_values,
 )
+from sim.scenario.element_file import nearest_elements
 
 PASSES = {
     "real": (DATA / "s3_20240426T041442Z.csv").read_text().splitlines(),

@@ -7,11 +7,11 @@ from scipy.spatial.transform import Rotation
 
 from sim.commissioning.recorded.along import along
 from sim.commissioning.recorded.calibration import PassCalibration
-from sim.commissioning.recorded.element_sets import nearest_elements
 from sim.commissioning.recorded.recorded_pass import read_pass
 from sim.commissioning.telemetry.follow import Noise, directions_body, filter_config, follow, without_sample
 from sim.commissioning.telemetry.spin import Spin
 from sim.errors import HarnessError
+from sim.scenario.element_file import nearest_elements
 
 KNOWN = PassCalibration(OFFSET_NT, MATRIX, (), AXES @ np.diag(RATIOS) @ AXES.T)
 NOISE = Noise(field_nt=200.0)

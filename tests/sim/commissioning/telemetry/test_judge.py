@@ -9,11 +9,11 @@ from recorded_samples import DATA, TLE
 
 from sim.commissioning.recorded.along import along
 from sim.commissioning.recorded.calibration import read_calibration
-from sim.commissioning.recorded.element_sets import nearest_elements
 from sim.commissioning.recorded.recorded_pass import read_pass
 from sim.commissioning.telemetry.follow import Noise
 from sim.commissioning.telemetry.held_back import NO_AZIMUTHS
 from sim.commissioning.telemetry.judge import figures, judge, mean_gyro, rank_motions
+from sim.scenario.element_file import nearest_elements
 
 KNOWN = read_calibration(DATA / "calibration.toml")
 

@@ -5,8 +5,7 @@ from itertools import pairwise
 import cantools
 import pytest
 
-from sim.export.dbc import dbc_text
-from sim.export.dictionary import DBC, messages
+from sim.export.dictionary import DBC, dbc_text, messages
 
 
 def cycles_ms(tick_hz):
