@@ -10,3 +10,9 @@ Flags = NDArray[np.bool_]
 Numbers = NDArray[np.int64]
 Json = dict[str, Any]
 Vec3 = tuple[float, float, float]
+
+
+def vec3(values: Array) -> Vec3:
+    """Three numbers as plain floats."""
+    x, y, z = values.tolist()
+    return (x, y, z)

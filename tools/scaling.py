@@ -23,6 +23,7 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from argument_types import count
+from bench import environment
 from jinja2 import Environment, StrictUndefined
 
 from sim.campaign.definition.campaign import Campaign
@@ -108,11 +109,6 @@ def cluster(workers: int) -> Iterator[tuple[Cluster, int]]:
             start("dask_worker", "--nthreads", "1", "--no-nanny")
         time.sleep(STARTS_S)
         yield Cluster(str(file)), scheduler.pid
-
-
-def environment() -> dict[str, str]:
-    """Of the processes: this project, one thread for linear algebra."""
-    return {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONSAFEPATH": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
 def processor_s(pid: int) -> float:

@@ -171,11 +171,11 @@ def _hardware(random: np.random.Generator, tolerances: Tolerances, factor: float
         return factor * bound * random.uniform(-1.0, 1.0, 3)
 
     def turn(bound_deg: float) -> list[float]:
-        turned: list[float] = (factor * bound_deg * random.uniform() * _direction(random)).tolist()
+        turned: list[float] = (factor * bound_deg * random.uniform() * random_direction(random)).tolist()
         return turned
 
     least, most = np.log(tolerances.residual_dipole_am2)
-    dipole = factor * np.exp(random.uniform(least, most)) * _direction(random)
+    dipole = factor * np.exp(random.uniform(least, most)) * random_direction(random)
     daily_part = float(random.uniform())
     return {
         "disturbance": {
@@ -240,7 +240,7 @@ def _changes(random: np.random.Generator, nominal: Scenario, tolerances: Toleran
         },
         "field": {"storm_nt": part(tolerances.storm_nt)},
         "disturbance": {
-            "residual_dipole_eclipse_am2": (part(dipole_am2) * _direction(random)).tolist(),
+            "residual_dipole_eclipse_am2": (part(dipole_am2) * random_direction(random)).tolist(),
             "remanence_part": part(0.01 * tolerances.remanence_percent),
             "penumbra_torque_nm": within(impulse_nms / PENUMBRA_S),
         },
@@ -248,9 +248,10 @@ def _changes(random: np.random.Generator, nominal: Scenario, tolerances: Toleran
 
 
 def _start(random: np.random.Generator, rate_degps: Interval | None) -> Nested:
-    axis, angle_deg = _direction(random), random.uniform(0.0, START_DEG)
+    axis, angle_deg = random_direction(random), random.uniform(0.0, START_DEG)
     slow_degps = START_DEGPS * random.uniform(-1.0, 1.0, 3)
-    direction, part = _direction(random), random.uniform()  # drawn in either case: the same satellite tumbles
+    # drawn in either case: the same satellite tumbles
+    direction, part = random_direction(random), random.uniform()
     if rate_degps is None:
         rate = slow_degps
     else:
@@ -279,7 +280,8 @@ def is_rigid(inertia_kgm2: Array) -> bool:
     return bool(principal[0] > 0.0 and principal[2] < principal[0] + principal[1])
 
 
-def _direction(random: np.random.Generator) -> Array:
+def random_direction(random: np.random.Generator) -> Array:
+    """A unit vector, all directions alike, (3,)."""
     vector = random.standard_normal(3)
     unit: Array = vector / np.linalg.norm(vector)
     return unit

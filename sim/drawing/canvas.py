@@ -1,7 +1,7 @@
 """How charts of the report look."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from math import ceil
 from threading import RLock
@@ -79,12 +79,17 @@ SETTINGS = RLock()
 
 
 @contextmanager
-def style() -> Iterator[None]:
-    """The look of the report, whatever the user's own matplotlib settings are; they are left as they were."""
+def look(settings: Mapping[Any, Any]) -> Iterator[None]:
+    """Settings of matplotlib, whatever the user's own are; they are left as they were."""
     with SETTINGS, matplotlib.rc_context():
         matplotlib.rcdefaults()
-        matplotlib.rcParams.update(_STYLE)
+        matplotlib.rcParams.update(settings)
         yield
+
+
+def style() -> AbstractContextManager[None]:
+    """The look of the report, whatever the user's own matplotlib settings are; they are left as they were."""
+    return look(_STYLE)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,11 +1,10 @@
 """Figures of a run for papers: their look, what each draws, and their files."""
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import matplotlib
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.axes import Axes
@@ -13,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Patch
 
-from sim.drawing.canvas import ECLIPSE, INK, SETTINGS, TimeAxis, shade
+from sim.drawing.canvas import ECLIPSE, INK, TimeAxis, look, shade
 from sim.drawing.time_chart import Panel, draw_lines
 from sim.errors import writing
 from sim.record.destination import check_folder
@@ -69,13 +68,9 @@ _STYLE: dict[Any, Any] = {
 }
 
 
-@contextmanager
-def paper_style() -> Iterator[None]:
+def paper_style() -> AbstractContextManager[None]:
     """The look of a paper, whatever the user's own matplotlib settings are; they are left as they were."""
-    with SETTINGS, matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(_STYLE)
-        yield
+    return look(_STYLE)
 
 
 # --- The figures: what of a flight each of them draws, on axes of any size

@@ -14,7 +14,7 @@ from sim.plant.config import CoilConfig
 from sim.plant.hardware.sensors import MagnetometerPhysics
 from sim.plant.rotation import ZERO, Vec3, from_vector, matrix
 from sim.plant.sensor_config import MagnetometerConfig, SunSensorConfig
-from sim.value_types import Array
+from sim.value_types import Array, vec3
 
 UNIT_T = 1e-4
 UNIT_FIELDS_T = ((UNIT_T, 0.0, 0.0), (0.0, UNIT_T, 0.0), (0.0, 0.0, UNIT_T))
@@ -56,7 +56,7 @@ def magnetometer_errors(plant: MagnetometerConfig, table: CalibrationTable) -> M
     calibration = np.array(known.matrix)
     left = calibration @ sensed - np.eye(3)
     bias_t = calibration @ (offset_t - 1e-9 * np.array(known.offset_nt))
-    return MagnetometerErrors(_triple(bias_t), _turn_rad(left), _triple(left.diagonal()))
+    return MagnetometerErrors(vec3(bias_t), _turn_rad(left), vec3(left.diagonal()))
 
 
 def sun_turn_rad(plant: SunSensorConfig, table: CalibrationTable) -> Vec3:
@@ -82,11 +82,6 @@ def coil_errors(plant: CoilConfig, table: CalibrationTable) -> Array:
 
 def _turn_rad(error: Array) -> Vec3:
     """The rotation t of -[t x], the antisymmetric part."""
-    return _triple(
+    return vec3(
         0.5 * np.array([error[1, 2] - error[2, 1], error[2, 0] - error[0, 2], error[0, 1] - error[1, 0]])
     )
-
-
-def _triple(values: Array) -> Vec3:
-    x, y, z = values.tolist()
-    return (x, y, z)

@@ -15,6 +15,7 @@ from sim.report.figures.attitude_arrays import angle_rad
 from sim.report.figures.estimate_error import estimate_error
 from sim.scenario.schema import Scenario, flight_table
 from sim.statistics.settling import spans
+from sim.validate.population.claims import isolated_units
 from sim.value_types import Array
 
 SCENARIO = "cubesat-cells"
@@ -175,11 +176,6 @@ def _back(turn: Array) -> Array:
 def names_both(flight: FlightResult) -> float:
     """1 where both crossed cells were isolated, else 0."""
     return float(set(CROSSED) <= set(flight.summary["isolated"]))
-
-
-def isolated_units(flight: FlightResult) -> float:
-    """How many units were isolated."""
-    return float(len(flight.summary["isolated"]))
 
 
 SUNLIT: Pick = summary_value("estimate_deg.rms_sunlit")

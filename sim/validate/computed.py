@@ -37,7 +37,7 @@ from sim.plant.rotation import (
     normalise,
     transform,
 )
-from sim.value_types import Array
+from sim.value_types import Array, vec3
 
 # --- The plant under a continuous PD dipole, as the theory has it
 
@@ -134,14 +134,14 @@ class ControlledPlant:
         e1 = r_m / np.linalg.norm(r_m, axis=1)[:, None]
         e3 = np.cross(r_m[0], v_mps[0])
         e3 /= np.linalg.norm(e3)
-        normal = _vec3(e3)
+        normal = vec3(e3)
         return [
             (
-                Surroundings(radius, 3.0 * w0**2, _vec3(b)),
+                Surroundings(radius, 3.0 * w0**2, vec3(b)),
                 normal,
                 from_matrix((radius, cross(normal, radius), normal)),
             )
-            for radius, b in zip(map(_vec3, e1), b_t, strict=True)
+            for radius, b in zip(map(vec3, e1), b_t, strict=True)
         ]
 
 
@@ -163,11 +163,6 @@ class _Torque:
         relative = (omega[0] - w0 * e3[0], omega[1] - w0 * e3[1], omega[2] - w0 * e3[2])
         m = pd_dipole(b, relative, error, self.plant.k_w, self.plant.k_a)
         return BodyTorque(self.plant.body.inertia_kgm2, m).at(q, omega, around)
-
-
-def _vec3(v: Array) -> Vec3:
-    x, y, z = v.tolist()
-    return (x, y, z)
 
 
 # --- The claims

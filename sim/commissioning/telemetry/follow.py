@@ -21,7 +21,7 @@ from sim.commissioning.recorded.calibration import PassCalibration
 from sim.commissioning.telemetry.spin import Spin
 from sim.errors import HarnessError
 from sim.progress import progress
-from sim.value_types import Array
+from sim.value_types import Array, vec3
 
 T_PER_NT = 1e-9
 LONGEST_GAP_S = 600.0
@@ -97,7 +97,7 @@ def filter_config(
     inertia: Array, tick_s: float, noise: Noise, inertia_sigma: Array | None = None
 ) -> MekfConfig:
     """The filter of a body whose greatest moment of inertia is 1; ``inertia_sigma``: of its six numbers."""
-    first, second, third = (_vec3(row) for row in inertia)
+    first, second, third = (vec3(row) for row in inertia)
     tensor: Mat3 = (first, second, third)
     bias_t, walk_t = T_PER_NT * noise.bias_nt, T_PER_NT * noise.bias_walk_nt_rts
     priors = {"mag_bias_t": Prior((bias_t,) * 3, (walk_t,) * 3)}
@@ -126,8 +126,8 @@ def follow(around: Along, known: PassCalibration, start: Spin, config: MekfConfi
     _check_gaps(around, rows)
     field_t = T_PER_NT * known.field_nt(around.recorded.mag_nt)
     attitude = from_dcm(_mat3(start.dcm_body_from_eci))
-    estimate = mekf.start(attitude, _vec3(start.omega_body_radps), config)
-    bias_t = _vec3(T_PER_NT * start.bias_nt)
+    estimate = mekf.start(attitude, vec3(start.omega_body_radps), config)
+    bias_t = vec3(T_PER_NT * start.bias_nt)
     estimate.parameters.mag_bias_t = bias_t
     ticks, before = [], int(around.tick[rows[0]])
     with progress(f"{around.recorded.name}, {start.rate_degps:.2f} deg/s", len(rows)) as watch:
@@ -135,7 +135,7 @@ def follow(around: Along, known: PassCalibration, start: Spin, config: MekfConfi
             now = int(around.tick[row])
             reference = around.references[now]
             coast(estimate, reference, now - before, config)
-            taken = _take(row, estimate, _vec3(field_t[row]), reference, config)
+            taken = _take(row, estimate, vec3(field_t[row]), reference, config)
             before = now
             ticks.append(taken)
             watch(done)
@@ -163,7 +163,7 @@ def without_sample(
         reference = around.references[now]
         coast(estimate, reference, now - before, config)
         before = now
-        measured = sub(_vec3(field_t[row]), estimate.parameters.mag_bias_t)
+        measured = sub(vec3(field_t[row]), estimate.parameters.mag_bias_t)
         predicted = rotate(estimate.q_body_from_eci, reference.b_eci_t)
         yield now - start, _angle_deg(measured, predicted)
 
@@ -204,17 +204,12 @@ def directions_body(followed: Followed, v_eci: Array) -> Array:
     """Directions fixed in space as the filter has them in body axes, by the rows offered to it, (n, 3)."""
     return np.array(
         [
-            rotate(one.estimate.q_body_from_eci, _vec3(v))
+            rotate(one.estimate.q_body_from_eci, vec3(v))
             for one, v in zip(followed.ticks, v_eci[followed.rows], strict=True)
         ]
     )
 
 
-def _vec3(values: Array) -> Vec3:
-    x, y, z = values.tolist()
-    return x, y, z
-
-
 def _mat3(values: Array) -> Mat3:
-    first, second, third = (_vec3(row) for row in values)
+    first, second, third = (vec3(row) for row in values)
     return first, second, third

@@ -9,6 +9,7 @@ import numpy as np
 from fsw.core.laws.plan.genetic import search
 from fsw.core.laws.predictive import best_impulse, free_rate_change, missing_impulse
 from sim.campaign.claim import Claim, ClaimOutcome, Study
+from sim.campaign.population import random_direction
 from sim.campaign.study import spread_of
 from sim.plant.environment.orbit import EARTH_RADIUS_M, MU_M3PS2
 from sim.plant.rotation import matrix, normalise
@@ -63,8 +64,8 @@ def part_left(seed: int) -> float:
     random = np.random.default_rng(seed)
     inertia = INERTIA + (seed % 2) * PRODUCTS
     inverse = np.linalg.inv(inertia)
-    matrix_rows, b = rows(inertia), vec3(random.uniform(*FIELD_T) * _direction(random))
-    omega = vec3(np.exp(random.uniform(*np.log(RATES_RADPS))) * _direction(random))
+    matrix_rows, b = rows(inertia), vec3(random.uniform(*FIELD_T) * random_direction(random))
+    omega = vec3(np.exp(random.uniform(*np.log(RATES_RADPS))) * random_direction(random))
     q0, q1, q2, q3 = random.standard_normal(4).tolist()
     attitude = matrix(normalise((q0, q1, q2, q3)))
     change = free_rate_change(
@@ -85,9 +86,3 @@ def part_left(seed: int) -> float:
     m = search(vec3(missing), b, PULSE_S, FULL_SCALE_AM2, rows(inverse), seed)
     best = cost(np.array(best_impulse(vec3(missing), b, matrix_rows)))
     return (cost(PULSE_S * np.cross(m, b)) - best) / (cost(np.zeros(3)) - best)
-
-
-def _direction(random: np.random.Generator) -> Array:
-    vector = random.standard_normal(3)
-    unit: Array = vector / np.linalg.norm(vector)
-    return unit

@@ -20,6 +20,7 @@ from sim.plant.environment.surroundings import Surroundings
 from sim.plant.own_effects import Moment
 from sim.plant.rotation import Quaternion, Vec3, matrix
 from sim.validate.review.figures import one_figure
+from sim.value_types import vec3
 
 REVIEW = "Ovchinnikov, Roldugin 2019, section 2.4"
 ALTITUDE_M = 800e3
@@ -124,11 +125,11 @@ def charge_along_field(inclination_deg: float) -> float:
     """The least over an orbit of the best P's torque along the field, |v x b| / (|v| |b|)."""
     shares = []
     for r, v, b in zip(*_orbit(inclination_deg), strict=True):
-        velocity, field_t = velocity_in_field(_vec3(r), _vec3(v)), _vec3(b)
+        velocity, field_t = velocity_in_field(vec3(r), vec3(v)), vec3(b)
         along = b / np.linalg.norm(b)
         best = np.cross(np.cross(velocity, field_t), along)
         best = best / np.maximum(np.linalg.norm(best), 1e-300)
-        torque = np.array(lorentz_torque(_vec3(best), velocity, field_t)) @ along
+        torque = np.array(lorentz_torque(vec3(best), velocity, field_t)) @ along
         shares.append(abs(float(torque)) / float(np.linalg.norm(velocity) * np.linalg.norm(b)))
     return float(np.min(shares))
 
@@ -137,7 +138,7 @@ def coils_about_normal() -> float:
     """The largest over an orbit and over unit dipoles along the axes, of |b|."""
     _, _, fields = _orbit(0.0)
     shares = [
-        torques.magnetic(_vec3(m), _vec3(b))[2] / float(np.linalg.norm(b)) for b in fields for m in np.eye(3)
+        torques.magnetic(vec3(m), vec3(b))[2] / float(np.linalg.norm(b)) for b in fields for m in np.eye(3)
     ]
     return float(np.max(np.abs(shares)))
 
@@ -193,8 +194,3 @@ def _orbit(inclination_deg: float) -> tuple[Array, Array, Array]:
     times = np.linspace(0.0, PERIOD_S, 180, endpoint=False)
     r_m, v_mps = CircularOrbit(OrbitConfig(None, ALTITUDE_M, radians(inclination_deg), 0.0, 0.0)).at(times)
     return r_m, v_mps, DirectDipole().at(times, r_m)
-
-
-def _vec3(v: Array) -> Vec3:
-    x, y, z = v.tolist()
-    return (x, y, z)

@@ -10,7 +10,7 @@ from fsw.input.schema import Nested
 from sim.campaign.claim import Study
 from sim.tuning.flown import RigidFlight
 from sim.validate.review.fifty_kg import BODY, PD
-from sim.validate.review.rigid_trial import NEAR, RigidTrial, Trial, TrialFigure, gains, over
+from sim.validate.review.rigid_trial import NEAR, RigidTrial, Trial, TrialFigure, final_rms_deg, gains, over
 from sim.value_types import Array
 
 Flights = Sequence[RigidFlight]
@@ -37,7 +37,7 @@ def feedback_trials() -> list[Trial]:
                     "bound",
                     "The same with 300 times the gain of the attitude: it is lost",
                     "deg RMS",
-                    lambda flights: _rms_deg(flights[1]),
+                    lambda flights: final_rms_deg(flights[1]),
                     low=20.0,
                 ),
             ),
@@ -99,14 +99,14 @@ def other_trials() -> list[Trial]:
                     "rms",
                     "With integrals under 1e-7 N m about each axis, tenth orbit",
                     "deg RMS",
-                    lambda flights: _rms_deg(flights[1]),
+                    lambda flights: final_rms_deg(flights[1]),
                     high=2.5,
                 ),
                 TrialFigure(
                     "gain",
                     "Without integrals over with them",
                     "1",
-                    lambda flights: _rms_deg(flights[0]) / _rms_deg(flights[1]),
+                    lambda flights: final_rms_deg(flights[0]) / final_rms_deg(flights[1]),
                     low=4.0,
                 ),
             ),
@@ -140,14 +140,9 @@ def _final(name: str, what: str, high: float) -> TrialFigure:
         name,
         f"{what}: attitude error in the sixth orbit, from 20 deg",
         "deg RMS",
-        lambda flights: _rms_deg(flights[0]),
+        lambda flights: final_rms_deg(flights[0]),
         high=high,
     )
-
-
-def _rms_deg(flight: RigidFlight) -> float:
-    """Over the last orbit."""
-    return float(np.sqrt(np.mean(flight.pointing_deg[flight.orbit(-1)] ** 2)))
 
 
 def _axes_deg(flight: RigidFlight) -> Array:

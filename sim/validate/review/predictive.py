@@ -19,11 +19,10 @@ from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.design.explicit_mpc import pieces
 from sim.design.theory.bodies import BODIES, diagonal
 from sim.design.time_optimal_slew import Slew, best, flown
-from sim.tuning.flown import RigidFlight
 from sim.validate.review.fifty_kg import DIRECTION, PD, flight
 from sim.validate.review.figures import judged
 from sim.validate.review.law_flight import LawFlight, fly
-from sim.validate.review.rigid_trial import NEAR, RigidTrial, Trial, TrialFigure, over
+from sim.validate.review.rigid_trial import NEAR, RigidTrial, Trial, TrialFigure, final_rms_deg, over
 
 BODY = BODIES[2]
 REVIEW = "Ovchinnikov, Roldugin 2019, section 3.3"
@@ -168,14 +167,14 @@ def fitted() -> Trial:
                 "model",
                 "RMS in the third orbit, the true field fitted by five functions over the field itself",
                 "1",
-                lambda flights: _rms_deg(flights[0]) / _rms_deg(flights[1]),
+                lambda flights: final_rms_deg(flights[0]) / final_rms_deg(flights[1]),
                 high=1.3,
             ),
             TrialFigure(
                 "dipole",
                 "The same over that of the regulator, which takes the field for the direct dipole's",
                 "1",
-                lambda flights: _rms_deg(flights[0]) / _rms_deg(flights[2]),
+                lambda flights: final_rms_deg(flights[0]) / final_rms_deg(flights[2]),
                 high=0.8,
             ),
         ),
@@ -193,14 +192,14 @@ def held() -> Trial:
                 "short",
                 f"The field held over {SOON:g} orbit: error in the third orbit from 20 deg",
                 "deg RMS",
-                lambda flights: _rms_deg(flights[0]),
+                lambda flights: final_rms_deg(flights[0]),
                 high=0.6,
             ),
             TrialFigure(
                 "long",
                 f"The field held over {LATE:g} orbit",
                 "deg RMS",
-                lambda flights: _rms_deg(flights[1]),
+                lambda flights: final_rms_deg(flights[1]),
                 low=10.0,
             ),
         ),
@@ -261,11 +260,6 @@ def energy_taken(law: str, gains: object = None, seconds: float = SECONDS) -> fl
 
 def _horizon(orbits: float) -> Nested:
     return {"control": {"gains": {"mpc_held": {"horizon_orbits": orbits}}}}
-
-
-def _rms_deg(flight: RigidFlight) -> float:
-    """Over the last orbit."""
-    return float(np.sqrt(np.mean(flight.pointing_deg[flight.orbit(-1)] ** 2)))
 
 
 # --- The slew of least time beside a law's, and where it ends when flown open loop (section 3.2)

@@ -4,6 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from fsw.input.schema import Nested, merge
 from sim.campaign.claim import Claim, ClaimOutcome, Study
 from sim.scenario.schema import load
@@ -100,6 +102,11 @@ class Trial:
             ).judge(one.measure(flights))
             for one in self.judged
         ]
+
+
+def final_rms_deg(flight: RigidFlight) -> float:
+    """The angle from the nominal attitude, over the last orbit."""
+    return float(np.sqrt(np.mean(flight.pointing_deg[flight.orbit(-1)] ** 2)))
 
 
 def gains(law: str, k_w: float, own: dict[str, float] | None = None, k_a: float = 0.0) -> Nested:
