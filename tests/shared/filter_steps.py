@@ -1,6 +1,21 @@
-"""The steps of the filter on a copy: the estimate before stays as it is, for a test that compares both."""
+"""A plain filter, and its steps on a copy: a test then has the estimate before and after."""
 
 from fsw.core.estimation import mekf
+from fsw.core.estimation.mekf_config import mekf_config
+
+
+def plain_filter(moments_kgm2, tick_s=1.0, **changes):
+    """A filter of attitude and rate alone, of a body with these moments of inertia."""
+    a, b, c = moments_kgm2
+    given = {
+        "magnetometer_sigma_t": 2e-7,
+        "sun_sigma_rad": 0.01,
+        "attitude_sigma_rad": 0.01,
+        "rate_sigma_radps": 0.01,
+        "torque_noise_nm_rts": 1e-9,
+        "gate_nis": 16.0,
+    } | changes
+    return mekf_config(((a, 0.0, 0.0), (0.0, b, 0.0), (0.0, 0.0, c)), tick_s, {}, **given)
 
 
 def predict(estimate, *words):

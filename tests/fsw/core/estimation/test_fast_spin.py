@@ -163,17 +163,7 @@ def test_a_bias_of_the_magnetometer_is_carried_through_the_pieces():
         "torque_body_nm": Prior((1e-4,) * 3, (0.0,) * 3),
         "dipole_body_am2": Prior((0.1,) * 3, (0.0,) * 3),
     }
-    filters = mekf_config(
-        tuple(map(tuple, J.tolist())),
-        1.0,
-        priors,
-        magnetometer_sigma_t=4e-7,
-        sun_sigma_rad=0.1,
-        attitude_sigma_rad=0.05,
-        rate_sigma_radps=0.002,
-        torque_noise_nm_rts=1e-4,
-        gate_nis=1e9,
-    )
+    filters = config(priors=priors, torque_nm_rts=1e-4)
     begun = start((1.0, 0.0, 0.0, 0.0), SPIN, filters)
     strong_t = (0.03, -0.02, 0.05)
     after = predict(begun, RADIUS, strong_t, 0.0, ZERO, filters).covariance

@@ -4,11 +4,11 @@ from math import cos, radians, sin
 
 import numpy as np
 import pytest
+from filter_steps import plain_filter
 from with_values import with_values
 
 from fsw.core.algebra.vector import cross
 from fsw.core.estimation import mekf
-from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.sensors.certainty import (
     UNSURE_RAD,
@@ -19,17 +19,7 @@ from fsw.core.fdir.sensors.certainty import (
     turn_variance,
 )
 
-CONFIG = mekf_config(
-    ((1.0, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, 0.0, 3.0)),
-    1.0,
-    {},
-    magnetometer_sigma_t=2e-7,
-    sun_sigma_rad=0.01,
-    attitude_sigma_rad=0.01,
-    rate_sigma_radps=0.01,
-    torque_noise_nm_rts=1e-9,
-    gate_nis=16.0,
-)
+CONFIG = plain_filter((1.0, 2.0, 3.0))
 AXIS = (0.6, 0.0, 0.8)
 NOISE, AXES = 0.01**2 * np.eye(3), np.eye(3)
 

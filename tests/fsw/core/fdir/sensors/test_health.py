@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 import pytest
 from cell_samples import Q_BODY_FROM_ECI, REFERENCE, cell_filter
+from filter_steps import plain_filter
 from with_values import with_values
 
 from fsw.core.algebra.quaternion import normalise, rotate
@@ -13,7 +14,6 @@ from fsw.core.algebra.vector import add, sub
 from fsw.core.estimation import mekf
 from fsw.core.estimation.cells.update import CellsUsed
 from fsw.core.estimation.estimator import Used
-from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.fdir.evidence import weights
 from fsw.core.fdir.faults import SensorFault
 from fsw.core.fdir.sensors.credibility import credibility_config
@@ -22,17 +22,7 @@ from fsw.core.fdir.sensors.pair import Pair, Standing
 from fsw.core.fdir.sensors.plausibility import Findings
 from fsw.core.fdir.sensors.watch import Watch
 
-MEKF = mekf_config(
-    ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95)),
-    1.0,
-    {},
-    magnetometer_sigma_t=2e-7,
-    sun_sigma_rad=0.01,
-    attitude_sigma_rad=0.002,
-    rate_sigma_radps=0.01,
-    torque_noise_nm_rts=1e-9,
-    gate_nis=16.0,
-)
+MEKF = plain_filter((1.02, 1.85, 1.95), attitude_sigma_rad=0.002)
 WEIGHTS = weights(40.0, 1.0)
 CONFIG = SensorConfig(WEIGHTS, credibility_config(MEKF), MEKF)
 ESTIMATE = with_values(

@@ -6,12 +6,12 @@ from math import hypot, sqrt
 import numpy as np
 import pytest
 from cell_samples import REFERENCE
+from filter_steps import plain_filter
 from with_values import with_values
 
 from fsw.core.algebra.quaternion import from_small_rotation, multiply, normalise, rotate
 from fsw.core.algebra.vector import add, scale, sub
 from fsw.core.estimation import mekf
-from fsw.core.estimation.mekf_config import mekf_config
 from fsw.core.fdir.evidence import SIGMAS
 from fsw.core.fdir.sensors.standstill import Displacement, ReadingMotion, Steps, is_frozen, update_motion
 
@@ -29,16 +29,8 @@ class Models:
 
 @cache
 def tuning(sigma_radps):
-    return mekf_config(
-        ((1.02, 0.0, 0.0), (0.0, 1.85, 0.0), (0.0, 0.0, 1.95)),
-        STEPS.tick_s,
-        {},
-        magnetometer_sigma_t=2e-7,
-        sun_sigma_rad=0.01,
-        attitude_sigma_rad=0.02,
-        rate_sigma_radps=sigma_radps,
-        torque_noise_nm_rts=1e-9,
-        gate_nis=16.0,
+    return plain_filter(
+        (1.02, 1.85, 1.95), STEPS.tick_s, attitude_sigma_rad=0.02, rate_sigma_radps=sigma_radps
     )
 
 
