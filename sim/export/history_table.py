@@ -15,8 +15,7 @@ from sim.progress import Watch
 from sim.record.estimates import Estimates
 from sim.record.truth import COLUMNS, OF_WHEEL, Histories, TruthReader
 from sim.replay.log_replay import ReplayResult, replay
-from sim.report.figures.histories import FlightHistories
-from sim.report.history_blocks import HistoryBlocks
+from sim.report.figures.histories import FlightHistories, HistoryBlocks
 from sim.scenario.schema import flight_table
 from sim.value_types import Array
 

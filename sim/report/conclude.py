@@ -18,9 +18,9 @@ from sim.record.log_index import check_against_index
 from sim.record.truth import GrowingTruth, Histories, RowsMissingError, TruthReader
 from sim.replay.log_replay import ReplayResult, replay
 from sim.report.charts.lines import Lines
+from sim.report.figures.histories import HistoryBlocks, TruthBlocks
 from sim.report.figures.performance import Performance
 from sim.report.flight_audit import audit_flight
-from sim.report.history_blocks import HistoryBlocks, TruthBlocks
 from sim.report.observed import observed_estimates
 from sim.report.page import write_report
 from sim.report.summary import BusTally, summarise

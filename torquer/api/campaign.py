@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from fsw.input.own_code import refuse_while_loading
 from sim.campaign import command
-from sim.campaign.command import PAGE, CampaignOptions, FlownCampaign
+from sim.campaign.command import PAGE, CampaignOptions, FlownCampaign, campaign_run
 from sim.campaign.report.documents import as_json
 from sim.campaign.report.text import lines
-from sim.campaign.rerun import campaign_run
 from sim.progress import shown
 from sim.scenario.settings import nested
 from torquer.api.arguments import Settings, checked, optional_path, path_text
@@ -67,7 +66,7 @@ class CampaignRuns(PrintedResult):
     @one_sentence
     def results(self) -> "pd.DataFrame":
         """A row a run, with status, seed, drawn values as ``input_KEY``, figures. Needs ``torquer[data]``."""
-        from torquer.api.tables import results  # noqa: PLC0415  an extra
+        from torquer.api.datasets import results  # noqa: PLC0415  an extra
 
         return results(self.path)
 

@@ -168,7 +168,7 @@ class Run(PrintedResult):
     @one_sentence
     def pulses(self) -> "pd.DataFrame":
         """The pulses that the coil driver reports, by start. Needs ``torquer[data]``."""
-        from torquer.api.tables import pulses  # noqa: PLC0415  an extra
+        from torquer.api.datasets import pulses  # noqa: PLC0415  an extra
 
         return pulses(self.check().report, self.scenario)
 

@@ -25,7 +25,7 @@ from torquer.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from sim.campaign.rerun import CampaignRun
+    from sim.campaign.command import CampaignRun
 
 
 EXAMPLES = examples(
@@ -120,10 +120,10 @@ def sil(
 
 def _equals(again: "CampaignRun", path: Path) -> bool:
     """Whether the run is the campaign's, bit for bit, and say so."""
-    from sim.campaign.rerun import compare
+    from sim.campaign.command import compare_with_row
     from sim.console import answer, say
 
-    equal, sentence = compare(again, path)
+    equal, sentence = compare_with_row(again, path)
     say(sentence, failed=not equal)
     answer({"equal": equal})
     return equal
@@ -152,6 +152,6 @@ def _campaign_run(
     }
     if wrong := [name for name, value in given.items() if value is not None]:
         raise HarnessError(f"{', '.join(wrong)}: with --from the run is as its campaign drew it")
-    from sim.campaign.rerun import campaign_run
+    from sim.campaign.command import campaign_run
 
     return campaign_run(source, run)

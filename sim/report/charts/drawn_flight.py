@@ -20,9 +20,9 @@ from sim.record.estimates import EstimateRecorder
 from sim.record.truth import TruthReader
 from sim.replay.log_replay import replay
 from sim.report.charts.lines import Lines
+from sim.report.figures.histories import HistoryBlocks
 from sim.report.figures.performance import BLOCK_TICKS
 from sim.report.flight_audit import audit_flight
-from sim.report.history_blocks import HistoryBlocks
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 from sim.value_types import Array
 
