@@ -12,7 +12,7 @@ from sim.campaign import population
 from sim.campaign.flight import record_scenario
 from sim.scenario.schema import load, parse_settings
 
-FIRST, MOST = 701, 20
+FIRST, MOST = 761, 20
 """Seeds of the 50 kg population that no bound was chosen by."""
 
 
