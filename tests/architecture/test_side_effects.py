@@ -109,6 +109,8 @@ def test_what_an_import_does_would_be_seen(tmp_path, monkeypatch):
         ("hil_stub.__main__", ("fsw.core", "sim", "torquer")),
         ("sim.plant.plant", ("fsw.core", "fsw.bus", "fsw.table", "sim.flight", "torquer")),
         ("sim.flight.plant_process", ("filterpy", "scipy", "matplotlib", "can")),
+        ("sim.new_scenario.command", ("filterpy", "scipy", "matplotlib", "can")),
+        ("sim.sizing.command", ("filterpy", "scipy", "matplotlib", "can")),
         ("torquer.cli.main", ("filterpy", "scipy", "matplotlib", "can", "numpy", "h5py")),
     ],
 )

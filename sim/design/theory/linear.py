@@ -24,7 +24,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.linalg import expm
 
 from sim.design.theory.bodies import Body
 from sim.value_types import Array
@@ -162,6 +161,8 @@ def gramian(body: Body) -> Array:
 
     Source: Bhat, Dham 2003; Bhat 2005; Yang 2016, as in Ovchinnikov, Roldugin 2019, introduction [4, 5, 9].
     """
+    from scipy.linalg import expm  # noqa: PLC0415  (slow to load)
+
     inertia = np.asarray(body.inertia_kgm2)
     turn = np.linalg.inv(inertia / (np.trace(inertia) / 3.0))
     u = np.linspace(0.0, 2.0 * pi, STEPS, endpoint=False) + pi / STEPS
