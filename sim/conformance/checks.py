@@ -1,6 +1,6 @@
 """The checks of a board, one function each; its docstring states the demand."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 from fsw.wire.frame import EXTENDED_FLAG, REMOTE_FLAG, Frame
@@ -339,15 +339,22 @@ def _heartbeats_due(link: BoardLink) -> list[TickReply]:
 
 def all_along(board: BoardUnderTest) -> None:
     """Exactly one sample in each tick, counters that rise by one, no broken frame."""
-    link = board.link
-    kind = link.kind
-    for reply in link.replies:
+    check_replies(board.link.replies, board.link.kind)
+
+
+def check_replies(replies: Sequence[TickReply], kind: BoardKind) -> None:
+    """Exactly one sample in each tick, counters that rise by one, no broken frame.
+
+    Raises:
+        NonconformanceError: the first that is not so.
+    """
+    for reply in replies:
         if reply.broken:
             raise NonconformanceError(f"a frame that is not intact in tick {reply.tick}: {reply.broken[0]}")
         if len(reply.only(kind.sample)) != 1 and (reply.due or reply.messages):
             received = names(reply.messages)
             raise NonconformanceError(f"not one {kind.sample.__name__} in tick {reply.tick}: {received}")
-    _check_counters([message for reply in link.replies for message in reply.messages], kind)
+    _check_counters([message for reply in replies for message in reply.messages], kind)
 
 
 def _check_counters(messages: list[AnyMessage], kind: BoardKind) -> None:

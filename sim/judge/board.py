@@ -24,6 +24,7 @@ from sim.bench.processes import hub_of, wait_or_kill
 from sim.conformance.board_link import BOARD_KINDS, BoardLink
 from sim.conformance.board_under_test import BoardLimits
 from sim.conformance.command import CheckResult, run_checks
+from sim.conformance.pauses import PauseWatch
 from sim.console import counted
 from sim.drawing.page_parts import PageHeader, PageSection, Table, sections_page
 from sim.errors import HarnessError
@@ -103,8 +104,9 @@ def check_board(
         found.append(BoardVerdict(result.name, result.what, result.failure or "", skipped))
         report(found[-1])
 
-    with _running(board, scenario, folder) as bus:
-        run_checks(BoardLink(bus, BOARD_KINDS["coil"], hz), limits, board.armed, take)
+    with _running(board, scenario, folder) as bus, PauseWatch() as watch:
+        link = BoardLink(bus, BOARD_KINDS["coil"], hz)
+        run_checks(link, limits, board.armed, take, watch.take_longest_s)
     return found
 
 

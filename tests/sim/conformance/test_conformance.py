@@ -404,3 +404,33 @@ def test_a_computer_that_is_held_up_in_every_silence_does_not_judge_the_dead_man
 def test_a_board_with_another_tick_rate_is_found_without_power(link_to, of_board, of_bench, failures):
     link = link_to(lambda: CoilBoard(CoilLimits(of_board)), of_bench)
     assert "heartbeats" in failures(run_checks(link, BoardLimits(), armed=False))
+
+
+class OnceLate:
+    """A link's bus that loses what a board sends in one tick: this computer stood still, or the board did."""
+
+    def __init__(self, bus, at_s, clock):
+        self.bus, self.at_s, self.clock, self.lost = bus, at_s, clock, False
+
+    def send(self, frames):
+        self.bus.send(frames)
+
+    def receive(self, timeout_s):
+        frame = self.bus.receive(timeout_s)
+        if frame is None or not self.at_s < self.clock() < self.at_s + 2.0:
+            return frame
+        self.lost = True
+        return None
+
+
+@pytest.mark.parametrize(("paused_s", "times"), [(0.0, 0), (0.2, 1)], ids=["board", "computer"])
+def test_a_check_that_this_computer_has_disturbed_is_run_again(link_to, failures, paused_s, times):
+    link = link_to(lambda: CoilBoard(CoilLimits(1)))
+    late = link._bus = OnceLate(link._bus, link.clock() + 400.0, link.clock)
+    pauses = [paused_s]
+    results = run_checks(
+        link, BoardLimits(), armed=True, paused_s=lambda: pauses.pop() if late.lost and pauses else 0.0
+    )
+    assert late.lost
+    assert sum(result.repeated for result in results) == times
+    assert bool(failures(results)) == (not times)

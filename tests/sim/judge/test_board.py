@@ -2,11 +2,13 @@
 
 import json
 import sys
+from itertools import count
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner
+from pauses import run_undisturbed
 
 from sim.conformance import command as conformance
 from sim.errors import HarnessError
@@ -94,7 +96,11 @@ def test_a_flight_with_it_is_audited(scenario, tmp_path):
 )
 def test_a_flight_software_of_ones_own_flies_with_it_and_is_judged(tmp_path, firmware, mistake, broken):
     tumbling = load("microsat", parse_settings((*QUICK, "initial.rate_degps=[1,1,1]")))
-    found = fly_with_board(stub(), firmware(mistake), tumbling, tmp_path, 25.0, 1)
+    folders = count()
+    found = run_undisturbed(
+        lambda: fly_with_board(stub(), firmware(mistake), tumbling, tmp_path / str(next(folders)), 25.0, 1),
+        lambda found: names(found) == broken,
+    )
     assert names(found) == broken
     assert {one.name for one in found} > {f"software: {rule}" for rule in RULES}
 
