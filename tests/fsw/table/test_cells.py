@@ -59,7 +59,7 @@ def test_full_sun_is_nominal_unless_it_is_given():
         ({"albedo": 1.5}, "cells.albedo"),
         (
             {"quantum_percent": -0.5},
-            "cells.quantum_percent = -0.5 is not allowed: .* equal to 0",
+            "cells.quantum_percent = -0.5 is not allowed: allowed is a number at least 0",
         ),
         ({"gain": [1.0]}, "cells.gain is not a known key"),
     ],
