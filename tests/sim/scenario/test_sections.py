@@ -14,7 +14,10 @@ CONTINUOUS = ("coils.driver=continuous", "coils.max_dipole_am2=12")
     [
         (["disturbance.drag={}"], ["disturbance.drag needs body.plates"]),
         (["disturbance.solar_pressure={}"], ["disturbance.solar_pressure needs body.plates"]),
-        ([PLATE, "disturbance.drag.density_scale=-1"], ["disturbance.drag.density_scale", "a number at least 0"]),
+        (
+            [PLATE, "disturbance.drag.density_scale=-1"],
+            ["disturbance.drag.density_scale", "a number at least 0"],
+        ),
         ([PLATE, "disturbance.drag.scale=1"], ["disturbance.drag.scale is not a known key"]),
         ([PLATE, "disturbance.solar_pressure.flux_wpm2=-1"], ["flux_wpm2", "a number at least 0"]),
         (["disturbance.eddy_nms_per_t2=-1"], ["eddy_nms_per_t2", "at least 0"]),
