@@ -190,6 +190,11 @@ class CheckResult(NamedTuple):
     failure: str | None = None
     repeated: int = 0
 
+    @property
+    def times_run(self) -> str:
+        """How often it was run, for what follows its text; empty where once."""
+        return f" (run {self.repeated + 1} times, as this computer stood still)" if self.repeated else ""
+
 
 MOST_REPEATED = 3
 MOST_PAUSE_S = 0.05
@@ -333,5 +338,5 @@ def _limits_text(limits: BoardLimits) -> str:
 
 def _say(result: CheckResult) -> None:
     mark = _MARKS[result.failure is None] if result.ran else "not run"
-    times = f" (run {result.repeated + 1} times, as this computer stood still)" if result.repeated else ""
-    say(f"{mark:<8}{result.name:<20} {result.failure or result.what}{times}", failed=bool(result.failure))
+    text = f"{result.failure or result.what}{result.times_run}"
+    say(f"{mark:<8}{result.name:<20} {text}", failed=bool(result.failure))

@@ -101,7 +101,8 @@ def check_board(
 
     def take(result: CheckResult) -> None:
         skipped = "" if result.ran else "it drives coils, and nothing is armed"
-        found.append(BoardVerdict(result.name, result.what, result.failure or "", skipped))
+        what, failure = f"{result.what}{result.times_run}", result.failure or ""
+        found.append(BoardVerdict(result.name, what, failure, skipped))
         report(found[-1])
 
     with _running(board, scenario, folder) as bus, PauseWatch() as watch:
