@@ -9,6 +9,7 @@ from fsw.bus.interface import Bus
 from fsw.wire.frame import Frame
 from fsw.wire.messages import NAMES, SENDERS, FswBoot, PlantBoot, TickDone, intact
 from sim.errors import FlightError
+from sim.signals import EndedBySignal
 
 BOOT_REQUEST_S = 0.25
 """Between two requests. One that comes soon after a boot has no answer: the next one must not take long."""
@@ -59,30 +60,46 @@ class Patience:
 def await_boot(
     bus: Bus, boot_s: float, overhear: Overhear | None, waiting: Callable[[float], None] | None
 ) -> Frame:
-    """Wait for FSW_BOOT; PLANT_BOOT asks flight software that booted earlier to repeat it."""
+    """Wait for FSW_BOOT; PLANT_BOOT asks flight software that booted earlier to repeat it.
+
+    Raises:
+        CounterpartError: it did not come, or another plant sends. A signal's exception has it as its cause.
+    """
     unheard: dict[Frame, None] = {}
-    began = time.monotonic()
-    while (waited_s := time.monotonic() - began) < boot_s:
-        if waiting is not None:
-            waiting(waited_s)
-        bus.send([PlantBoot(reason=0, version=1, table_crc=0).encode()])
-        deadline = min(time.monotonic() + BOOT_REQUEST_S, began + boot_s)
-        while (remaining_s := deadline - time.monotonic()) > 0.0:
-            frame = bus.receive(remaining_s)
-            if frame is None:
-                continue
-            if not intact(frame):
-                _note_unheard(unheard, frame)
-            elif frame.can_id == FswBoot.ID:
-                return frame
-            elif SENDERS[frame.can_id] == "PLANT":
-                if overhear is not None:
-                    overhear(0, [frame], [], False)
-                raise CounterpartError(f"another plant sent {NAMES[frame.can_id]} before the flight began")
-            else:
-                _note_unheard(unheard, frame)
     why = f"the flight software has not booted within {boot_s:.0f} s"
+    began = time.monotonic()
+    try:
+        while (waited_s := time.monotonic() - began) < boot_s:
+            if waiting is not None:
+                waiting(waited_s)
+            bus.send([PlantBoot(reason=0, version=1, table_crc=0).encode()])
+            boot = _boot_until(bus, min(time.monotonic() + BOOT_REQUEST_S, began + boot_s), overhear, unheard)
+            if boot is not None:
+                return boot
+    except EndedBySignal as error:
+        raise error from CounterpartError(why, unheard=tuple(unheard))
     raise CounterpartError(why, unheard=tuple(unheard))
+
+
+def _boot_until(
+    bus: Bus, deadline: float, overhear: Overhear | None, unheard: dict[Frame, None]
+) -> Frame | None:
+    """The boot, if it comes before a deadline; what comes instead is noted."""
+    while (remaining_s := deadline - time.monotonic()) > 0.0:
+        frame = bus.receive(remaining_s)
+        if frame is None:
+            continue
+        if not intact(frame):
+            _note_unheard(unheard, frame)
+        elif frame.can_id == FswBoot.ID:
+            return frame
+        elif SENDERS[frame.can_id] == "PLANT":
+            if overhear is not None:
+                overhear(0, [frame], [], False)
+            raise CounterpartError(f"another plant sent {NAMES[frame.can_id]} before the flight began")
+        else:
+            _note_unheard(unheard, frame)
+    return None
 
 
 def _note_unheard(unheard: dict[Frame, None], frame: Frame) -> None:
@@ -105,6 +122,12 @@ def frames_until(bus: Bus, deadline: float, tick: int | None = None) -> list[Fra
     If ``tick`` is given, none after its TICK_DONE.
     """
     frames: list[Frame] = []
+    _take_until(bus, deadline, tick, frames)
+    return frames
+
+
+def _take_until(bus: Bus, deadline: float, tick: int | None, frames: list[Frame]) -> None:
+    """Append them as they come, so that they are there even if a signal ends the wait."""
     late = 0
     while late < MOST_WAITING:
         left_s = max(0.0, deadline - time.monotonic())
@@ -116,26 +139,35 @@ def frames_until(bus: Bus, deadline: float, tick: int | None = None) -> list[Fra
             break
         if left_s == 0.0:
             late += 1
-    return frames
 
 
 def lockstep_answers(bus: Bus, tick: int, sync: Frame, answer_s: float) -> list[Frame]:
     """All frames up to the TICK_DONE of ``tick``, among them each repeated SYNC.
 
     Frames of other nodes do not extend the deadline.
+
+    Raises:
+        CounterpartError: it did not come. A signal's exception has it as its cause.
     """
     answers: list[Frame] = []
+    why = f"no answer from the flight software to tick {tick} within {answer_s:.0f} s"
     deadline = time.monotonic() + answer_s
-    while True:
-        answers += frames_until(bus, min(deadline, time.monotonic() + REPEAT_SYNC_S), tick)
-        if answers and _is_answer(answers[-1], tick):
-            return answers
-        if time.monotonic() >= deadline:
-            unheard = [frame for frame in answers if frame is not sync]
-            why = f"no answer from the flight software to tick {tick} within {answer_s:.0f} s"
-            raise CounterpartError(why, tick, unheard)
-        bus.send([sync])
-        answers.append(sync)
+    try:
+        while True:
+            _take_until(bus, min(deadline, time.monotonic() + REPEAT_SYNC_S), tick, answers)
+            if answers and _is_answer(answers[-1], tick):
+                return answers
+            if time.monotonic() >= deadline:
+                break
+            bus.send([sync])
+            answers.append(sync)
+    except EndedBySignal as error:
+        raise error from _unanswered(why, tick, sync, answers)
+    raise _unanswered(why, tick, sync, answers)
+
+
+def _unanswered(why: str, tick: int, sync: Frame, answers: list[Frame]) -> CounterpartError:
+    return CounterpartError(why, tick, [frame for frame in answers if frame is not sync])
 
 
 def late_answers(bus: Bus, tick: int) -> list[Frame]:

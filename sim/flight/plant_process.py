@@ -19,6 +19,7 @@ from sim.flight.fsw_answers import CounterpartError, Patience
 from sim.flight.record_flight import record_flight
 from sim.plant.errors import PlantError
 from sim.record import run_dir
+from sim.record.run_record import FrameRecord, UnheardRecord
 from sim.signals import EndedBySignal, raise_on_signals
 
 
@@ -40,16 +41,22 @@ def main(path: Path, bus: str, patience: tuple[float, float], host: tuple[int, .
             link = host_bus(*host) if host else open_bus(bus)
             record_flight(path, scenario, link, patience=Patience(boot_s, answer_s, answer_s))
     except CounterpartError as error:
-        frames = [{"id": one.can_id, "data": one.data.hex().upper()} for one in error.unheard]
-        run_dir.update(path, ended=str(error), unheard={"tick": error.tick, "frames": frames})
+        run_dir.update(path, ended=str(error), unheard=_unheard(error))
         sys.exit(1)
     except (TableError, BusError, HarnessError, PlantError) as error:
         click.echo(f"plant: {error_text(error)}", err=True)
         sys.exit(getattr(error, "exit_code", 2))
     except KeyboardInterrupt:
         sys.exit(130)
-    except EndedBySignal:
+    except EndedBySignal as error:
+        if isinstance(error.__cause__, CounterpartError) and error.__cause__.unheard:
+            run_dir.update(path, unheard=_unheard(error.__cause__))
         sys.exit(1)
+
+
+def _unheard(error: CounterpartError) -> UnheardRecord:
+    frames: list[FrameRecord] = [{"id": one.can_id, "data": one.data.hex().upper()} for one in error.unheard]
+    return {"tick": error.tick, "frames": frames}
 
 
 def _exit_with(parent: int) -> None:

@@ -1,7 +1,6 @@
 """Flights of the planted firmwares, which are programs of their own and know the wire by its bytes alone."""
 
 import dataclasses
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -26,11 +25,12 @@ def under_test(mistake="", profile=Profile.DETUMBLE, pace="lockstep", answer_s=2
 
 
 @pytest.fixture
-def flown(tmp_path):
+def flown(tmp_path, monkeypatch):
     """A judged flight of the firmware with a mistake, of ``tumbler`` with settings."""
 
-    def fly(mistake="", orbits=None, hang_s="0", settings=None, **options):
-        os.environ["HANG_S"] = hang_s
+    def fly(mistake="", orbits=None, hang_s="0", patience_s="", settings=None, **options):
+        monkeypatch.setenv("HANG_S", hang_s)
+        monkeypatch.setenv("PATIENCE_S", patience_s)
         scenario = load(TUMBLER, settings or {})
         return fly_and_judge(under_test(mistake, **options), scenario, 1, tmp_path / "run", orbits)
 

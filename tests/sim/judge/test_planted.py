@@ -152,6 +152,21 @@ def test_a_tick_done_of_another_tick_is_told(flown, mistake, words):
 @pytest.mark.parametrize(
     ("mistake", "words"),
     [
+        ("done-next", "TICK_DONE names tick 1 in the answer to tick 0: the one after it"),
+        ("boot-gives-up", "510#00010000000005, with a wrong CRC, expected 510#00010000000004"),
+    ],
+)
+def test_one_that_gives_up_before_the_plant_does_is_told_what_it_sent(flown, mistake, words):
+    flight = flown(mistake, orbits=0.05, answer_s=30.0, boot_s=30.0, patience_s="0.6")
+    end = broken(flight)["flies to its end"]
+    assert "the flight software ended with exit code 1 at tick 0" in end
+    assert words in end
+    assert end.endswith("the last that it printed is: the plant does not go on")
+
+
+@pytest.mark.parametrize(
+    ("mistake", "words"),
+    [
         ("late", "a late request in tick {0}: COIL_FIRE comes after TICK_DONE({0})"),
         ("twice", "two requests in tick {0}: COIL_FIRE comes twice in its answer"),
     ],
