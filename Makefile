@@ -79,7 +79,7 @@ sil: venv
 	$(bin)/torquer sil
 
 # a worker, a core
-test test-interpreted test-unpaced test-firmware test-paced: export OPENBLAS_NUM_THREADS = 1
+test test-interpreted test-unpaced test-firmware test-paced scenarios: export OPENBLAS_NUM_THREADS = 1
 interpreted := TORQUER_INTERPRETED=1 $(bin)/pytest $(PYTEST_FLAGS)
 
 test: venv
@@ -99,7 +99,7 @@ test-firmware: venv
 	$(bin)/pytest $(PYTEST_FLAGS) -n 1 -m "long and not paced" tests/firmware tests/sim/judge
 
 test-paced: venv
-	$(bin)/pytest $(PYTEST_FLAGS) -n 3 -m "long and paced"
+	$(bin)/pytest $(PYTEST_FLAGS) -n 5 --dist loadfile -m "long and paced"
 
 lint: environment
 	$(bin)/ruff check
@@ -153,7 +153,7 @@ fuzz: venv
 	TORQUER_FUZZ_FRAMES=1000000 TORQUER_FUZZ_MUTATIONS=1000 TORQUER_CORRUPT_PASSES=200 $(bin)/pytest -q --timeout 7200 tests/fuzz
 
 scenarios: venv
-	TORQUER_SCENARIOS=0:300 $(bin)/pytest -q tests/fuzz/test_legal_scenarios.py
+	TORQUER_SCENARIOS=0:300 $(bin)/pytest $(PYTEST_FLAGS) tests/fuzz/test_legal_scenarios.py
 
 attack: venv
 	TORQUER_ATTACK_REQUESTS=1000000 TORQUER_ATTACK_SECONDS=600 TORQUER_ATTACK_LOGS=1000 $(bin)/pytest -q -s tests/attack tests/firmware/test_attack.py tests/firmware/test_twin.py

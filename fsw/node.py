@@ -51,12 +51,15 @@ class FlightNode:
         return self.end is End.YES
 
     def receive(self, frame: Frame) -> tuple[Frame, ...]:
-        """Take one frame; return the answer, TICK_DONE last, if it is an accepted SYNC, otherwise nothing."""
+        """Take one frame; return the answer, TICK_DONE last, if it is an accepted SYNC, otherwise nothing.
+
+        PLANT_BOOT takes no place among the frames of a tick: a waiting plant repeats it, unlogged.
+        """
         if frame.can_id == Sync.ID and intact(frame):
             return self._answer(Sync.decode(frame.data))
         if frame.can_id == PlantEnd.ID and intact(frame):
             self.end = self._judge_end(PlantEnd.decode(frame.data).ticks)
-        if len(self._inbox) < MOST_INBOX_FRAMES:
+        if len(self._inbox) < MOST_INBOX_FRAMES and not (frame.can_id == PlantBoot.ID and intact(frame)):
             self._inbox.append(frame)
         return ()
 

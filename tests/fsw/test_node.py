@@ -3,6 +3,7 @@
 import pytest
 from flight_states import stepped
 
+from fsw.core.gate.readings import INBOX_LIMIT
 from fsw.core.gate.second_sender import SIGNS
 from fsw.core.gate.sync_watch import LEAP_S
 from fsw.core.state import Inbox
@@ -147,6 +148,18 @@ def test_a_plant_that_starts_is_heard_before_the_first_tick_alone(node, config):
     assert not node.is_boot_request(start.replace(data=start.data[:-1] + b"\0"))
     node.receive(sync(config, 0))
     assert not node.is_boot_request(start)
+
+
+def test_the_boot_of_a_plant_displaces_no_frame_of_a_tick(node, config):
+    """A log has none of those that a plant repeats while it waits for FSW_BOOT."""
+    other = FlightNode(config)
+    for _ in range(3):
+        node.receive(PlantBoot(0, 1, 2).encode())
+    for each in (node, other):
+        for _ in range(INBOX_LIMIT):
+            each.receive(SUN)
+        each.receive(FIELD)
+    assert node.receive(sync(config, 0)) == other.receive(sync(config, 0))
 
 
 def test_a_plant_that_starts_anew_is_heard_when_there_has_been_none_for_a_while(node, config):

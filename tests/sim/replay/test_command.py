@@ -70,6 +70,17 @@ def test_telecommands_of_the_scenario_go_up_and_not_to_the_boards(fly_run):
     assert report.ok, report.lines
 
 
+@pytest.mark.parametrize("frames", [60.0, 1000.0])
+def test_a_flood_of_frames_from_the_first_tick_on_replays_to_the_bit(fly_run, frames):
+    """More than the gate reads in a tick: which of them it reads depends on all that came before."""
+    flood = {"kind": "second_sender", "at_s": 0.0, "parameters": {"frames": frames}}
+    folder = fly_run(12, fault=[flood])
+    record = json.loads((folder / run_dir.RUN).read_text())
+    logged = LoggedRun(run_dir.read_scenario(folder), record, Binding({}))
+    report = through_flight_software(folder / run_dir.BUS_LOG, logged)
+    assert report.ok, report.lines
+
+
 def test_a_log_without_a_frame_of_the_flight_software_is_not_replayed(run):
     sync = format_line(format_time(0), "vcan0", Sync(0, 0).encode())
     with pytest.raises(HarnessError, match="no frame of the flight software in it: nothing to compare"):
