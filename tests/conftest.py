@@ -29,11 +29,12 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 EXAMPLES = Path(__file__).parents[1] / "examples"
 """Their tests, which a user copies with them, fly for many seconds and carry no mark of ours."""
 
-LONG = "pytest.mark.long"
-"""It stands in the very file that has long tests: see ``test_structure.py``."""
-
-
-INTERPRETED = ("pytest.mark.interpreted", "interpreted_alone()")
+MARKS = {
+    "long": ("pytest.mark.long",),
+    "paced": ("pytest.mark.paced",),
+    "interpreted": ("pytest.mark.interpreted", "interpreted_alone()"),
+}
+"""One of them stands in the very file that has such tests: see ``test_structure.py``."""
 
 refuse_patches(standing().modules)
 
@@ -50,13 +51,14 @@ def pytest_configure(config):
 
 
 def pytest_ignore_collect(collection_path, config):
-    """Who wants the long or the interpreted tests alone need not import files that have none."""
-    marks = {"long": (LONG,), "interpreted": INTERPRETED}.get(config.option.markexpr.partition(" ")[0])
-    if marks is None or not collection_path.name.startswith("test_"):
+    """Who wants tests of some marks alone need not import files that have none."""
+    wanted = [MARKS[word] for word in config.option.markexpr.split(" and ") if word in MARKS]
+    if not wanted or not collection_path.name.startswith("test_"):
+        return None
+    if wanted == [MARKS["long"]] and collection_path.is_relative_to(EXAMPLES):
         return None
     text = collection_path.read_text(encoding="utf-8")
-    has_some = any(mark in text for mark in marks)
-    return None if has_some or (LONG in marks and collection_path.is_relative_to(EXAMPLES)) else True
+    return None if all(any(mark in text for mark in marks) for marks in wanted) else True
 
 
 @pytest.hookimpl(tryfirst=True)

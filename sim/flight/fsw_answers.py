@@ -77,7 +77,9 @@ def await_boot(
             if boot is not None:
                 return boot
     except EndedBySignal as error:
-        raise error from CounterpartError(why, unheard=tuple(unheard))
+        # compiled code drops what stands after "from"
+        error.__cause__ = CounterpartError(why, unheard=tuple(unheard))
+        raise
     raise CounterpartError(why, unheard=tuple(unheard))
 
 
@@ -162,7 +164,8 @@ def lockstep_answers(bus: Bus, tick: int, sync: Frame, answer_s: float) -> list[
             bus.send([sync])
             answers.append(sync)
     except EndedBySignal as error:
-        raise error from _unanswered(why, tick, sync, answers)
+        error.__cause__ = _unanswered(why, tick, sync, answers)
+        raise
     raise _unanswered(why, tick, sync, answers)
 
 
