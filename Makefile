@@ -5,7 +5,7 @@
 # make test-long   those of over a sixth of a second: many orbits, processes, waits in real time; on a CAN interface where there is one: twenty minutes
 # make test-paced   of the long ones, those that keep deadlines in real time: they want a core for themselves
 # make test-unpaced   the other long ones; UNPACED has more words for pytest
-# make test-firmware   of these those of firmware in C and MicroPython, and of torquer judge
+# make test-firmware   of these those of firmware in C and MicroPython, and of torquer judge; FIRMWARE as UNPACED
 # make lint   style, types, layers, generated code, pages and pictures
 # make evidence   all that docs/ states of flights: gains, population, validate, comparison, faults, pulse limits, sizing; stopped, it goes on where it was
 # make gains population validate comparison faults pulse-limits sizing   one of them, or some
@@ -96,7 +96,7 @@ test-unpaced: venv
 	$(interpreted) -m "interpreted and long"
 
 test-firmware: venv
-	$(bin)/pytest $(PYTEST_FLAGS) -n 1 -m "long and not paced" tests/firmware tests/sim/judge
+	$(bin)/pytest $(PYTEST_FLAGS) -n 1 -m "long and not paced" tests/firmware tests/sim/judge $(FIRMWARE)
 
 test-paced: venv
 	$(bin)/pytest $(PYTEST_FLAGS) -n 5 --dist loadfile -m "long and paced"

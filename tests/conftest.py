@@ -6,8 +6,10 @@ run and on the next machine. With ``HYPOTHESIS_PROFILE=dev`` they look for new o
 
 import os
 import signal
+from collections import defaultdict
 from pathlib import Path
 from shutil import which
+from zlib import crc32
 
 import pytest
 from compiled_guard import refuse_patches
@@ -39,6 +41,14 @@ MARKS = {
 refuse_patches(standing().modules)
 
 
+def pytest_addoption(parser):
+    parser.addoption(
+        "--sample",
+        action="store_true",
+        help="of the long tests none that is slow, and one case of each function",
+    )
+
+
 def pytest_report_header():
     return f"flight code {standing()}"
 
@@ -62,7 +72,7 @@ def pytest_ignore_collect(collection_path, config):
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items):
+def pytest_collection_modifyitems(config, items):
     for item in items:
         if "chromium" in getattr(item, "fixturenames", ()):
             item.add_marker("chromium")
@@ -70,6 +80,23 @@ def pytest_collection_modifyitems(items):
             item.add_marker("long")
         if standing().modules and item.get_closest_marker("interpreted"):
             item.add_marker(pytest.mark.skip(f"make test runs it with {SWITCH}=1"))
+    if config.option.sample:
+        left_out = outside_sample(items)
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if item not in set(left_out)]
+
+
+def outside_sample(items):
+    """Of the long tests those that are slow, and all cases of a function but one, always the same."""
+    cases = defaultdict(list)
+    for item in items:
+        if item.get_closest_marker("long") and not item.get_closest_marker("whole"):
+            cases[item.nodeid.partition("[")[0]].append(item)
+    found = []
+    for function, those in cases.items():
+        chosen = those[crc32(function.encode()) % len(those)]
+        found += [item for item in those if item is not chosen or item.get_closest_marker("slow")]
+    return found
 
 
 @pytest.fixture(scope="module")

@@ -54,10 +54,10 @@ Tried, and not worth what it costs: `-O1` in place of `-O2` builds in five sixth
 then takes 2 to 4 % more instructions; hidden symbols save 0.7 % and are kept; link-time optimisation flies
 0.95 times as long, within the scatter of four pairs, and builds 1.4 times as long. Two fifths of the time
 are the runtime of Python itself (`perf record`): making and freeing floats, tuples and objects, none of them
-more than 3 %. No function of ours takes more than 6 % with what it calls there. Profile-guided optimisation, trained
-on four scenarios, flies 0.99 times as fast (median of six pairs), functions of errors marked as cold 1.07 and 1.10
-times (six and eight pairs that differ by as much among themselves), no collection of garbage 0.98 times (six pairs):
-none of them is used. Not tried: filter, boards and plant in one call of C.
+more than 3 %. No function of ours takes more than 6 % with what it calls there. Profile-guided
+optimisation, trained on four scenarios, flies 0.99 times as fast (median of six pairs), functions of errors
+marked as cold 1.07 and 1.10 times (six and eight pairs, which scatter as much), no collection of garbage 0.98
+times (six pairs): none of them is used. Not tried: filter, boards and plant in one call of C.
 """
 
 

@@ -51,6 +51,7 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.mark.long
 @pytest.mark.parametrize(("page", "least"), [("quickstart.md", 3), ("tutorial.md", 11)])
+@pytest.mark.slow
 def test_its_commands_run(page, least, folder):
     text = shortened(page)
     for name, body in files(text):

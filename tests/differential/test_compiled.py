@@ -72,6 +72,7 @@ def fly(flight, out, interpreted):
 @pytest.mark.long
 @pytest.mark.skipif(bool(standing().reason), reason="nothing is compiled")
 @pytest.mark.parametrize("number", range(FLIGHTS))
+@pytest.mark.whole
 def test_flights_are_equal_byte_for_byte(number, tmp_path):
     flight = drawn_flight(number)
     code, recorded = fly(flight, tmp_path / "compiled", interpreted=False)

@@ -208,6 +208,7 @@ for step in range(1000):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_kill_before_any_step_leaves_a_run_that_contradicts_nothing(tmp_path, torquer):
     """Every file that is opened or replaced is a moment to be killed before."""
     words = [sys.executable, "-c", KILLED_AT_EACH_STEP, tmp_path, "sil", *TINY]

@@ -19,6 +19,7 @@ OPTIONS = ("--seed", "7", "--orbits", "0.05")
 @pytest.mark.parametrize(
     ("first", "plant_command"), [("plant", ("sim.plant",)), ("fsw", ("torquer", "plant"))]
 )
+@pytest.mark.slow
 def test_either_may_start_first(first, plant_command, port, start, wait_for, sil_run, tmp_path):
     run = tmp_path / "run"
     words = {
@@ -45,6 +46,7 @@ def test_either_may_start_first(first, plant_command, port, start, wait_for, sil
     assert own["complete"] is True
 
 
+@pytest.mark.slow
 def test_on_a_bench_one_flight_software_flies_run_after_run(port, start, wait_for, tmp_path):
     """No PLANT_END ends it; it boots for the plant that comes next, so that both runs have the same log."""
     fsw = start("torquer", "fsw", "microsat", "--bus", f"loop:{port}", "--bench")

@@ -81,6 +81,7 @@ def campaign(tmp_path_factory):
     return folder, torquer("campaign", folder, "--workers", "1", "--keep", "failures")
 
 
+@pytest.mark.slow
 def test_a_killed_campaign_is_resumed_without_loss_or_repetition(campaign):
     folder, done = campaign
     task = RunTask(load_campaign(str(folder), {}, {}), Keep.NONE, folder)

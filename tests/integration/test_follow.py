@@ -67,6 +67,7 @@ def results(path):
     return [(path / name).read_bytes() for name in (run_dir.SUMMARY, run_dir.REPORT)]
 
 
+@pytest.mark.slow
 def test_its_results_are_those_of_a_replay_after_the_flight(begin):
     begun = begin(LONG)
     told = []
@@ -128,6 +129,7 @@ def test_a_process_that_is_killed_is_told_and_the_run_can_be_concluded(begun, st
     assert conclude(begun)["replay"]["bit_exact"]
 
 
+@pytest.mark.slow
 def test_a_file_that_is_locked_while_it_is_written_is_read_after_the_flight(begin, monkeypatch):
     monkeypatch.setenv("HDF5_USE_FILE_LOCKING", "TRUE")
     path = begin(LONG)

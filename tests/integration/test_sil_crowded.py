@@ -33,6 +33,7 @@ time.sleep(600)
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_rush_of_strangers_does_not_hold_up_a_flight(torquer, port, tmp_path):
     run = tmp_path / "run"
     strangers = [sys.executable, "-c", RUSH, str(run), str(port), str(CONNECTS)]

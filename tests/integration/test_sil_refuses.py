@@ -139,6 +139,7 @@ def test_a_directory_that_cannot_be_made_is_named(bus, refused):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_port_that_others_use_is_named(refused):
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]

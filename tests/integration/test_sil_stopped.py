@@ -114,6 +114,7 @@ def node_of(process, module):
     ("victim", "says"),
     [("fsw", "no answer from the flight software"), ("sim.flight.plant_process", "the plant is stalled")],
 )
+@pytest.mark.slow
 def test_so_does_the_command_itself(victim, says, start, is_alive, tmp_path):
     """With the deadlines that it has."""
     words = ("torquer", "sil", "--bus", "loop", "--orbits", "10", "--out", tmp_path / "run")

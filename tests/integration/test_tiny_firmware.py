@@ -30,6 +30,7 @@ def test_it_needs_nothing_but_the_standard_library():
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_it_brakes_a_tumble_and_nothing_is_held_against_it(tmp_path):
     out, junit = tmp_path / "run", tmp_path / "judge.xml"
     settings = [word for one in FAST for word in ("--set", one)]

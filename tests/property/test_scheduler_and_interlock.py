@@ -127,6 +127,7 @@ def machine(bench_with, only):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_whatever_happens_the_limits_hold_and_what_is_demanded_on_and_on_is_fired(bench_with, only):
     SEEN.clear()
     run_state_machine_as_test(

@@ -20,6 +20,7 @@ def test_it_is_valid_and_has_no_output(name):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_the_first_flight_runs(tmp_path):
     notebook = run_notebooks.read("first_flight", ORBITS=0.1)
     run_notebooks.execute(notebook, tmp_path)

@@ -71,6 +71,7 @@ def test_no_commit_is_one_sentence(capsys):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_flight_has_the_same_digest_again_and_another_with_more_orbits():
     digest = same_flights.flown(same_flights.ROOT, "microsat", 0.01)
     assert same_flights.flown(same_flights.ROOT, "microsat", 0.01) == digest

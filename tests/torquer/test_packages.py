@@ -49,6 +49,7 @@ def test_every_name_is_there():
     ],
     ids=["sil", "campaign"],
 )
+@pytest.mark.slow
 def test_a_folder_called_sim_harms_no_command_and_none_of_its_processes(words, folder):
     done = run(folder, "-m", "torquer", *words)
     assert "user" not in done.stderr

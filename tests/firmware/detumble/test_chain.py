@@ -28,6 +28,7 @@ def vectors(flight, tmp_path_factory):
     return read_vectors(out)
 
 
+@pytest.mark.slow
 def test_the_core_alone_answers_as_the_program_flew(flight, vectors, tmp_path):
     firmware = Firmware(loaded(compile_library(tmp_path, flight[0])))
     assert [frame.can_id for frame in firmware.boot()] == [FswBoot.ID]

@@ -40,6 +40,7 @@ PLANTED = {
 
 
 @pytest.mark.parametrize(("planted", "orbits", "says"), PLANTED.values(), ids=PLANTED)
+@pytest.mark.slow
 def test_it_is_found(tmp_path, tumbler, planted, orbits, says):
     program = compile_program(tmp_path, load(tumbler), planted)
     words = ["judge", tumbler, "--flight-software", f"{program} {{port}}", "--profile", "detumble", "--json"]

@@ -191,6 +191,7 @@ NOT_OF_THE_INTERLOCK = {Reason.MALFORMED, Reason.SECOND_DIPOLE, Reason.WRONG_BOA
 
 @pytest.mark.long
 @pytest.mark.parametrize("shared", BOTH, ids=["shared", "per_coil"])
+@pytest.mark.slow
 def test_no_reachable_state_breaks_a_limit_or_refuses_what_it_may_not(shared):
     proof = prove(shared)
     assert proof.states > (100 if shared else 10_000)

@@ -41,6 +41,7 @@ def test_the_onboard_table_is_that_of_microsat():
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_the_flight_that_the_readme_begins_with_meets_what_it_requires():
     summary = record_order(Order("realsat")).summary()
     assert [requirement["verdict"] for requirement in summary["requirements"]] == ["met"] * 3

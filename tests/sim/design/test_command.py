@@ -76,6 +76,7 @@ def test_given_gains_as_json_are_those_of_the_reference(design):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_the_best_gains_are_printed_and_drawn(design, as_searched):
     code, out, _ = design("microsat", "--out", "here")
     assert code == 0

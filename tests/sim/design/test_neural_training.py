@@ -136,6 +136,7 @@ def test_the_search_keeps_to_its_bounds_and_begins_at_constant_gains(monkeypatch
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_training_is_never_worse_than_constant_gains_and_reports(monkeypatch):
     monkeypatch.setattr(training, "POPULATION", 2)
     flown, told = trials(2, 1), []

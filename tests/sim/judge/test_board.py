@@ -74,6 +74,7 @@ def test_one_of_a_short_back_off_does_not(few_checks, scenario, tmp_path):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_what_drives_coils_is_not_checked_unarmed(few_checks, scenario, tmp_path):
     found = check_board(stub(armed=False), scenario, tmp_path)
     assert [bool(one.skipped) for one in found] == [False, False, True]

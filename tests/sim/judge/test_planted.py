@@ -179,6 +179,7 @@ def test_a_request_out_of_turn_is_told_and_is_no_second_sender(flown, mistake, w
     assert "alone on the bus" not in told
 
 
+@pytest.mark.slow
 def test_a_hang_of_10_s_is_told_where_time_counts(flown):
     flight = flown("hang", orbits=0.04, hang_s="0.52", pace="realtime:20")
     text = broken(flight)["answers each tick"]

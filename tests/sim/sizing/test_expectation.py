@@ -68,6 +68,7 @@ def test_the_names_of_the_axes_make_no_difference(up):
 
 @pytest.mark.long
 @pytest.mark.parametrize("seed", [201, 202])
+@pytest.mark.slow
 def test_a_flight_is_wrong_by_a_third_to_three_times_of_it(seed):
     scenario = made(THREE_U)
     record = record_scenario(scenario, seed, 4.0)
@@ -235,6 +236,7 @@ def test_it_is_said_in_hours_and_orbits_with_what_would_be_faster():
 @pytest.mark.long
 @pytest.mark.parametrize("seed", [31, 32])
 @pytest.mark.parametrize(("settings", "orbits"), [(FREE, 1.5), (("coils.backoff=per_coil",), 3.5)])
+@pytest.mark.slow
 def test_flights_take_no_more_than_twice_as_long_and_no_less_than_half(settings, orbits, seed):
     scenario = load("cubesat6u", parse_settings((TUMBLES, *settings)))
     flown_s = record_scenario(scenario, seed, orbits).summary()["rate_degps"]["under_1_s"]

@@ -18,6 +18,7 @@ UNSHRUNK = (Phase.generate,)
 
 @pytest.mark.long
 @pytest.mark.parametrize("scheduler", PLANTED, ids=lambda one: one.__name__)
+@pytest.mark.slow
 def test_a_planted_fault_is_found(scheduler):
     assert any(run(scheduler.__name__, seed, UNSHRUNK).violation for seed in SEEDS)
 

@@ -52,6 +52,7 @@ def demands(some):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_some_of_a_hundred_hold_a_thousand_pulses_between_reboots(some):
     calm = [one for one in some if all(stretch.reboot is Reboot.NOBODY for stretch in one.stretches)]
     longest = sorted(calm, key=lambda one: one.laps * sum(stretch.ticks for stretch in one.stretches))[-15:]

@@ -145,6 +145,7 @@ class TestCommand:
         assert {law for law, _ in searched} == {"lqr"}
 
     @pytest.mark.long
+    @pytest.mark.slow
     def test_two_processes_find_what_one_finds(self, tmp_path):
         one, two = (
             command.design_laws("microsat", {}, "pd,lqr", tmp_path / f"{workers}.toml", 5, 0.3, workers)

@@ -31,6 +31,7 @@ def test_telemetry_is_calibrated_as_by_the_command(short, command, tmp_path):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_run_is_calibrated_as_by_the_command(command, tmp_path):
     run = torquer.fly("microsat", set={"control.law": "phasing"}, orbits=0.2, out=tmp_path / "run")
     found = torquer.calibrate(run, out=tmp_path / "mine.toml")

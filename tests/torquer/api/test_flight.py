@@ -141,6 +141,7 @@ thread.join()
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_script_needs_no_guard_and_may_fly_in_a_thread(tmp_path):
     (tmp_path / "script.py").write_text(UNGUARDED)
     done = subprocess.run(

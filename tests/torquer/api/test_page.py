@@ -15,6 +15,7 @@ NAMES = set(re.findall(r"torquer\.(\w+)\(", PAGE))
 
 @pytest.mark.long
 @pytest.mark.parametrize("example", EXAMPLES, ids=range(len(EXAMPLES)))
+@pytest.mark.slow
 def test_it_runs_and_says_what_the_page_says(example, tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(plt, "show", lambda: None)

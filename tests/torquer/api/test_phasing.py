@@ -20,6 +20,7 @@ def told(run):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_it_is_what_the_command_prints(told, command):
     result = command("phasing", "microsat", "--set", "coils.wiring=[1,-2,3]")
     assert result.stdout == f"{told}\n"
@@ -34,12 +35,14 @@ def test_a_reversed_coil_is_told(told):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_the_log_of_a_run_tells_the_same_as_its_flight(told, run, command):
     printed = json.loads(command("phasing", run, "--json").stdout)
     assert printed | json.loads(json.dumps(told.values)) == printed
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_scenario_as_an_object_may_be_given():
     assert torquer.phasing(torquer.scenarios()["microsat"]).ok
 

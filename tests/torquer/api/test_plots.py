@@ -90,6 +90,7 @@ def test_all_are_written_into_the_folder_of_the_run(copy):
 
 @pytest.mark.long
 @pytest.mark.parametrize("kind", ["pdf", "svg"])
+@pytest.mark.slow
 def test_another_process_writes_the_same_bytes(copy, kind):
     files = torquer.report(copy, figures=kind).figures
     before = [file.read_bytes() for file in files]

@@ -29,6 +29,7 @@ def code(*words):
     return ended.value.code
 
 
+@pytest.mark.slow
 def test_several_runs_make_a_page_of_requirements_beside_them(runs, capsys):
     assert code("report", runs / "loose", runs / "tight") == 1
     said = capsys.readouterr()
@@ -39,6 +40,7 @@ def test_several_runs_make_a_page_of_requirements_beside_them(runs, capsys):
     assert 'href="tight/report.html"' in page
 
 
+@pytest.mark.slow
 def test_the_document_and_junit_have_every_run(runs, tmp_path, capsys):
     page, junit = tmp_path / "p.html", tmp_path / "j.xml"
     assert code("report", runs / "loose", runs / "tight", "--out", page, "--junit", junit, "--json") == 1

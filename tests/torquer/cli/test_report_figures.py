@@ -26,6 +26,7 @@ def report(*words):
     return CliRunner().invoke(main, ["report", *map(str, words)])
 
 
+@pytest.mark.slow
 def test_it_says_which_figures_it_has_drawn(run):
     result = report(run, "--figures", "pdf")
     assert result.exit_code == 0

@@ -62,6 +62,7 @@ class Sleeps(RunTask):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_rows_are_those_of_one_process_until_the_scheduler_is_lost(small, cluster, monkeypatch):
     monkeypatch.setattr("sim.campaign.executors.cluster.CONNECT_S", 3.0)
     file, scheduler = cluster

@@ -68,6 +68,7 @@ def test_in_the_dark_the_wiring_of_the_magnetometer_is_not_told_and_no_verdict_i
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_sun_sensor_that_lies_is_told_as_a_thing_that_no_wiring_explains(flown):
     _, samples, table = flown()
     draw = np.random.default_rng(1)

@@ -163,6 +163,7 @@ def replace_delay(samples):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_short_log_of_a_body_that_turns_about_one_axis_leaves_an_offset_and_gives_no_table():
     short = calibrated(log(ticks=420, rate=(0.0, 0.001, 0.003)), TABLE)
     assert any("the offset along" in one for one in list_undetermined(short))
