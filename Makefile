@@ -99,7 +99,8 @@ test-firmware: venv
 	$(bin)/pytest $(PYTEST_FLAGS) -n 1 -m "long and not paced" tests/firmware tests/sim/judge $(FIRMWARE)
 
 test-paced: venv
-	$(bin)/pytest $(PYTEST_FLAGS) -n 5 --dist loadfile -m "long and paced"
+	$(bin)/pytest $(PYTEST_FLAGS) -n 0 -m "long and paced and alone"
+	$(bin)/pytest $(PYTEST_FLAGS) -n 4 --dist loadfile -m "long and paced and not alone"
 
 lint: environment
 	$(bin)/ruff check

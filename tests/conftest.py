@@ -34,6 +34,7 @@ EXAMPLES = Path(__file__).parents[1] / "examples"
 MARKS = {
     "long": ("pytest.mark.long",),
     "paced": ("pytest.mark.paced",),
+    "alone": ("pytest.mark.alone",),
     "interpreted": ("pytest.mark.interpreted", "interpreted_alone()"),
 }
 """One of them stands in the very file that has such tests: see ``test_structure.py``."""

@@ -48,7 +48,7 @@ def test_every_test_is_of_a_module_or_says_what_it_specifies(path):
     assert any(module.exists() for module in modules) or ast.get_docstring(ast.parse(path.read_text()))
 
 
-@pytest.mark.parametrize("mark", ["long", "paced", "interpreted"])
+@pytest.mark.parametrize("mark", ["long", "paced", "alone", "interpreted"])
 def test_a_mark_that_is_looked_for_stands_in_the_file_of_its_tests(mark):
     """Of a file without it ``pytest -m MARK`` imports nothing."""
     files = set((ROOT / "tests").rglob("*.py")) - {ROOT / "tests" / "conftest.py"}

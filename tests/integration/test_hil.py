@@ -14,7 +14,7 @@ from fsw.bus.open_bus import open_bus
 from fsw.wire.messages import MagField, SunVector, TcAck, TcLaw, TcMode
 from torquer.cli.main import main
 
-pytestmark = [pytest.mark.long, pytest.mark.paced]
+pytestmark = [pytest.mark.long, pytest.mark.paced, pytest.mark.alone]
 
 SHORT = ("--set", "coils.pulse_s=0.5", "--set", "coils.backoff_s=1.0", "--tick-hz", "10")
 LOOSE = ("--jitter-ms", "1000", "--latency-ms", "1000", "--slips", "15")

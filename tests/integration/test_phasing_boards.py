@@ -19,7 +19,7 @@ from sim.record.candump import read_log
 from sim.record.pace import Pace
 from sim.scenario.schema import load, parse_settings
 
-pytestmark = [pytest.mark.long, pytest.mark.paced]
+pytestmark = [pytest.mark.long, pytest.mark.paced, pytest.mark.alone]
 
 QUICK = (
     "time.tick_hz=10",
