@@ -2,7 +2,7 @@
 # make test   the tests, but for the long ones: some three minutes; by the compiled flight code, those that replace parts of it interpreted
 # make compiled   does the flight code run compiled? if not, why not, and an error
 # make test-interpreted   the tests, but for the long ones, all interpreted
-# make test-long   those of over a sixth of a second: many orbits, processes, waits in real time; on a CAN interface where there is one: twenty minutes
+# make test-long   those of over a sixth of a second: many orbits, processes, waits in real time; on a CAN interface where there is one: half an hour
 # make test-paced   of the long ones, those that keep deadlines in real time: they want a core for themselves
 # make test-unpaced   the other long ones; UNPACED has more words for pytest
 # make test-firmware   of these those of firmware in C and MicroPython, and of torquer judge; FIRMWARE as UNPACED
@@ -93,7 +93,7 @@ test-long: test-unpaced test-paced
 
 test-unpaced: venv
 	$(bin)/pytest $(PYTEST_FLAGS) -n 3 --durations=30 -m "long and not paced" $(UNPACED)
-	$(interpreted) -m "interpreted and long"
+	$(interpreted) -m "interpreted and long" $(UNPACED)
 
 test-firmware: venv
 	$(bin)/pytest $(PYTEST_FLAGS) -n 1 -m "long and not paced" tests/firmware tests/sim/judge $(FIRMWARE)

@@ -33,6 +33,7 @@ GAIN = {"control.gains.damp.damping_nms_per_t2": 3e6}
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_its_script_flies_and_replays(folder):
     done = subprocess.run(
         [sys.executable, "script.py"], cwd=folder, capture_output=True, text=True, check=False

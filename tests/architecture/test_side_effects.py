@@ -75,6 +75,7 @@ def watched(modules, first="sys"):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_importing_every_module_does_nothing_else():
     ours = list(names("fsw", "hil_stub", "sim"))
     doings, loaded = watched(ours, first=LIBRARIES)

@@ -23,5 +23,6 @@ def figures(satellite, algebra):
 
 @pytest.mark.long
 @pytest.mark.parametrize("satellite", range(900, 910))
+@pytest.mark.slow
 def test_a_flight_has_the_same_figures(satellite):
     assert figures(satellite, "kernel") == pytest.approx(figures(satellite, "filterpy"), rel=0.01)

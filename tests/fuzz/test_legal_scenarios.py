@@ -34,6 +34,7 @@ def orbits_of(scenario, orbits):
 
 
 @pytest.mark.parametrize("number", range(FIRST, PAST))
+@pytest.mark.slow
 def test_it_flies_and_is_read_and_judged_the_same(number, tmp_path, monkeypatch):
     if number % 8:  # drawing takes longer than a flight
         monkeypatch.setattr(conclude, "write_report", lambda path, *rest: path.write_text(""))

@@ -73,6 +73,7 @@ READ_BY = {
 @pytest.mark.long
 @pytest.mark.parametrize("name", READ_BY)
 @pytest.mark.usefixtures("no_charts")
+@pytest.mark.slow
 def test_a_file_of_a_run(run, flown, mutated, name):
     @fuzzed
     @given(mutated(flown[name]), st.sampled_from(READ_BY[name]))
@@ -245,6 +246,7 @@ covariance = [[1.0, 0.01], [0.01, 0.1]]
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["campaign.toml", "results.sqlite"])
+@pytest.mark.slow
 def test_a_campaign_of_which_a_run_flies_again(mutated, scenario_file, tmp_path, name):
     folder, out = tmp_path / "campaign", tmp_path / "out"
     folder.mkdir()

@@ -132,6 +132,7 @@ def with_files_of_at_most(size):
 
 @pytest.mark.long
 @pytest.mark.parametrize("bus", ["virtual", "loop"])
+@pytest.mark.slow
 def test_a_full_disk_ends_the_flight_with_what_was_flown_kept(bus, start, tmp_path, torquer, sil_run):
     folder, limit = tmp_path / "run", with_files_of_at_most(180_000)
     words = ("torquer", "sil", "microsat", *LONGER, "--bus", bus, "--out", folder)
@@ -168,6 +169,7 @@ def test_a_disk_too_small_for_the_histories_is_known_before_the_flight(start, tm
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_disk_that_is_full_after_the_flight_loses_the_report_alone(start, tmp_path, torquer):
     """The report of a short flight is longer than its log and histories."""
     words = ("torquer", "sil", "microsat", "--orbits", "0.02", "--bus", "virtual")

@@ -272,6 +272,7 @@ LOOSE_BENCH = (
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_the_bench_binds_its_log_and_its_numbers(torquer, tmp_path):
     run = tmp_path / "run"
     assert torquer(*LOOSE_BENCH, "--bus", "loop", "--out", run).err == ""
@@ -309,6 +310,7 @@ def keys(tmp_path):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_signed_run_is_verified_by_every_command(torquer, keys, tmp_path):
     key, public, other = keys
     run = tmp_path / "signed"
@@ -356,6 +358,7 @@ def test_a_signature_that_does_not_cover_a_file_is_not_enough(run, torquer, keys
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_report_says_that_a_signature_no_longer_holds_and_signs_anew(run, torquer, keys):
     key, public, _ = keys
     assert torquer("report", run, "--sign", key).code == 0

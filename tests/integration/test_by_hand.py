@@ -59,6 +59,7 @@ def test_on_a_bench_one_flight_software_flies_run_after_run(port, start, wait_fo
     assert (runs[0] / "bus.log").read_bytes() == (runs[1] / "bus.log").read_bytes()
 
 
+@pytest.mark.slow
 def test_a_stranger_who_forges_sync_and_the_end_does_not_stop_the_flight(port, start, torquer, bus, tmp_path):
     """One that is strange, two that are not, and ends of any count: every tick is flown, and replays."""
     run, random = tmp_path / "run", Random(4)
@@ -87,6 +88,7 @@ def test_a_stranger_who_forges_sync_and_the_end_does_not_stop_the_flight(port, s
     assert done >= set(range(270))
 
 
+@pytest.mark.slow
 def test_sil_is_a_guest_where_others_host_the_bus(port, torquer, bus, tmp_path):
     run = tmp_path / "run"
     with can.Bus(interface="loop", channel=port) as listener:

@@ -114,6 +114,7 @@ def test_the_page_and_the_text_say_what_happened(campaign):
     assert "default-src 'none'" in page.replace("&#39;", "'"), "nothing is loaded from elsewhere"
 
 
+@pytest.mark.slow
 def test_a_scenario_whose_runs_differ_by_their_seed_alone_is_a_campaign(tmp_path):
     """Nothing is dispersed: there is no input to correlate with, and no picture of any."""
     ended = torquer(
@@ -230,6 +231,7 @@ high = 0.06
 """
 
 
+@pytest.mark.slow
 def test_runs_of_different_lengths_have_a_page(tmp_path):
     (tmp_path / "some.toml").write_text(OF_DIFFERENT_LENGTHS)
     words = ("campaign", tmp_path / "some.toml", "--workers", "1", "--out", tmp_path / "out")

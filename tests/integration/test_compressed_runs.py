@@ -113,6 +113,7 @@ def test_a_run_is_not_begun_where_there_is_one(run, torquer):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_flight_of_two_processes_is_followed_and_its_progress_known(tmp_path, torquer, monkeypatch):
     """The replay in another process reads the log as it grows."""
     monkeypatch.setattr(following, "LEAST_TICKS", 100)

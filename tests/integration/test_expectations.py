@@ -22,6 +22,7 @@ def missed(tmp_path_factory):
     return torquer("sil", *words, "--expect", "ape<2", "--expect", "duty<9"), path
 
 
+@pytest.mark.slow
 def test_a_flight_that_misses_what_is_expected_fails(missed):
     done, path = missed
     assert done.exit_code == 1
@@ -36,6 +37,7 @@ def test_a_flight_that_misses_what_is_expected_fails(missed):
     assert "Requirement missed: APE" in (path / "report.html").read_text()
 
 
+@pytest.mark.slow
 def test_the_report_of_the_run_judges_it_again(missed):
     _, path = missed
     done = torquer("report", path)

@@ -39,6 +39,7 @@ def folder(tmp_path, monkeypatch):
 LAW = "projected_pd.py:projected_pd"
 
 
+@pytest.mark.slow
 def test_two_processes_fly_what_one_does(torquer, folder, bus):
     assert torquer("sil", "microsat", *SHORT, "--bus", "loop", "--law", LAW, "--out", "two").code == 0
     assert torquer("sil", "microsat", *SHORT, "--bus", "virtual", "--law", LAW, "--out", "one").code == 0

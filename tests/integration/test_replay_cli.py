@@ -227,6 +227,7 @@ def test_a_line_that_is_none_is_named(copy, torquer):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_cut_anywhere_it_says_where_it_ends(tiny, torquer):
     whole = tiny.log.read_bytes()
     ends = [place + 1 for place, byte in enumerate(whole) if byte == ord("\n")]

@@ -82,6 +82,7 @@ SYNC = Sync(AT, EPOCH + AT)
     ],
     ids=lambda message: f"{type(message).__name__}-{message.values()[0]}",
 )
+@pytest.mark.slow
 def test_one_frame_in_flight_fails_the_run_and_is_named(forged, port, torquer, tmp_path):
     run = tmp_path / "run"
     with Stranger(port, once(SYNC, forged.encode())):
@@ -98,6 +99,7 @@ def test_one_frame_in_flight_fails_the_run_and_is_named(forged, port, torquer, t
         assert (again.code, again.sentence) == (1, done.sentence)
 
 
+@pytest.mark.slow
 def test_a_forged_answer_is_at_least_a_replay_that_is_not_exact(port, torquer, tmp_path):
     with Stranger(port, once(SYNC, NavAttitude(1, 0.1, 0.2, 0.3).encode())):
         done = torquer("sil", *FLIGHT, "--bus", f"loop:{port}", "--out", tmp_path / "run")
@@ -105,6 +107,7 @@ def test_a_forged_answer_is_at_least_a_replay_that_is_not_exact(port, torquer, t
     assert "NAV_ATTITUDE" in done.sentence
 
 
+@pytest.mark.slow
 def test_the_ground_is_no_second_sender(port, torquer, tmp_path):
     with Stranger(port, once(SYNC, TcSpin(0.01).encode())):
         done = torquer("sil", *FLIGHT, "--bus", f"loop:{port}", "--out", tmp_path / "run")
@@ -112,6 +115,7 @@ def test_the_ground_is_no_second_sender(port, torquer, tmp_path):
     assert "second_senders" not in json.loads((tmp_path / "run" / "summary.json").read_text())
 
 
+@pytest.mark.slow
 def test_noise_fails_nothing_and_the_log_replays_with_it(port, torquer, bus, tmp_path):
     """Some of it meets the plant's own frames: which came first the answers tell."""
     noise = (
@@ -142,6 +146,7 @@ def test_a_bus_on_which_a_node_waits_is_refused(command, boot, port, start, torq
     node.process.kill()
 
 
+@pytest.mark.slow
 def test_a_board_that_waits_there_is_named_in_the_flight(port, start, torquer, tmp_path):
     hub = LoopLink(port)
     board = start("hil_stub", "magnetometer", "--bus", f"loop:{port}")
@@ -153,6 +158,7 @@ def test_a_board_that_waits_there_is_named_in_the_flight(port, start, torquer, t
     board.process.kill()
 
 
+@pytest.mark.slow
 def test_of_two_flights_at_once_no_two_succeed(port, start, torquer, tmp_path):
     words = ("torquer", "sil", "microsat", "--orbits", "0.1", "--bus", f"loop:{port}", "--out")
     flights = [start(*words, tmp_path / name) for name in ("one", "other")]

@@ -159,6 +159,7 @@ def test_without_out_a_run_is_named_by_scenario_and_time(torquer, tmp_path, monk
     assert [path.name for path in tmp_path.iterdir()] == ["runs"]
 
 
+@pytest.mark.slow
 def test_the_nodes_run_the_same_code_whatever_lies_around(torquer, tmp_path, monkeypatch):
     for package in ("fsw", "sim", "sim/plant", "can"):
         (tmp_path / package).mkdir()
@@ -202,6 +203,7 @@ def test_another_seed_gives_other_samples(run, sil_run, bus):
     ],
     ids=lambda value: value if isinstance(value, str) else " ".join(value[1:]) or "default",
 )  # fmt: skip
+@pytest.mark.slow
 def test_loop_and_virtual_carry_the_same_frames_in_the_same_order(scenario, settings, sil_run, bus, torquer):
     options = [word for setting in settings for word in ("--set", setting)]
     two, one = (sil_run(scenario, *options, "--bus", kind) for kind in ("loop", "virtual"))

@@ -115,6 +115,7 @@ RANDOM = random.Random(20150327)
     ],
     ids=lambda value: getattr(value, "name", value),
 )
+@pytest.mark.slow
 def test_a_killed_node_ends_the_run(victim, signum, lines, flight, bus, torquer):
     sil_run = flight()
     sil_run.reach(lines)
@@ -152,6 +153,7 @@ def test_a_node_killed_before_the_first_tick_ends_the_run(victim, flight, torque
         assert str(sil_run.run) in done.sentence
 
 
+@pytest.mark.slow
 def test_ctrl_c_is_one_sentence(flight, bus, torquer):
     sil_run = flight()
     sil_run.reach(500)
@@ -166,6 +168,7 @@ def test_ctrl_c_is_one_sentence(flight, bus, torquer):
 @pytest.mark.parametrize(
     ("signum", "code"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)], ids=["SIGTERM", "SIGHUP"]
 )
+@pytest.mark.slow
 def test_who_is_asked_to_end_says_so_and_ends_its_nodes(signum, code, flight, bus, torquer):
     sil_run = flight()
     sil_run.reach(500)
@@ -177,6 +180,7 @@ def test_who_is_asked_to_end_says_so_and_ends_its_nodes(signum, code, flight, bu
     readable(sil_run.run, bus, torquer)
 
 
+@pytest.mark.slow
 def test_nodes_end_by_themselves_when_sil_is_gone(flight):
     sil_run = flight()
     sil_run.sil.process.kill()
@@ -197,6 +201,7 @@ def test_nodes_on_a_can_interface_end_with_sil(vcan0, flight, bus):
     assert bus(sil_run.run).frames[-1].can_id == TickDone.ID
 
 
+@pytest.mark.slow
 def test_flight_software_that_stands_still_for_a_second_is_waited_for(
     start, is_alive, tmp_path, bus, torquer, sil_run
 ):

@@ -17,6 +17,7 @@ def multicast(monkeypatch, port):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_it_is_the_flight_of_any_other_bus(torquer, multicast, sil_run, bus, tmp_path):
     run = tmp_path / "run"
     assert torquer(*FLIGHT, "--bus", "can", "--out", run).code == 0

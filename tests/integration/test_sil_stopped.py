@@ -74,6 +74,7 @@ def flight(tmp_path, monkeypatch, is_alive):
     ("victim", "says"),
     [("fsw", "no answer from the flight software"), ("sim.flight.plant_process", "the plant is stalled")],
 )
+@pytest.mark.slow
 def test_one_that_stands_still_in_flight_ends_it(victim, says, pace, flight, tmp_path, torquer, bus):
     sentence, took_s = flight(victim, 500, pace)
     assert sentence.startswith(says)
@@ -86,11 +87,13 @@ def test_one_that_stands_still_in_flight_ends_it(victim, says, pace, flight, tmp
     assert "incomplete" in replayed.out
 
 
+@pytest.mark.slow
 def test_flight_software_that_never_boots_ends_it(flight):
     sentence, _ = flight("fsw", 0, LOCKSTEP, Patience(boot_s=5.0, answer_s=1.5))
     assert sentence.startswith("the flight software has not booted within 5 s")
 
 
+@pytest.mark.slow
 def test_a_plant_that_never_begins_ends_it(flight):
     sentence, _ = flight("sim.flight.plant_process", 0, LOCKSTEP, Patience(boot_s=2.0, answer_s=1.5))
     assert sentence.startswith("the plant is stalled: its log has not grown for")

@@ -74,6 +74,7 @@ def test_so_are_foreign_results(tmp_path):
     check_harmless(sent)
 
 
+@pytest.mark.slow
 def test_our_own_bar_is_drawn(tmp_path):
     code, sent = on_terminal(
         "sil", "microsat", "--orbits", "0.2", "--bus", "virtual", "--out", tmp_path / "run"

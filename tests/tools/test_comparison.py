@@ -74,6 +74,7 @@ def test_the_table_of_a_satellite_has_every_law_best_first():
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_all_satellites_are_flown_and_drawn(out, flown):
     assert main(["--out", str(out)]) == 0
     assert flown == list(SATELLITES)

@@ -177,6 +177,7 @@ class TestSmallGroup:
         )
         return json.loads(done.stdout)
 
+    @pytest.mark.slow
     def test_flies_compiled_to_the_bits_of_the_interpreted_one(self, root):
         code, bits, reached = self.run(root)
         assert (code, reached) == ("compiled", True)

@@ -85,6 +85,7 @@ def test_a_flight_that_fails_leaves_the_page_that_is_there(run, flown, tmp_path,
     assert page.read_text() == "of hundreds of flights"
 
 
+@pytest.mark.slow
 def test_pictures_are_the_same_for_the_same_flights(run, tmp_path):
     run()
     pictures = [tmp_path / name for name in ("page.svg", "page-sweep.svg")]

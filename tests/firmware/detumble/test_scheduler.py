@@ -45,6 +45,7 @@ def _single(value):
 
 @pytest.mark.long
 @pytest.mark.parametrize("settings", SETTINGS.values(), ids=SETTINGS)
+@pytest.mark.slow
 def test_it_fires_the_same_pulses(firmware_of, settings):
     firmware = firmware_of("microsat", *settings)
     config = flight_config(flight_table(load("microsat", parse_settings(settings)))).coils.pulses

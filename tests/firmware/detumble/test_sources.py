@@ -46,6 +46,7 @@ def test_its_own_tests_pass(contract, tmp_path):
 
 @pytest.mark.long
 @needs("cppcheck", "cppcheck")
+@pytest.mark.slow
 def test_it_is_free_of_findings_of_misra_and_cppcheck(contract):
     files = [path for path in CORE if path.suffix == ".c"]
     includes = [f"-I{FIRMWARE / folder}" for folder in ("gains", "src")]

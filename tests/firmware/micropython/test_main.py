@@ -66,6 +66,7 @@ def flown(tmp_path_factory):
 
 @pytest.mark.long
 @pytest.mark.parametrize("interpreter", INTERPRETERS)
+@pytest.mark.slow
 def test_nothing_is_held_against_it(flown, interpreter):
     flight = flown(interpreter)
     assert flight.ok, failed_text(flight)
@@ -83,6 +84,7 @@ def test_both_interpreters_send_the_same_frames(flown):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_wrong_sign_would_be_found(tmp_path):
     planted = shutil.copytree(EXAMPLE, tmp_path / "planted")
     numbers = planted / "satellite.py"

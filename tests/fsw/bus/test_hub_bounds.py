@@ -329,6 +329,7 @@ class TestRush:
         [(0, b""), (DESCRIPTORS, b"half a"), (DESCRIPTORS, b"GET / HTTP/1.1\r\n" * 4)],
         ids=["closed at once", "kept with half a record", "kept strangers"],
     )
+    @pytest.mark.slow
     def test_of_connects(self, serve, run, kept, says):
         process, port = serve()
         here, there = LoopLink(port, may_host=False), LoopLink(port, may_host=False)

@@ -211,6 +211,7 @@ def test_no_reachable_state_breaks_a_limit(search, small, claim, shared, record_
 
 @pytest.mark.long
 @pytest.mark.parametrize("shared", BOTH, ids=["shared", "per coil"])
+@pytest.mark.slow
 def test_whatever_has_happened_a_demanded_coil_fires_once_messages_arrive_again(search, small, shared):
     """A back-off after the end of the last pulse, and at most two ticks until the board tells of the coil."""
     setup = both_together(small[shared])

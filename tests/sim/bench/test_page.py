@@ -64,6 +64,7 @@ def test_memory_that_was_hardly_sampled_is_not_drawn(kib):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_memory_is_drawn_in_a_browser(look, tmp_path):
     (tmp_path / "hil.html").write_text(hil_page(numbers(), 0), encoding="utf-8")
     page = look(tmp_path / "hil.html", width=390, dark=True)

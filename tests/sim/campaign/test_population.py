@@ -209,6 +209,7 @@ QUIET = {
 
 @pytest.mark.long
 @pytest.mark.parametrize(("torque_nm", "honest"), [(None, True), (6e-9, False)])
+@pytest.mark.slow
 def test_a_6u_that_declares_nothing_is_honest_where_drag_outweighs_light(torque_nm, honest):
     """At 550 km; 6e-9 N m, an ordinary torque for its size by light alone, is too little there.
 

@@ -14,6 +14,7 @@ from sim.scenario.schema import load, parse_settings
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_the_progress_never_goes_back(searched):
     progress = searched[2]
     assert progress == sorted(progress)

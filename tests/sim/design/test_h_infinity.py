@@ -146,6 +146,7 @@ def test_the_table_is_the_pd_law():
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_the_gains_found_bear_the_worst_torque_better(pd_case):
     found = best_pd(*pd_case, PRINCIPAL_UNIT_NM, START)
     before = norms(*pd_case, pd_tabulated(pd_case[1], *START), PRINCIPAL_UNIT_NM).h_infinity

@@ -151,6 +151,7 @@ def test_no_coil_gives_more_than_its_dipole():
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_the_search_shortens_the_longest_settling():
     """The claim of the source, beside gains chosen for the end of the motion."""
     start, _ = best_on_line(FIFTY)

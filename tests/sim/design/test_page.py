@@ -14,6 +14,7 @@ def page(searched):
     return design_page(analysis, scenario, picture_maps(analysis))
 
 
+@pytest.mark.slow
 def test_it_holds_the_pictures_and_all_figures(page):
     for words in ('id="chart-gains"', 'id="chart-robustness"', "multipliers of the first row", "✓ stable"):
         assert words in page

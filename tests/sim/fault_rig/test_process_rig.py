@@ -28,6 +28,7 @@ def strike(bounds):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_pulse_ends_by_itself_when_its_sender_is_killed(strike):
     record = strike(stop=False)
     first, *later = currents.pulses(record.coil_drives, 1)

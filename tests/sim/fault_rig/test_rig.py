@@ -159,6 +159,7 @@ def test_the_same_case_is_the_same_flight():
     ],
 )
 @pytest.mark.requirement("REQ-FDIR-01", "REQ-FDIR-02")
+@pytest.mark.slow
 def test_a_sample_of_the_table_holds(name):
     result = fly(choose_rows([name])[0], 1, 2)
     assert not result.failed, result.outcomes

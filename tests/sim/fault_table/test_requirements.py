@@ -35,6 +35,7 @@ def cited():
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_every_requirement_is_cited_by_a_test(cited):
     assert set(IDS) - cited == set()
 

@@ -46,6 +46,7 @@ def test_a_whole_flight_is_the_same(pair):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_long_body_whose_long_axis_is_z_is_held_upright_by_the_filter():
     """Its attitude against the orbit is reported in its own axes: a quarter turn and more from 1 0 0 0."""
     body = {"inertia_kgm2": [0.04, 0.042, 0.008], "up": "z", "ahead": "x"}
@@ -58,6 +59,7 @@ def test_a_long_body_whose_long_axis_is_z_is_held_upright_by_the_filter():
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_held_the_other_way_it_falls_over():
     """What makes the difference is the key, not a strong coil."""
     scenario = load("cubesat3u", {"body": {"inertia_kgm2": [0.04, 0.042, 0.008]}})

@@ -33,6 +33,7 @@ def program(tmp_path):
     return tmp_path / "firmware"
 
 
+@pytest.mark.slow
 def test_it_brakes_a_tumble_and_nothing_is_held_against_it(program, firmware, tmp_path):
     software = replace(firmware(), command=NodeCommand((str(program), "{port}")))
     flight = fly_and_judge(software, load(TUMBLER), 1, tmp_path / "run")

@@ -30,6 +30,7 @@ def missed(flight):
 
 
 @pytest.mark.parametrize("mistake", ["", "modelled"])
+@pytest.mark.slow
 def test_a_sound_one_passes(flown, mistake):
     flight = flown(mistake)
     assert flight.ok
@@ -40,6 +41,7 @@ def test_a_sound_one_passes(flown, mistake):
     assert failed_text(flight) == ""
 
 
+@pytest.mark.slow
 def test_a_sign_error_is_named(flown):
     flight = flown("sign")
     assert missed(flight) == ["RATE"]
@@ -53,6 +55,7 @@ def test_a_sign_error_is_named(flown):
     assert verdict_json(flight)["reasons"] == [why]
 
 
+@pytest.mark.slow
 def test_swapped_axes_are_named(flown):
     flight = flown("axes")
     assert missed(flight) == ["RATE"]
@@ -60,6 +63,7 @@ def test_swapped_axes_are_named(flown):
     assert why.startswith("the axes x and y are swapped: ")
 
 
+@pytest.mark.slow
 def test_a_wrong_epoch_of_its_field_model_is_named(flown):
     flight = flown("epoch")
     assert missed(flight) == ["RATE"]
@@ -86,6 +90,7 @@ def test_a_wrong_byte_order_is_told(flown):
     assert "the byte order is wrong, it is 3000 ms with its bytes the other way round" in text
 
 
+@pytest.mark.slow
 def test_a_field_that_is_read_in_the_wrong_byte_order_is_named(flown):
     flight = flown("bytes")
     assert missed(flight) == ["RATE"]
@@ -93,6 +98,7 @@ def test_a_field_that_is_read_in_the_wrong_byte_order_is_named(flown):
     assert why.startswith("the byte order of MAG_FIELD is wrong: it is read the other way round: ")
 
 
+@pytest.mark.slow
 def test_a_field_that_is_read_as_unsigned_is_named(flown):
     flight = flown("unsigned")
     assert list(broken(flight)) == ["brakes the body"]
@@ -100,18 +106,21 @@ def test_a_field_that_is_read_as_unsigned_is_named(flown):
     assert why.startswith("MAG_FIELD is read as unsigned: ")
 
 
+@pytest.mark.slow
 def test_a_law_that_hardly_brakes_is_told_with_the_least_figure(flown):
     flight = flown("axes", orbits=0.5)
     assert 0.0 < flight.law.brakes < LEAST_BRAKING
     assert "a law that brakes has 0.4 at least" in broken(flight)["brakes the body"]
 
 
+@pytest.mark.slow
 def test_a_stuck_coil_that_goes_on_being_fired_is_told(flown):
     flight = flown("stuck", orbits=0.5, settings=STUCK)
     assert list(broken(flight)) == ["heeds a stuck coil"]
     assert "it goes on firing with a stuck coil" in broken(flight)["heeds a stuck coil"]
 
 
+@pytest.mark.slow
 def test_one_that_heeds_it_is_not_blamed(flown):
     flight = flown("", orbits=0.5, settings=STUCK)
     assert broken(flight) == {}
@@ -186,6 +195,7 @@ def test_a_hang_of_10_s_is_told_where_time_counts(flown):
     assert text.startswith("it hung for 10 to 11 s at tick 150: tick 150 was answered in tick 16")
 
 
+@pytest.mark.slow
 def test_in_lockstep_a_hang_is_noted_and_not_blamed(flown):
     flight = flown("hang", orbits=0.04, hang_s="2.5")
     assert broken(flight) == {}
@@ -193,11 +203,13 @@ def test_in_lockstep_a_hang_is_noted_and_not_blamed(flown):
     assert "that of 150 after 1 repetition of SYNC" in answers.text
 
 
+@pytest.mark.slow
 def test_a_restart_is_told(flown):
     flight = flown("restart", orbits=0.2)
     assert broken(flight) == {"does not restart": "it restarted in flight: FSW_BOOT in tick 700, after 700 s"}
 
 
+@pytest.mark.slow
 def test_a_bus_that_is_dead_after_an_hour_is_told(flown):
     flight = flown("dead", answer_s=3.0)
     assert list(broken(flight)) == ["flies to its end"]
@@ -244,6 +256,7 @@ def test_one_that_waits_for_the_hub_connects_once(tmp_path, firmware):
 
 
 @pytest.mark.parametrize("mistake", ["", "long"])
+@pytest.mark.slow
 def test_one_that_runs_already_is_judged_where_it_is(running, tmp_path, mistake):
     software = running(mistake)
     flight = fly_and_judge(software, load(TUMBLER), 1, tmp_path / "run", 0.1)

@@ -80,6 +80,7 @@ def test_text_page_json_and_junit_tell_the_same():
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_files_of_what_is_broken_stay_and_others_go(firmware, tmp_path):
     rows = choose_rows(("mag-frozen-passing", "bit-flip"))
     out, told = tmp_path / "sound", []
@@ -100,6 +101,7 @@ def test_files_of_what_is_broken_stay_and_others_go(firmware, tmp_path):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_campaign_is_flown_run_by_run(firmware, tmp_path):
     short = load_campaign(TUMBLERS, {"orbits": 0.05, "runs": 2}, {})
     assert judge_campaign(firmware(), short, tmp_path / "all", KeptFiles.ALL, print).ok

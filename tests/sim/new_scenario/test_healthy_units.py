@@ -20,6 +20,7 @@ ONE_U = NewSatellite(
 
 @pytest.mark.long
 @pytest.mark.timeout(600)
+@pytest.mark.slow
 def test_no_healthy_unit_is_isolated_when_the_sun_is_back(tmp_path):
     """By seed 101 the attitude is up to 90 deg wrong when the second shadow ends."""
     file, _, _ = write_new(ONE_U, tmp_path / "one-u-low.toml")

@@ -28,6 +28,7 @@ def report(tmp_path_factory, made_run):
 
 
 @pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.slow
 def test_nothing_is_cut_off_on_a_narrow_screen(look, cut_off, report, dark):
     page = look(report, width=390, dark=dark)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
@@ -64,6 +65,7 @@ def values(page, chart):
     return page.locator(f"#chart-{chart} .legend .value").all_inner_texts()
 
 
+@pytest.mark.slow
 def test_every_chart_is_drawn_and_takes_the_place_of_its_picture(look, report):
     page = look(report)
     for chart in CHARTS:
@@ -78,6 +80,7 @@ def test_every_chart_is_drawn_and_takes_the_place_of_its_picture(look, report):
         assert page.locator(f"#chart-{chart} svg").first.is_visible()
 
 
+@pytest.mark.slow
 def test_a_drag_zooms_all_charts_and_a_double_click_shows_all_again(look, report):
     page = look(report)
     (whole,) = spans(page)
@@ -90,6 +93,7 @@ def test_a_drag_zooms_all_charts_and_a_double_click_shows_all_again(look, report
     assert spans(page) == [whole] == ["0 7000"]
 
 
+@pytest.mark.slow
 def test_buttons_and_keys_zoom_and_move_too(look, report):
     page = look(report)
     page.get_by_role("button", name="Zoom in").click()
@@ -120,6 +124,7 @@ def test_the_cursor_tells_the_values_of_that_time_in_all_charts(look, report):
     assert "from nominal" in page.locator("#attitude-words").inner_text()
 
 
+@pytest.mark.slow
 def test_a_series_is_put_out_and_on_by_mouse_and_keyboard(look, report):
     page = look(report)
     item = page.locator("#chart-pointing .legend button").first
@@ -140,6 +145,7 @@ def test_a_click_on_an_event_shows_its_time(look, report):
     assert values(page, "modes") == ["–", "–", "on", "–"]
 
 
+@pytest.mark.slow
 def test_the_flight_can_be_played(look, report):
     page = look(report)
     page.get_by_label("Pace", exact=True).select_option("1000")
@@ -152,6 +158,7 @@ def test_the_flight_can_be_played(look, report):
 
 
 @pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.slow
 def test_it_is_dark_where_the_system_is_until_it_is_switched(look, report, dark):
     page = look(report, dark=dark)
 
@@ -180,6 +187,7 @@ def test_nothing_stands_out_sideways(look, report, width, scripts):
     assert page.evaluate("document.documentElement.scrollWidth") <= width
 
 
+@pytest.mark.slow
 def test_without_scripts_and_on_paper_the_pictures_are_shown(look, report):
     paper = look(report)
     paper.emulate_media(media="print")

@@ -269,6 +269,7 @@ def test_bus_and_versions_come_from_the_run_beside_the_report(tmp_path, made_run
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_the_same_flight_gives_the_same_bytes_whatever_the_user_set_matplotlib_to(tmp_path, made_run):
     (tmp_path / "one").mkdir()
     (tmp_path / "two").mkdir()
@@ -428,6 +429,7 @@ def test_events_are_told_in_words(tmp_path, made_run):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_hundred_orbits_stay_small(tmp_path, made_run, charts):
     pulses = tuple(
         DrivenPulse(i % 3, (-3, -2, -1, 1, 2, 3)[i * 7 % 6], Fraction(103 * i + 100), Fraction(103 * i + 103))

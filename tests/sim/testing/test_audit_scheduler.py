@@ -102,6 +102,7 @@ RARE = ("its own reboot in a pulse",)
 @pytest.mark.long
 @SOME
 @given(flights())
+@pytest.mark.slow
 def test_one_without_a_fault_passes(flight):
     assert audit_scheduler(Good, flight).ok
 
@@ -187,6 +188,7 @@ def test_nothing_at_all_for_a_coil_that_there_is_not():
 @pytest.mark.long
 @SOME
 @given(flights())
+@pytest.mark.slow
 def test_the_shipped_scheduler_keeps_the_limits_over_a_board_without_an_interlock(flight):
     report = audit_scheduler(ShippedScheduler, flight)
     assert report.ok, report.violations
@@ -214,6 +216,7 @@ def test_a_reboot_in_a_pulse_costs_a_back_off_from_its_end():
 @pytest.mark.long
 @SOME
 @given(flights(), st.sampled_from(["pd", "bdot", "rate_damping", "predictive"]))
+@pytest.mark.slow
 def test_laws_that_ship_keep_the_limits(flight, name):
     assert audit_law(LAWS[name].point, flight).ok
 
@@ -221,6 +224,7 @@ def test_laws_that_ship_keep_the_limits(flight, name):
 @pytest.mark.long
 @SOME
 @given(flights(), dipoles(), fields())
+@pytest.mark.slow
 def test_so_does_any_law_of_numbers(flight, wish, b):
     def law(seen, memory, setpoint, config):
         return Demand(wish, impulse_body_nms=b if seen.tick % 2 else None, memory=(1.0, *memory)[:3])
@@ -317,6 +321,7 @@ def test_a_violation_names_its_line_of_the_log():
     [Good, planted(hears_lockout=False), planted(hears_board_boot=False, **WITHOUT_WORD), planted(coils=2)],
     ids=["without a fault", "its own reboot", "the board's reboot", "two coils"],
 )
+@pytest.mark.slow
 def test_the_first_violation_is_that_of_the_whole_log(scheduler):
     """Though a flight that is judged is cut short, and its quiet ticks are left out."""
 

@@ -188,6 +188,7 @@ def test_no_seed_is_of_two_studies():
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_with_crossed_cells_the_first_attitude_is_not_valid_for_long_once_two_cells_speak_against_it():
     """Seeds whose first estimate is more than 10 deg wrong, and valid at first, since all bears it out."""
     for seed in (407, 418):

@@ -121,6 +121,7 @@ def test_a_port_that_is_taken_is_named():
 
 @pytest.mark.long
 @pytest.mark.parametrize("width", [390, 1400])
+@pytest.mark.slow
 def test_a_browser_draws_attitude_series_and_events_as_they_come(look, view, port, width):
     page = look(f"http://127.0.0.1:{port}/", width)
     page.get_by_text("waits for <b>somebody</b>").wait_for()

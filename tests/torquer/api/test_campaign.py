@@ -33,6 +33,7 @@ def done(tmp_path_factory):
         return torquer.campaign(folder / "campaign.toml", workers=1, out=folder / "out")
 
 
+@pytest.mark.slow
 def test_results_have_a_row_a_run_with_what_was_drawn(done):
     table = done.results
     assert list(table.index) == [0, 1, 2, 3]

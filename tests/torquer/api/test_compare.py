@@ -49,6 +49,7 @@ def test_settings_are_laid_over_all_flights_and_told(tmp_path):
 
 @pytest.mark.long
 @pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.slow
 def test_a_law_is_given_as_an_object_to_this_process_while_others_fly_the_rest(done, workers, tmp_path):
     def idle(inputs, memory, setpoint, config):
         return Demand()

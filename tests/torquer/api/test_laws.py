@@ -272,6 +272,7 @@ def test_a_law_that_is_not_yet_defined_is_one_sentence(tmp_path):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_two_processes_need_the_guard(tmp_path):
     (tmp_path / "rec.py").write_text(HEAD + LAW + 'torquer.fly("microsat", law="rec.py:idle", bus="loop")\n')
     done = subprocess.run(

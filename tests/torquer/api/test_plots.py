@@ -24,6 +24,7 @@ LABELS = {
 
 @pytest.fixture(autouse=True)
 def closed():
+    plt.close("all")
     yield
     plt.close("all")
 
@@ -101,6 +102,7 @@ def test_another_process_writes_the_same_bytes(copy, kind):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_what_a_flight_has_not_is_left_out_and_said_where_it_is_asked_for(tmp_path):
     run = torquer.fly("posat1", orbits=0.01, out=tmp_path / "run")
     names = {file.stem for file in torquer.report(run, figures="pdf").figures}

@@ -123,6 +123,7 @@ def test_a_flight(capsys, tmp_path, monkeypatch):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_run_judged_again(capsys, flown):
     has_shape(document(capsys, "report", flown), "report")
     has_shape(document(capsys, "check", flown), "check")

@@ -35,6 +35,7 @@ def test_it_says_which_figures_it_has_drawn(run):
     assert (run / "figures" / "pointing.pdf").read_bytes().startswith(b"%PDF")
 
 
+@pytest.mark.slow
 def test_the_document_names_them_where_they_are_asked_for(run):
     assert "figures" not in json.loads(report(run, "--json").stdout)
     assert not (run / "figures").exists()

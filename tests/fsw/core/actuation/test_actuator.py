@@ -331,6 +331,7 @@ def starts(shared, tick_hz, coils, ticks):
 
 @pytest.mark.long
 @pytest.mark.parametrize("tick_hz", [1, 2, 3, 7, 10, 50])
+@pytest.mark.slow
 def test_with_a_lasting_demand_it_fires_as_often_as_the_limits_let_it(tick_hz):
     """One coil in 103 s: after the boot lockout at 100 s, 203 s, 306 s."""
     for shared in (True, False):

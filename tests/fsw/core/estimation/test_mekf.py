@@ -239,6 +239,7 @@ class TestGate:
     )
     @example((0.0, 8.59e86, -1.275e209, 0.0, 0.0, 1.0), "field", 1.0)  # overflows to a NIS of -inf
     @settings(max_examples=300, deadline=None)
+    @pytest.mark.slow
     def test_whatever_is_measured_what_comes_out_is_sound(self, full, measured, kind, widen):
         config = full.config()
         before = full.estimate(config.initial_covariance * widen)

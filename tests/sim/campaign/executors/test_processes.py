@@ -30,6 +30,7 @@ class KillsItself(RunTask):
         return RunRow(run, Status.DONE, "", 0, True, "", {})
 
 
+@pytest.mark.slow
 def test_rows_are_those_of_one_process_and_workers_end_with_the_campaign(small):
     task, runs = RunTask(small, Keep.NONE, Path()), [4, 1, 2, 5, 0, 3]
     rows = Processes(2).rows(task, runs)

@@ -31,6 +31,7 @@ def page(campaign_of_40, analysis, tmp_path_factory):
 
 @pytest.mark.long
 @pytest.mark.parametrize("width", [390, 1400])
+@pytest.mark.slow
 def test_it_is_shown_in_the_dark_without_standing_out_sideways(look, cut_off, tmp_path, page, width):
     (tmp_path / "campaign.html").write_text(page)
     shown = look(tmp_path / "campaign.html", width=width, dark=True)

@@ -116,6 +116,7 @@ with open_results(Path(sys.argv[2]), campaign) as results:
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_what_was_added_before_sigkill_is_there_and_the_lock_is_not(small, campaign_file, tmp_path):
     done = subprocess.run([sys.executable, "-c", KILLED, campaign_file, tmp_path], check=False)
     assert done.returncode == -9

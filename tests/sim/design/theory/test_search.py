@@ -44,6 +44,7 @@ def microsat():
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_it_finds_the_known_optimum(microsat):
     best = microsat.best
     assert best.degree < -0.5185
@@ -68,6 +69,7 @@ def test_the_steady_gains_are_surer_than_the_best(microsat):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_it_says_when_no_gains_stabilise():
     body = UNSTABLE_BODIES[1]
     found = search(body, continuous(body), continuous(body, ROUGH_STEPS))

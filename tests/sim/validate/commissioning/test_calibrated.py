@@ -113,6 +113,7 @@ def test_the_true_calibration_undoes_what_the_sensor_does():
 
 @pytest.mark.long
 @pytest.mark.parametrize(("range_nt", "known"), [(65000.0, True), (65534.0, False)])
+@pytest.mark.slow
 def test_a_magnetometer_at_the_end_of_its_range_serves_by_its_other_axes(range_nt, known):
     """Offset and field of satellite 8 exceed its range for a fifth of the orbit, part of it in shadow."""
     scenario = load(SCENARIO, satellite(8))

@@ -135,6 +135,7 @@ def test_the_page_has_sweeps_tolerances_and_satellites(populations, sweep):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_pictures_have_their_labels(populations, sweep, tmp_path):
     draw_satellites(populations, tmp_path / "one.svg")
     draw_sweep(sweep, tmp_path / "two.svg")
@@ -148,6 +149,7 @@ def test_pictures_have_their_labels(populations, sweep, tmp_path):
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_nothing_flown_is_drawn_empty(tmp_path):
     nothing = {quantity: [] for quantity in QUANTITIES}
     draw_satellites({"50kg": [], "3u": [], "6u": []}, tmp_path / "one.svg")

@@ -44,6 +44,7 @@ def watched(settings, seed, ticks):
 
 @pytest.mark.long
 @pytest.mark.parametrize("seed", [5, 11, 13])
+@pytest.mark.slow
 def test_where_the_sun_is_near_the_field_it_does_not_become_sure_of_a_wrong_attitude(seed):
     """Field and Sun are 25 to 40 deg apart for ten minutes, and the Earth lights the cells."""
     flight = watched(("orbit.u0_deg=288.0",), seed, TICKS)

@@ -120,6 +120,7 @@ def test_a_fault_is_named_borne_and_forgotten(make_world, name):
 
 @pytest.mark.long
 @pytest.mark.requirement("REQ-SENSOR-05")
+@pytest.mark.slow
 def test_at_20_hz_an_attitude_is_proven_and_a_faulty_sensor_stays_isolated(make_world):
     """The gate refuses one sample in a thousand: at this rate several before an estimate is proven."""
     watcher = Watcher(make_world(time={"tick_hz": 20}))
@@ -289,6 +290,7 @@ COARSE = {"field": coarse(200.0), "sun": coarse(quantum=0.004), "both": coarse(2
 @pytest.mark.requirement("REQ-SENSOR-03", "REQ-SENSOR-08")
 @pytest.mark.parametrize("seed", [3, 7, 12])
 @pytest.mark.parametrize("name", COARSE)
+@pytest.mark.slow
 def test_a_coarse_sensor_is_not_frozen(make_world, name, seed):
     """For two orbits: each reading stands still for up to half a minute."""
     watcher = Watcher(make_world(seed=seed, **COARSE[name]))
@@ -303,6 +305,7 @@ def test_a_coarse_sensor_is_not_frozen(make_world, name, seed):
 @pytest.mark.long
 @pytest.mark.requirement("REQ-SENSOR-08")
 @pytest.mark.parametrize(("declared", "sound"), [({}, True), ({"quantum_percent": 0.0}, False)])
+@pytest.mark.slow
 def test_nor_is_a_coarse_cell_whose_step_is_declared(make_world, declared, sound):
     axes = [
         [1.0, 0.1, 0.0],

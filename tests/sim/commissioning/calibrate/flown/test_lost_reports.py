@@ -38,6 +38,7 @@ def sigmas_off(found):
 
 
 @pytest.mark.parametrize("part", [0.0, 0.02, 0.1])
+@pytest.mark.slow
 def test_dipoles_are_as_sure_as_the_reports_that_are_left(flown, part, tmp_path):
     assert sigmas_off(with_lost(flown, part, tmp_path / "bus.log")).max() < 4.0
 

@@ -172,6 +172,7 @@ def test_a_short_log_of_a_body_that_turns_about_one_axis_leaves_an_offset_and_gi
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_one_that_hardly_turns_does_not_even_tell_the_wiring():
     with pytest.raises(HarnessError, match="wirings explain it alike"):
         calibrated(log(ticks=420, rate=(0.0, 0.0, 2e-4)), TABLE)
