@@ -81,10 +81,10 @@ def pytest_collection_modifyitems(config, items):
             item.add_marker("long")
         if standing().modules and item.get_closest_marker("interpreted"):
             item.add_marker(pytest.mark.skip(f"make test runs it with {SWITCH}=1"))
-    if config.option.sample:
-        left_out = outside_sample(items)
-        config.hook.pytest_deselected(items=left_out)
-        items[:] = [item for item in items if item not in set(left_out)]
+    if config.getoption("sample"):
+        left_out = set(outside_sample(items))
+        config.hook.pytest_deselected(items=[item for item in items if item in left_out])
+        items[:] = [item for item in items if item not in left_out]
 
 
 def outside_sample(items):
