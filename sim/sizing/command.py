@@ -73,9 +73,11 @@ def as_json(scenario: Scenario, expectation: Expectation, levels: Levels, gravit
         "gravity_away_nm": gravity.away_nm,
         "detumbling": asdict(detumbling(scenario)),
         "pointing_rms_deg": expectation.pointing_deg if points(expectation, gravity) else None,
+        "least_pointing_rms_deg": expectation.least_pointing_deg if points(expectation, gravity) else None,
         "floor_deg": expectation.floor_deg,
         "quantum_deg": expectation.quantum_deg,
         "ripple_deg": expectation.ripple_deg,
+        "variation_deg": expectation.variation_deg,
         "knowledge_deg": expectation.knowledge_deg,
         "points": points(expectation, gravity),
     }
@@ -177,12 +179,15 @@ def _coils(scenario: Scenario) -> str:
 def _pointing(expectation: Expectation, gravity: Gravity) -> str:
     parts = (
         f"{expectation.floor_deg:.2f} disturbance, {expectation.quantum_deg:.2f} least level, "
-        f"{expectation.ripple_deg:.2f} between pulses, "
-        f"{expectation.knowledge_deg:.2f} estimate"
+        f"{expectation.ripple_deg:.2f} between pulses, {expectation.variation_deg:.2f} drag and light "
+        f"varying, {expectation.knowledge_deg:.2f} estimate"
     )
     if not points(expectation, gravity):
         return f"  pointing   none to rely on: {why_not(expectation, gravity)} ({parts} deg where it holds)"
-    return f"  pointing   {expectation.pointing_deg:.2f} deg RMS once settled ({parts})"
+    return (
+        f"  pointing   {expectation.pointing_deg:.2f} deg RMS once settled, in the worst orbit of a day "
+        f"({parts}); {expectation.least_pointing_deg:.2f} in the best"
+    )
 
 
 def why_not(expectation: Expectation, gravity: Gravity) -> str:

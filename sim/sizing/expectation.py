@@ -1,12 +1,16 @@
 """What pointing to expect of coils, how much of their time it takes, and how long they take to stop a tumble.
 
-Four parts that do not depend on each other add up by their squares:
+Five parts that do not depend on each other add up by their squares:
 
 - the floor: a dipole gives no torque along the field, so that a torque d(u) is balanced on the mean alone, by
   the periodic motion with the least mean square (``sim/design/theory/feedforward.py``). No law does better.
+  The Earth turns under the orbit, so that the field, and the floor with it, depend on the hour of the day:
+  it is determined for each orbit of a day, as if its field were that of every orbit; the largest counts.
 - the quantum: by how much the least level turns the body from one pulse to the next, about the axis that it
   turns most, q = m_1 B T_p (T_p + T_b) / J_min.
 - the ripple: by how much the disturbance d turns that axis in the same time, r = d (T_p + T_b)^2 / J_min.
+- the variation: how the body answers drag and sunlight less their mean under the table's PD gains: the filter
+  takes the torque on the body for constant, so that a law learns of what varies by the error alone.
 - the knowledge: the error of the estimate, by the covariance of the filter (``knowledge_of``).
 
 The load is the part of the coils' time that balancing takes: the mean over an orbit of |m_1| + |m_2| + |m_3|
@@ -28,6 +32,7 @@ from math import degrees, hypot, inf, isnan, radians, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fsw.core.algebra.quaternion import IDENTITY, conjugate, multiply, rotate
 from fsw.core.algebra.vector import ZERO, Vec3, scale
@@ -38,13 +43,14 @@ from fsw.core.orbit.ephemeris import advance, reference_at
 from fsw.table.config import onboard_ephemeris
 from fsw.table.estimator import changes_of, filter_config
 from fsw.table.table import FlightTable
-from sim.design.from_scenario import body_of
+from sim.design.from_scenario import body_of, law_from_body
 from sim.design.theory.bodies import Body
-from sim.design.theory.feedforward import least_error
+from sim.design.theory.feedforward import answer, least_error
+from sim.design.theory.linear import Gains
 from sim.scenario.controlled import SLOW_DEGPS, SLOWEST_DEGPS
 from sim.scenario.schema import Scenario, flight_table, orbit_period_s
 from sim.scenario.sections import ScenarioCoils
-from sim.sizing.torques import disturbance_torque
+from sim.sizing.torques import OrbitNodes, day_of, disturbance_torque, orbit_nodes, surface_torque
 
 # --- How well the filter would know the attitude of a satellite at rest in its nominal one
 
@@ -142,9 +148,11 @@ class Expectation:
     Attributes:
         field_t: B, across a coil's axis.
         disturbance_nm: root mean square of the disturbance torque over an orbit.
-        floor_deg: error that no law avoids.
+        floor_deg: error that no law avoids, in the orbit of a day in which it is largest.
+        least_floor_deg: the same in the orbit in which it is least.
         quantum_deg: step of the least level.
         ripple_deg: turn by the disturbance between two pulses.
+        variation_deg: error by what of drag and sunlight varies along the orbit.
         knowledge_deg: error of the estimate.
         shadow_part: standard deviation of the estimate where it is least certain, mostly in the shadow, over
             the largest with which the control relies on it.
@@ -154,23 +162,32 @@ class Expectation:
     field_t: float
     disturbance_nm: float
     floor_deg: float
+    least_floor_deg: float
     quantum_deg: float
     ripple_deg: float
+    variation_deg: float
     knowledge_deg: float
     shadow_part: float
     load: float
 
     @property
     def pointing_deg(self) -> float:
-        """Root mean square of the pointing error once settled."""
-        return hypot(self.floor_deg, self.quantum_deg, self.ripple_deg, self.knowledge_deg)
+        """Root mean square of the pointing error once settled, in the worst orbit of a day."""
+        return self._with_floor(self.floor_deg)
+
+    @property
+    def least_pointing_deg(self) -> float:
+        """The same in the best one."""
+        return self._with_floor(self.least_floor_deg)
+
+    def _with_floor(self, floor_deg: float) -> float:
+        return hypot(floor_deg, self.quantum_deg, self.ripple_deg, self.variation_deg, self.knowledge_deg)
 
 
 class TorqueBalance(NamedTuple):
-    """What balancing the disturbances takes, and leaves; as in ``Expectation``."""
+    """The disturbances, and what balancing them takes; as in ``Expectation``."""
 
     disturbance_nm: float
-    floor_deg: float
     load: float
 
 
@@ -188,32 +205,58 @@ def expect(scenario: Scenario) -> Expectation:
         least_kgm2 = float(np.linalg.eigvalsh(np.asarray(body.inertia_kgm2))[0])
         quantum_rad = coils.levels_am2[0] * field_t * coils.pulse_s * cycle_s / least_kgm2 if pulsed else 0.0
         ripple_rad = balance.disturbance_nm * cycle_s**2 / least_kgm2
+        floors_deg = [
+            _or_inf(floor_deg(scenario, disturbance_torque(scenario, nodes), nodes))
+            for nodes in day_of(scenario)
+        ]
+        varied_deg = variation_deg(scenario)
     return Expectation(
         field_t=field_t,
         disturbance_nm=balance.disturbance_nm,
-        floor_deg=balance.floor_deg,
+        floor_deg=max(floors_deg),
+        least_floor_deg=min(floors_deg),
         quantum_deg=_or_inf(degrees(quantum_rad)),
         ripple_deg=_or_inf(degrees(ripple_rad)),
+        variation_deg=_or_inf(varied_deg),
         knowledge_deg=knowledge.rms_deg,
         shadow_part=knowledge.most_deg / knowledge.usable_deg,
         load=balance.load,
     )
 
 
+def variation_deg(scenario: Scenario) -> float:
+    """RMS of the answer to drag and sunlight less their mean, in the first orbit, under the table's gains."""
+    if not scenario.body.plates:
+        return 0.0
+    body, control = apart(body_of(scenario)), scenario.control
+    torque_nm = surface_torque(scenario, orbit_nodes(scenario)) @ law_from_body(scenario).T
+    theta_rad = answer(body, Gains(control.k_w, control.k_a), torque_nm - torque_nm.mean(axis=0))
+    return degrees(sqrt(float(np.mean(np.sum(theta_rad**2, axis=1)))))
+
+
 def torque_balance(scenario: Scenario) -> TorqueBalance:
-    """What balancing the disturbances takes in the nominal attitude; what overflows is infinite."""
+    """What balancing the disturbances takes in the nominal attitude; what overflows is infinite.
+
+    The dipoles are those in the direct dipole's field: those of the least error in a field that does not
+    close after an orbit are several times as large, and gain little.
+    """
     coils = scenario.coils
     with np.errstate(all="ignore"):
-        torque_nm = disturbance_torque(scenario)
+        torque_nm = disturbance_torque(scenario, orbit_nodes(scenario))
         response = least_error(apart(body_of(scenario)), torque_nm)
         by_coil_am2 = np.abs(response.dipole_am2).mean(axis=0)
         one_at_a_time = coils.driver == "pulsed" and coils.shared
         balancing_am2 = float(by_coil_am2.sum() if one_at_a_time else by_coil_am2.max())
         return TorqueBalance(
             _or_inf(float(np.sqrt(np.mean(np.sum(torque_nm**2, axis=1))))),
-            _or_inf(degrees(response.rms_rad)),
             _or_inf(balancing_am2 / (coils.largest_am2 * coils.on_part)),
         )
+
+
+def floor_deg(scenario: Scenario, torque_nm: ArrayLike, nodes: OrbitNodes) -> float:
+    """The least RMS error under a torque in the axes of the laws, in the field of an orbit."""
+    body = apart(body_of(scenario))
+    return degrees(least_error(body, torque_nm, b_orbit=nodes.b_orbit_t / body.field_t).rms_rad)
 
 
 def _or_inf(figure: float) -> float:

@@ -25,7 +25,7 @@ from sim.scenario.telecommands import unsent_telecommands
 from sim.sizing.expectation import field_across, torque_balance
 from sim.sizing.gravity import gravity_on, gravity_words
 from sim.sizing.levels import TOO_WEAK, levels_against, levels_for
-from sim.sizing.torques import surface_torque
+from sim.sizing.torques import orbit_nodes, surface_torque
 
 # --- Faults of a scenario that a run is too short for
 
@@ -314,7 +314,8 @@ def _drag_and_light(scenario: Scenario) -> Iterator[str]:
     """They change along the orbit, faster than the filter may follow by that bound."""
     if scenario.knowledge == "perfect" or not scenario.body.plates:
         return
-    known, peak_nm = table_bounds(flight_table(scenario)), float(np.abs(surface_torque(scenario)).max())
+    known = table_bounds(flight_table(scenario))
+    peak_nm = float(np.abs(surface_torque(scenario, orbit_nodes(scenario))).max())
     if LEAST_TIMES * peak_nm > max(known.torque_nm, _slight(scenario)[1]):
         yield (
             f"disturbance.drag and .solar_pressure reach {peak_nm:.2g} N m on body.plates, and "

@@ -266,7 +266,8 @@ def _mismatch(missed: Missed, evidence: FlightEvidence) -> str:
 def _any_law(missed: Missed, evidence: FlightEvidence) -> str:
     if missed.limit is None or missed.what != "attitude" or not any(evidence.torque_nm):
         return ""
-    least, last = least_error_deg(evidence.scenario, evidence.torque_nm), evidence.trend[-2:]
+    least = least_error_deg(evidence.scenario, evidence.orbits, evidence.torque_nm)
+    last = evidence.trend[-2:]
     flown = float(np.sqrt(np.mean(np.square(last)))) if last else inf
     if least is None or least > CONTRADICTED * flown or min(least, flown) < 0.8 * missed.limit:
         return ""

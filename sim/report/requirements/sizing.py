@@ -8,10 +8,10 @@ import numpy as np
 
 from sim.design.from_scenario import body_of, law_from_body
 from sim.design.theory.bodies import Body
-from sim.design.theory.feedforward import least_error
 from sim.scenario.schema import Scenario
-from sim.sizing.expectation import apart, torque_balance
+from sim.sizing.expectation import floor_deg, torque_balance
 from sim.sizing.levels import MOST_LOAD, levels_against, two_digits
+from sim.sizing.torques import orbit_nodes
 from sim.value_types import Vec3
 
 
@@ -71,13 +71,14 @@ def balance(scenario: Scenario, torque_nm: Vec3, what: str) -> Balance:
     return Balance(load, levels_against(scenario, load)[2], of_dipole)
 
 
-def least_error_deg(scenario: Scenario, torque_nm: Vec3) -> float | None:
-    """The least RMS error of the whole attitude under a constant torque, whatever the law.
+def least_error_deg(scenario: Scenario, orbits: float, torque_nm: Vec3) -> float | None:
+    """The least RMS error of the whole attitude under a constant torque over the last of some orbits.
 
     None for a body that the gravity gradient leaves free, for which there is no periodic motion.
     """
     try:
-        return degrees(least_error(apart(body_of(scenario)), law_from_body(scenario) @ torque_nm).rms_rad)
+        last = orbit_nodes(scenario, max(0.0, orbits - 1.0))
+        return floor_deg(scenario, law_from_body(scenario) @ torque_nm, last)
     except np.linalg.LinAlgError:
         return None
 

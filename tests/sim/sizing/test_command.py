@@ -23,9 +23,11 @@ KEYS = {
     "gravity_away_nm": float,
     "detumbling": dict,
     "pointing_rms_deg": float | None,
+    "least_pointing_rms_deg": float | None,
     "floor_deg": float,
     "quantum_deg": float,
     "ripple_deg": float,
+    "variation_deg": float,
     "knowledge_deg": float,
     "points": bool,
 }

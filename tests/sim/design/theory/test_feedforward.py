@@ -1,5 +1,7 @@
 """The least error under a constant torque: a motion of the linearised body, a bound that laws approach."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -69,6 +71,14 @@ def test_cheap_dipoles_bring_the_regulator_to_it_and_none_under_it():
     dear, cheap = flown(0.5), flown(0.03)
     assert least < cheap < 1.02 * least
     assert dear > 1.1 * least
+
+
+def test_a_given_field_takes_the_place_of_the_direct_dipoles():
+    elsewhere = replace(BODY, inclination_deg=20.0)
+    field = dipole_field(2.0 * np.pi / 32 * np.arange(32), elsewhere)
+    given = least_error(BODY, TORQUE, b_orbit=field).rms_rad
+    assert given == least_error(elsewhere, TORQUE).rms_rad
+    assert given > 1.1 * least_error(BODY, TORQUE).rms_rad
 
 
 def test_without_a_dipole_the_error_is_larger():

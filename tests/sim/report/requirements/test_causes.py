@@ -142,7 +142,7 @@ def test_every_cause_of_the_table_is_tried():
         ("tumbling", "5.2 deg/s at the start, still 4.7 deg/s; ACQUIRE begins under 0.3 deg/s"),
         ("estimate", "wrong by 7 deg RMS, and dishonest: inside its own 3 sigma 12 % of the time"),
         ("mismatch", "inertia off by 0.93 kg m^2, its bound is 0"),
-        ("any_law", "a torque of 5.20e-07 N m on the mean leaves some 4.24 deg whatever the law"),
+        ("any_law", "a torque of 5.20e-07 N m on the mean leaves some 4.42 deg whatever the law"),
         (
             "disturbance",
             "balancing the residual dipole takes 94 % of what the coils can give: too weak to",
@@ -163,12 +163,12 @@ def test_a_cause_is_told_with_its_figures(cause, words):
 
 
 def test_no_least_error_is_told_that_the_flight_contradicts():
-    """2.5 deg were flown: linear theory, which says 4.2, does not hold here."""
+    """2.5 deg were flown: linear theory, which says 4.4, does not hold here."""
     assert names(replace(sound(), torque_nm=(3e-7, 3e-7, 3e-7))) == ["unknown"]
 
 
 def test_a_least_error_above_that_of_the_flight_is_told_as_flown():
-    """A direct dipole's field is somewhat worse to point in than the true one."""
+    """Linear theory, in a field that repeats itself every orbit, says 4.4."""
     flown = replace(sound(), torque_nm=(3e-7, 3e-7, 3e-7), trend=(3.5, 3.5, 3.5, 3.5))
     assert "leaves some 3.5 deg whatever the law" in text(flown)
 
@@ -177,8 +177,9 @@ def test_a_least_error_above_that_of_the_flight_is_told_as_flown():
 def test_the_least_error_of_a_body_with_equal_moments_is_that_of_its_size(inertia_kgm2):
     """About axis 1 of such a body nothing holds it; taken so, theory says many times what is flown."""
     scenario = sound(f"body.inertia_kgm2={inertia_kgm2}", name="cubesat3u").scenario
-    least_deg = least_error_deg(scenario, scenario.disturbance.torque_nm)
-    assert least_deg == pytest.approx(expect(scenario).floor_deg, rel=0.02)
+    least_deg = least_error_deg(scenario, 10.0, scenario.disturbance.torque_nm)
+    expected = expect(scenario)
+    assert expected.least_floor_deg < 1.02 * least_deg < 1.05 * expected.floor_deg
 
 
 @pytest.mark.parametrize("dipole_am2", [0.05, 0.3])
