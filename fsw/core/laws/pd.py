@@ -22,6 +22,20 @@ def far_error(q_body_from_orbit: Quaternion) -> Vec3:
     return (factor * q1, factor * q2, factor * q3)
 
 
+def acquisition_error(
+    q_body_from_orbit: Quaternion, b_body_t: Vec3, k_a: float, mean_dipole_am2: float
+) -> Vec3:
+    """E, limited where k_a |b| |E| is the mean dipole that the coils give.
+
+    Beyond it the attitude alone would decide what the coils do, and a satellite that passes through all
+    attitudes gains as much energy by it as it loses: it tumbles on for orbits. The rate's term has no limit.
+
+    Source: Wie, Lu 1995, Feedback control logic for spacecraft eigenaxis rotations under slew rate and
+    control constraints, of which the attitude's term is limited alone.
+    """
+    return within_mean_dipole(far_error(q_body_from_orbit), b_body_t, k_a, mean_dipole_am2)
+
+
 def pd_dipole(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, k_w: float, k_a: float) -> Vec3:
     """The dipole m = -k_w b x Omega - k_a b x S.
 
@@ -45,16 +59,16 @@ def pd_dipole(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, k_w: fl
 def integrate_error(
     integral_s: Vec3, error: Vec3, b_body_t: Vec3, k_i: float, tick_s: float, mean_dipole_am2: float
 ) -> Vec3:
-    """The integral I + S h, h a tick, limited as by ``bounded_integral``."""
-    return bounded_integral(add(integral_s, scale(tick_s, error)), b_body_t, k_i, mean_dipole_am2)
+    """The integral I + S h, h a tick, limited as by ``within_mean_dipole``."""
+    return within_mean_dipole(add(integral_s, scale(tick_s, error)), b_body_t, k_i, mean_dipole_am2)
 
 
-def bounded_integral(integral_s: Vec3, b_body_t: Vec3, k_i: float, mean_dipole_am2: float) -> Vec3:
-    """The integral, limited where k_i |b| |I| is the mean dipole that the coils give."""
-    demanded_am2 = k_i * norm(b_body_t) * norm(integral_s)
+def within_mean_dipole(term: Vec3, b_body_t: Vec3, gain: float, mean_dipole_am2: float) -> Vec3:
+    """A term x of the law, limited where gain |b| |x| is the mean dipole that the coils give."""
+    demanded_am2 = gain * norm(b_body_t) * norm(term)
     if demanded_am2 <= mean_dipole_am2:
-        return integral_s
-    return scale(mean_dipole_am2 / demanded_am2, integral_s)
+        return term
+    return scale(mean_dipole_am2 / demanded_am2, term)
 
 
 def pd(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
@@ -73,13 +87,15 @@ def pd(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConf
 def pd_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The same law far from the goal: an error that does not vanish upside down, the integral frozen.
 
-    It is limited here too: k_i may have been raised since it grew.
+    Both are limited to what the coils give: k_i may have been raised since the integral grew.
     """
     integral_s = _integral(memory)
     if not inputs.attitude.usable:
         return Demand(memory=integral_s)
-    integral_s = bounded_integral(integral_s, inputs.b_body_t, setpoint.k_i, config.mean_dipole_am2)
-    return _demand(inputs, far_error(inputs.attitude.q_body_from_orbit), integral_s, setpoint)
+    b_body_t, most_am2 = inputs.b_body_t, config.mean_dipole_am2
+    integral_s = within_mean_dipole(integral_s, b_body_t, setpoint.k_i, most_am2)
+    error = acquisition_error(inputs.attitude.q_body_from_orbit, b_body_t, setpoint.k_a, most_am2)
+    return _demand(inputs, error, integral_s, setpoint)
 
 
 def _demand(inputs: LawInput, error: Vec3, integral_s: Vec3, setpoint: Setpoint) -> Demand:

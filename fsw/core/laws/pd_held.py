@@ -20,7 +20,7 @@ from fsw.core.algebra.quaternion import dcm
 from fsw.core.algebra.vector import ZERO, Vec3, scale
 from fsw.core.laws.entry import Aim, LawEntry
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
-from fsw.core.laws.pd import attitude_error, far_error, pd_dipole
+from fsw.core.laws.pd import acquisition_error, attitude_error, pd_dipole
 from fsw.core.laws.plan.pulse_model import NO_PULSE
 
 
@@ -90,14 +90,17 @@ def _cycle(
     if len(memory) == 5 and (inputs.tick - memory[0]) * config.tick_s < measure_s + act_s:
         begun, computed, held = memory[0], memory[1], (memory[2], memory[3], memory[4])
     if not computed and (inputs.tick - begun) * config.tick_s >= measure_s:
-        computed, held = 1.0, scale((measure_s + act_s) / act_s, _pd(inputs, setpoint, near=near))
+        computed, held = 1.0, scale((measure_s + act_s) / act_s, _pd(inputs, setpoint, config, near=near))
     now = (begun, computed, *held)
     return Demand(held, memory=now) if computed else Demand(memory=now, pulse=NO_PULSE)
 
 
-def _pd(inputs: LawInput, setpoint: Setpoint, *, near: bool) -> Vec3:
+def _pd(inputs: LawInput, setpoint: Setpoint, config: ControlConfig, *, near: bool) -> Vec3:
     q, omega = inputs.attitude.q_body_from_orbit, inputs.attitude.omega_body_orbit_radps
-    error = attitude_error(dcm(q)) if near else far_error(q)
+    if near:
+        error = attitude_error(dcm(q))
+    else:
+        error = acquisition_error(q, inputs.b_body_t, setpoint.k_a, config.mean_dipole_am2)
     return pd_dipole(inputs.b_body_t, omega, error, setpoint.k_w, setpoint.k_a)
 
 

@@ -7,7 +7,7 @@ from fsw.core.algebra.vector import ZERO, Vec3, add
 from fsw.core.laws.dual_spin import pitch, pitch_dipole
 from fsw.core.laws.entry import Aim, LawEntry, Need
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
-from fsw.core.laws.pd import bounded_integral, integrate_error
+from fsw.core.laws.pd import integrate_error, within_mean_dipole
 from fsw.core.laws.roll_yaw import can_hold, pitch_holding_dipole, roll_yaw
 from fsw.core.laws.six_gain import SixGainGains, six_gain_dipole
 
@@ -60,7 +60,7 @@ def wheel_integral_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, con
     integral_s = _integral(memory)
     if not can_hold(inputs, config):
         return Demand(memory=integral_s)
-    held = bounded_integral(integral_s, inputs.b_body_t, 2.0 * setpoint.k_i, config.mean_dipole_am2)
+    held = within_mean_dipole(integral_s, inputs.b_body_t, 2.0 * setpoint.k_i, config.mean_dipole_am2)
     return _demand(inputs, held, setpoint)
 
 

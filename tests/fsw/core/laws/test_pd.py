@@ -13,7 +13,15 @@ from fsw.core.algebra.quaternion import IDENTITY, dcm
 from fsw.core.algebra.vector import ZERO
 from fsw.core.estimation.attitude import UNKNOWN, Attitude
 from fsw.core.laws.interface import ControlConfig, Demand, FieldSample, LawInput, Setpoint
-from fsw.core.laws.pd import attitude_error, far_error, integrate_error, pd, pd_dipole, pd_far
+from fsw.core.laws.pd import (
+    acquisition_error,
+    attitude_error,
+    far_error,
+    integrate_error,
+    pd,
+    pd_dipole,
+    pd_far,
+)
 
 K_W, K_A = 6.2694e6, 1614.9
 component = st.floats(-1.0, 1.0, allow_subnormal=False)
@@ -208,6 +216,25 @@ class TestIntegral:
         expected -= 0.08 * np.cross(B_BODY_T, memory)
         assert demand.memory == memory
         np.testing.assert_allclose(demand.m_body_am2, expected, rtol=1e-12)
+
+
+def test_in_acquire_the_attitude_asks_for_no_more_than_the_coils_give_in_the_mean():
+    turned, slight = quaternion((0.0, 2.0, 1.0)), quaternion((0.0, 0.002, 0.001))
+    error = acquisition_error(turned, B_BODY_T, K_A, MEAN_AM2)
+    assert K_A * np.linalg.norm(B_BODY_T) * np.linalg.norm(error) == pytest.approx(MEAN_AM2)
+    np.testing.assert_allclose(np.cross(error, far_error(turned)), 0.0, atol=1e-12)
+    assert np.dot(error, far_error(turned)) > 0.0
+    assert acquisition_error(slight, B_BODY_T, K_A, MEAN_AM2) == far_error(slight)
+
+
+def test_in_acquire_the_rate_has_what_it_asks_for_whatever_the_attitude():
+    rate = (0.02, -0.03, 0.01)
+    at_rest, turning = (
+        Attitude(quaternion((0.0, 2.0, 1.0)), omega, 0.01, 1e-4, True) for omega in (ZERO, rate)
+    )
+    still, braked = (pd_far(inputs(at), (), SETPOINT, CONFIG).m_body_am2 for at in (at_rest, turning))
+    assert np.linalg.norm(still) <= MEAN_AM2 * (1.0 + 1e-12)
+    np.testing.assert_allclose(np.subtract(braked, still), pd_dipole(B_BODY_T, rate, ZERO, K_W, K_A))
 
 
 def test_upside_down_the_far_law_turns_back_and_the_near_one_does_not():
