@@ -100,18 +100,20 @@ static void update_mode(detumble *fsw)
 
 /* --- what is to be done */
 
-/* PD, and what its integral holds against a constant torque. Far from the goal it is frozen. */
+/* PD, and what its integral holds against a constant torque. Far from the goal it is frozen, and the error limited. */
 static vec3 pointing_am2(detumble *fsw, vec3 b_t)
 {
     const gate_readings *readings = &fsw->gate.readings;
+    const float most_am2 = fsw->coils.mean_am2;
     const vec3 error = attitude_error(readings->q);
+    const vec3 limited = within_dipole(b_t, error, GAINS_K_A, most_am2);
     vec3 integral_s = fsw->integral_s;
     if (vec3_norm(error) < (2.0F * GAINS_NEAR_RAD)) {
         integral_s = vec3_add(integral_s, vec3_scale(fsw->coils.tick_s, error));
     }
-    fsw->integral_s = bounded_integral(b_t, integral_s, GAINS_K_I, fsw->coils.mean_am2);
+    fsw->integral_s = within_dipole(b_t, integral_s, GAINS_K_I, most_am2);
     const vec3 held_am2 = holding_dipole(b_t, fsw->integral_s, GAINS_K_I);
-    return vec3_add(pd_dipole(b_t, readings->omega_radps, error, GAINS_K_W, GAINS_K_A), held_am2);
+    return vec3_add(pd_dipole(b_t, readings->omega_radps, limited, GAINS_K_W, GAINS_K_A), held_am2);
 }
 
 static vec3 demand_am2(detumble *fsw)

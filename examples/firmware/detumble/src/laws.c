@@ -22,8 +22,8 @@ vec3 holding_dipole(vec3 b_t, vec3 integral_s, float k_i)
     return vec3_cross(vec3_scale(k_i, integral_s), b_t);
 }
 
-vec3 bounded_integral(vec3 b_t, vec3 integral_s, float k_i, float most_am2)
+vec3 within_dipole(vec3 b_t, vec3 term, float gain, float most_am2)
 {
-    const float demanded_am2 = k_i * vec3_norm(b_t) * vec3_norm(integral_s);
-    return (demanded_am2 > most_am2) ? vec3_scale(most_am2 / demanded_am2, integral_s) : integral_s;
+    const float demanded_am2 = gain * vec3_norm(b_t) * vec3_norm(term);
+    return (demanded_am2 > most_am2) ? vec3_scale(most_am2 / demanded_am2, term) : term;
 }

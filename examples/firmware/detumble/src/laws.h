@@ -23,7 +23,10 @@ vec3 pd_dipole(vec3 b_t, vec3 omega_radps, vec3 error, float k_w, float k_a);
 /* m = -k_i b x I, against a torque that lasts. integral_s: of the error [s], k_i [N m / (T^2 s)]; returns A m^2. */
 vec3 holding_dipole(vec3 b_t, vec3 integral_s, float k_i);
 
-/* The integral, shortened to where the dipole that it demands is at most most_am2: it must not wind up. */
-vec3 bounded_integral(vec3 b_t, vec3 integral_s, float k_i, float most_am2);
+/* A term x of the law, shortened to where gain |b| |x| is at most the dipole most_am2.
+ *
+ * So the integral does not wind up, and an error far from the goal does not take all that the coils give: the rate
+ * would have no say, and the body would tumble on. Wie, Lu 1995: the attitude's term is limited, not the rate's. */
+vec3 within_dipole(vec3 b_t, vec3 term, float gain, float most_am2);
 
 #endif

@@ -43,11 +43,20 @@ static void the_error_of_pd_is_turned_back(void)
 static void the_integral_holds_against_what_lasts_and_does_not_wind_up(void)
 {
     const vec3 integral_s = {2000.0F, -1000.0F, 500.0F};
-    const vec3 bounded_s = bounded_integral(B_T, integral_s, 0.08F, 1.0e-3F);
+    const vec3 bounded_s = within_dipole(B_T, integral_s, 0.08F, 1.0e-3F);
     const vec3 held_am2 = holding_dipole(B_T, bounded_s, 0.08F);
     CHECK(vec3_dot(torque_of(held_am2), integral_s) < 0.0F);
     CHECK(vec3_norm(held_am2) <= 1.0e-3F);
-    CHECK(vec3_norm(vec3_sub(bounded_integral(B_T, integral_s, 0.08F, 1.0F), integral_s)) == 0.0F);
+    CHECK(vec3_norm(vec3_sub(within_dipole(B_T, integral_s, 0.08F, 1.0F), integral_s)) == 0.0F);
+}
+
+static void an_error_far_from_the_goal_asks_for_no_more_than_the_coils_give(void)
+{
+    const vec3 q = {0.6F, -0.5F, 0.3F};
+    const vec3 limited = within_dipole(B_T, attitude_error(q), K_A, 1.0e-3F);
+    const vec3 m_am2 = pd_dipole(B_T, VEC3_ZERO, limited, K_W, K_A);
+    CHECK(vec3_dot(torque_of(m_am2), q) < 0.0F);
+    CHECK(vec3_norm(m_am2) <= 1.0e-3F);
 }
 
 static void no_dipole_lies_along_the_field(void)
@@ -64,6 +73,7 @@ int main(void)
     the_rate_of_pd_brakes();
     the_error_of_pd_is_turned_back();
     the_integral_holds_against_what_lasts_and_does_not_wind_up();
+    an_error_far_from_the_goal_asks_for_no_more_than_the_coils_give();
     no_dipole_lies_along_the_field();
     return failed_checks;
 }
