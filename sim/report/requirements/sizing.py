@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fsw.input.schema import TableError
 from sim.design.from_scenario import body_of, law_from_body
 from sim.design.theory.bodies import Body
 from sim.scenario.schema import Scenario
@@ -74,12 +75,13 @@ def balance(scenario: Scenario, torque_nm: Vec3, what: str) -> Balance:
 def least_error_deg(scenario: Scenario, orbits: float, torque_nm: Vec3) -> float | None:
     """The least RMS error of the whole attitude under a constant torque over the last of some orbits.
 
-    None for a body that the gravity gradient leaves free, for which there is no periodic motion.
+    None for a body that the gravity gradient leaves free, for which there is no periodic motion, and where
+    the elements do not hold for an orbit.
     """
     try:
         last = orbit_nodes(scenario, max(0.0, orbits - 1.0))
         return floor_deg(scenario, law_from_body(scenario) @ torque_nm, last)
-    except np.linalg.LinAlgError:
+    except (np.linalg.LinAlgError, TableError):
         return None
 
 

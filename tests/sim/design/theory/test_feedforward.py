@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from sim.design.theory.bodies import BODIES, Body, diagonal
-from sim.design.theory.feedforward import least_error
-from sim.design.theory.linear import dipole_field, free_motion
+from sim.design.theory.feedforward import answer, least_error
+from sim.design.theory.linear import Gains, closed_loop, dipole_field, free_motion
 from sim.design.theory.periodic_lqr import Augmented, Weights, design
 
 BODY = Body("oblique", ((1.02, 0.05, -0.03), (0.05, 1.85, 0.1), (-0.03, 0.1, 1.95)), 800.0, 98.6)
@@ -79,6 +79,25 @@ def test_a_given_field_takes_the_place_of_the_direct_dipoles():
     given = least_error(BODY, TORQUE, b_orbit=field).rms_rad
     assert given == least_error(elsewhere, TORQUE).rms_rad
     assert given > 1.1 * least_error(BODY, TORQUE).rms_rad
+
+
+def test_the_answer_to_a_varying_torque_is_what_the_regulated_body_comes_to():
+    """Integrated for forty orbits from rest: what began has died away."""
+    gains = Gains(8e6, 1.6e3)
+    u = 2.0 * np.pi / 32 * np.arange(32)
+    torque = np.stack([1e-7 * np.cos(u), -2e-7 * np.sin(2.0 * u), 5e-8 * np.sin(u)], axis=1)
+    at, matrix, w0 = fourier(torque), closed_loop(BODY, gains), BODY.rate_radps
+    inverse = np.linalg.inv(np.array(BODY.inertia_kgm2))
+
+    def change(now, x):
+        out = matrix(np.array([now]))[0] @ x
+        out[:3] += inverse @ at(now) / w0**2
+        return out
+
+    times = 2.0 * np.pi * 39.0 + u
+    flown = solve_ivp(change, (0.0, times[-1]), np.zeros(6), t_eval=times, rtol=1e-8, atol=1e-11)
+    found = answer(BODY, gains, torque)
+    np.testing.assert_allclose(flown.y[3:].T, found, atol=0.01 * np.abs(found).max())
 
 
 def test_without_a_dipole_the_error_is_larger():
