@@ -18,7 +18,7 @@ from fsw.core.gate.calibration import NO_CALIBRATION, measure
 from fsw.core.gate.readings import GateState, admit
 from fsw.core.laws.damping import bdot_dipole
 from fsw.core.laws.interface import Demand, FieldSample
-from fsw.core.laws.pd import acquisition_error, far_error, integrate_error, pd_dipole, within_mean_dipole
+from fsw.core.laws.pd import far_error, integrate_error, pd_dipole, within_mean_dipole
 from fsw.core.laws.plan.pulse_model import Pulse
 from fsw.wire.messages import CoilFire, Sync
 
@@ -148,7 +148,7 @@ class Reference:
             self.integral_s = integrate_error(self.integral_s, error, b, gains.k_i, config.tick_s, most_am2)
         self.integral_s = within_mean_dipole(self.integral_s, b, gains.k_i, most_am2)
         held = cross(scale(gains.k_i, self.integral_s), b)
-        limited = acquisition_error(attitude.q_body_from_orbit, b, gains.k_a, most_am2)
+        limited = within_mean_dipole(error, b, gains.k_a, most_am2)
         return add(pd_dipole(b, attitude.omega_body_orbit_radps, limited, gains.k_w, gains.k_a), held)
 
 

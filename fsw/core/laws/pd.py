@@ -22,18 +22,21 @@ def far_error(q_body_from_orbit: Quaternion) -> Vec3:
     return (factor * q1, factor * q2, factor * q3)
 
 
-def acquisition_error(
-    q_body_from_orbit: Quaternion, b_body_t: Vec3, k_a: float, mean_dipole_am2: float
-) -> Vec3:
-    """E, limited where k_a |b| |E| is the mean dipole that the coils give.
+def acquisition_error(inputs: LawInput, setpoint: Setpoint, config: ControlConfig) -> Vec3:
+    """E, limited where k_a |b| |E| is the mean dipole that the coils give, and where k_a |E| is k_w w0.
 
-    Beyond it the attitude alone would decide what the coils do, and a satellite that passes through all
-    attitudes gains as much energy by it as it loses: it tumbles on for orbits. The rate's term has no limit.
+    Beyond the first the attitude alone decides what the coils do. Beyond the second it asks for a turn faster
+    than the orbit's, with which the field does not come round. A satellite that passes through all attitudes
+    then gains as much energy as it loses, and tumbles on for orbits. The rate's term has no limit.
 
     Source: Wie, Lu 1995, Feedback control logic for spacecraft eigenaxis rotations under slew rate and
-    control constraints, of which the attitude's term is limited alone.
+    control constraints: the attitude's term is limited alone, by the rate that it asks for.
     """
-    return within_mean_dipole(far_error(q_body_from_orbit), b_body_t, k_a, mean_dipole_am2)
+    error = far_error(inputs.attitude.q_body_from_orbit)
+    if inputs.reference is not None and setpoint.k_w > 0.0:
+        asked, most = setpoint.k_a * norm(error), setpoint.k_w * inputs.reference.orbit_rate_radps
+        error = scale(most / asked, error) if asked > most else error
+    return within_mean_dipole(error, inputs.b_body_t, setpoint.k_a, config.mean_dipole_am2)
 
 
 def pd_dipole(b_body_t: Vec3, omega_body_orbit_radps: Vec3, error: Vec3, k_w: float, k_a: float) -> Vec3:
@@ -87,15 +90,13 @@ def pd(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConf
 def pd_far(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """The same law far from the goal: an error that does not vanish upside down, the integral frozen.
 
-    Both are limited to what the coils give: k_i may have been raised since the integral grew.
+    Both are limited: k_i may have been raised since the integral grew.
     """
     integral_s = _integral(memory)
     if not inputs.attitude.usable:
         return Demand(memory=integral_s)
-    b_body_t, most_am2 = inputs.b_body_t, config.mean_dipole_am2
-    integral_s = within_mean_dipole(integral_s, b_body_t, setpoint.k_i, most_am2)
-    error = acquisition_error(inputs.attitude.q_body_from_orbit, b_body_t, setpoint.k_a, most_am2)
-    return _demand(inputs, error, integral_s, setpoint)
+    integral_s = within_mean_dipole(integral_s, inputs.b_body_t, setpoint.k_i, config.mean_dipole_am2)
+    return _demand(inputs, acquisition_error(inputs, setpoint, config), integral_s, setpoint)
 
 
 def _demand(inputs: LawInput, error: Vec3, integral_s: Vec3, setpoint: Setpoint) -> Demand:

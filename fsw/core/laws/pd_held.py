@@ -97,10 +97,7 @@ def _cycle(
 
 def _pd(inputs: LawInput, setpoint: Setpoint, config: ControlConfig, *, near: bool) -> Vec3:
     q, omega = inputs.attitude.q_body_from_orbit, inputs.attitude.omega_body_orbit_radps
-    if near:
-        error = attitude_error(dcm(q))
-    else:
-        error = acquisition_error(q, inputs.b_body_t, setpoint.k_a, config.mean_dipole_am2)
+    error = attitude_error(dcm(q)) if near else acquisition_error(inputs, setpoint, config)
     return pd_dipole(inputs.b_body_t, omega, error, setpoint.k_w, setpoint.k_a)
 
 

@@ -22,6 +22,7 @@ from fsw.core.laws.pd import (
     pd_dipole,
     pd_far,
 )
+from fsw.core.orbit.ephemeris import Reference
 
 K_W, K_A = 6.2694e6, 1614.9
 component = st.floats(-1.0, 1.0, allow_subnormal=False)
@@ -140,8 +141,12 @@ KNOWN = Attitude(quaternion((0.1, -0.2, 0.15)), (0.001, -0.002, 0.003), 0.01, 1e
 S = attitude_error(dcm(KNOWN.q_body_from_orbit))
 
 
-def inputs(attitude=KNOWN, b_body_t=B_BODY_T):
-    return LawInput(attitude, b_body_t, FieldSample(), FieldSample())
+def inputs(attitude=KNOWN, b_body_t=B_BODY_T, reference=None):
+    return LawInput(attitude, b_body_t, FieldSample(), FieldSample(), reference)
+
+
+def turned(q, omega=ZERO, **known):
+    return inputs(Attitude(q, omega, 0.01, 1e-4, True), **known)
 
 
 class TestIntegral:
@@ -219,20 +224,36 @@ class TestIntegral:
 
 
 def test_in_acquire_the_attitude_asks_for_no_more_than_the_coils_give_in_the_mean():
-    turned, slight = quaternion((0.0, 2.0, 1.0)), quaternion((0.0, 0.002, 0.001))
-    error = acquisition_error(turned, B_BODY_T, K_A, MEAN_AM2)
+    far, slight = quaternion((0.0, 2.0, 1.0)), quaternion((0.0, 0.002, 0.001))
+    error = acquisition_error(turned(far), SETPOINT, CONFIG)
     assert K_A * np.linalg.norm(B_BODY_T) * np.linalg.norm(error) == pytest.approx(MEAN_AM2)
-    np.testing.assert_allclose(np.cross(error, far_error(turned)), 0.0, atol=1e-12)
-    assert np.dot(error, far_error(turned)) > 0.0
-    assert acquisition_error(slight, B_BODY_T, K_A, MEAN_AM2) == far_error(slight)
+    np.testing.assert_allclose(np.cross(error, far_error(far)), 0.0, atol=1e-12)
+    assert np.dot(error, far_error(far)) > 0.0
+    assert acquisition_error(turned(slight), SETPOINT, CONFIG) == far_error(slight)
+
+
+def test_in_acquire_the_attitude_asks_for_no_faster_turn_than_the_orbits():
+    """With coils that would give anything."""
+    orbit = Reference(
+        (7e6, 0.0, 0.0), 7e6, (1e-5, 2e-5, 3e-5), (1.0, 0.0, 0.0), True, (1.0, 0.0, 0.0, 0.0), 1.1e-3
+    )
+    strong, far = replace(CONFIG, mean_dipole_am2=1e6), quaternion((0.0, 2.0, 1.0))
+    quick = replace(SETPOINT, k_a=3.0 * K_A)
+    limited = acquisition_error(turned(far, reference=orbit), quick, strong)
+    assert 3.0 * K_A * np.linalg.norm(limited) == pytest.approx(K_W * 1.1e-3)
+    np.testing.assert_allclose(np.cross(limited, far_error(far)), 0.0, atol=1e-12)
+    for at, setpoint in (
+        (turned(far, reference=orbit), SETPOINT),
+        (turned(far, reference=orbit), replace(quick, k_w=0.0)),
+        (turned(far), quick),
+    ):
+        assert acquisition_error(at, setpoint, strong) == far_error(far)
 
 
 def test_in_acquire_the_rate_has_what_it_asks_for_whatever_the_attitude():
     rate = (0.02, -0.03, 0.01)
-    at_rest, turning = (
-        Attitude(quaternion((0.0, 2.0, 1.0)), omega, 0.01, 1e-4, True) for omega in (ZERO, rate)
-    )
-    still, braked = (pd_far(inputs(at), (), SETPOINT, CONFIG).m_body_am2 for at in (at_rest, turning))
+    far = quaternion((0.0, 2.0, 1.0))
+    still, braked = (pd_far(turned(far, omega), (), SETPOINT, CONFIG).m_body_am2 for omega in (ZERO, rate))
     assert np.linalg.norm(still) <= MEAN_AM2 * (1.0 + 1e-12)
     np.testing.assert_allclose(np.subtract(braked, still), pd_dipole(B_BODY_T, rate, ZERO, K_W, K_A))
 
