@@ -13,7 +13,7 @@ from sim.scenario.schema import load
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [11, 13, 905])
 def test_a_6u_turned_by_40_deg_points_within_two_orbits(seed):
-    """Without a limit of the attitude's term by what the coils give, it tumbles on for three orbits and more."""
+    """Without a limit by what the coils give it tumbles on for three orbits and more."""
     flown = record_scenario(load("cubesat6u"), seed, 2.0)
     assert flown.estimates.mode[-1] == Mode.POINT
 

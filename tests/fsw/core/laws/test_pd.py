@@ -142,7 +142,7 @@ S = attitude_error(dcm(KNOWN.q_body_from_orbit))
 
 
 def inputs(attitude=KNOWN, b_body_t=B_BODY_T, reference=None):
-    return LawInput(attitude, b_body_t, FieldSample(), FieldSample(), reference)
+    return LawInput(attitude, b_body_t, FieldSample(), FieldSample(), reference=reference)
 
 
 def turned(q, omega=ZERO, **known):
