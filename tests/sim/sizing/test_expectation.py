@@ -1,6 +1,6 @@
 """What pointing to expect, against theory and against flights."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import sqrt
 
 import numpy as np
@@ -11,10 +11,11 @@ from sim.campaign.flight import record_scenario
 from sim.design.from_scenario import body_of
 from sim.new_scenario.command import scenario_made, scenario_text
 from sim.new_scenario.satellite import NewSatellite
-from sim.plant.environment.orbit import Sgp4Orbit
+from sim.plant.environment.orbit import Orbit
 from sim.report.figures.attitude_arrays import angle_rad
 from sim.report.figures.estimate_error import estimate_error
 from sim.scenario.schema import load, parse_settings
+from sim.sizing import torques
 from sim.sizing.expectation import (
     detumbling,
     detumbling_words,
@@ -136,21 +137,33 @@ def test_of_the_orbits_of_a_day_the_worst_counts_whatever_the_hour_at_which_a_fl
     assert all(one.least_floor_deg < 0.3 * one.floor_deg for one in found)
 
 
-def test_elements_that_hold_for_less_than_a_day_are_judged_by_the_orbits_for_which_they_do(monkeypatch):
-    tenth = scenario("realsat")
-    position = Sgp4Orbit.at
+@dataclass
+class Decaying:
+    """An orbit of which there is no position from 20000 s on, flown from some time."""
 
-    def decays(orbit, t_s):
-        if t_s[-1] > 20000.0:
+    orbit: Orbit
+    began_s: float
+
+    def at(self, t_s):
+        if self.began_s + t_s[-1] > 20000.0:
             raise ValueError("SGP4 at 20000 s after the epoch: decayed")
-        return position(orbit, t_s)
+        return self.orbit.at(t_s)
 
-    whole = len(day_of(tenth))
-    monkeypatch.setattr(Sgp4Orbit, "at", decays)
-    assert (whole, len(day_of(tenth))) == (14, 3)
-    monkeypatch.setattr(Sgp4Orbit, "at", lambda orbit, t_s: decays(orbit, t_s + 20000.0))
+
+@pytest.mark.parametrize(("began_s", "orbits"), [(-1e6, 14), (0.0, 3)])
+def test_elements_that_hold_for_less_than_a_day_are_judged_by_the_orbits_for_which_they_do(
+    began_s, orbits, monkeypatch
+):
+    made = torques.make_orbit
+    monkeypatch.setattr(torques, "make_orbit", lambda *flown: Decaying(made(*flown), began_s))
+    assert len(day_of(scenario("realsat"))) == orbits
+
+
+def test_elements_without_a_position_in_the_first_orbit_are_refused_in_one_sentence(monkeypatch):
+    made = torques.make_orbit
+    monkeypatch.setattr(torques, "make_orbit", lambda *flown: Decaying(made(*flown), 20000.0))
     with pytest.raises(TableError, match=r"^orbit\.tle: SGP4 at 20000 s after the epoch: decayed"):
-        day_of(tenth)
+        day_of(scenario("realsat"))
 
 
 def test_the_floor_grows_with_the_disturbance_and_the_quantum_with_the_least_level():
