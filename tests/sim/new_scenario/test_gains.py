@@ -31,14 +31,14 @@ def test_from_any_attitude_it_comes_to_rest(satellite):
         assert flight.pointing_deg[flight.orbit(-1)].max() < 10.0, initial
 
 
-def test_four_times_the_attitude_gain_does_not():
-    """The best at small angles of this body: it is no law for a large turn."""
+def test_four_times_the_attitude_gain_does_too():
+    """The best at small angles of this body; far from the goal the attitude's term is limited."""
     satellite = SATELLITES[-1]
     text = scenario_text(satellite, "mine.toml")
     gains = scenario_made(text).control
     strong = {"control": {"k_a": 4.0 * gains.k_a}, "initial": {"axis": [-0.5, 0.2, 0.8], "angle_deg": 40.0}}
     flight = fly(scenario_made(text, strong), 5.0)
-    assert flight.pointing_deg[flight.orbit(-1)].max() > 30.0
+    assert flight.pointing_deg[flight.orbit(-1)].max() < 10.0
 
 
 def test_they_go_with_inertia_and_orbit():
