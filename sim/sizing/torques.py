@@ -44,10 +44,10 @@ class OrbitNodes:
 
 
 def day_of(scenario: Scenario) -> list[OrbitNodes]:
-    """The orbits of a day from the epoch on: at least the first, and those for which the elements hold.
+    """The orbits of a day from the epoch on: at least the first, and those for which elements and field hold.
 
     Raises:
-        TableError: the elements have no position in the first.
+        TableError: they do not hold in the first.
     """
     orbits = [orbit_nodes(scenario)]
     for number in range(1, round(DAY_S / orbit_period_s(scenario))):
@@ -62,7 +62,7 @@ def orbit_nodes(scenario: Scenario, number: float = 0.0) -> OrbitNodes:
     """The nodes t = (number + k / N) T of an orbit; the first is number 0.
 
     Raises:
-        TableError: the elements have no position in it.
+        TableError: the elements have no position in it, or the field no value.
     """
     config = plant_config(scenario, 0)
     t_s = orbit_period_s(scenario) * (number + np.arange(NODES, dtype=np.float64) / NODES)
@@ -70,7 +70,10 @@ def orbit_nodes(scenario: Scenario, number: float = 0.0) -> OrbitNodes:
         r_m, v_mps = make_orbit(config.orbit, config.epoch_unix_s).at(t_s)
     except ValueError as error:
         raise TableError(f"orbit.tle: {error}") from None
-    b_eci_t = make_field(config.field, config.epoch_unix_s).at(t_s, r_m)
+    try:
+        b_eci_t = make_field(config.field, config.epoch_unix_s).at(t_s, r_m)
+    except ValueError as error:
+        raise TableError(f"time.epoch_utc, and an orbit from it on: {error}") from None
     up, normal = _unit(r_m), _unit(np.cross(r_m, v_mps))
     axes = np.stack([up, np.cross(normal, up), normal], axis=1)
     return OrbitNodes(t_s, r_m, v_mps, axes, np.einsum("kij,kj->ki", axes, b_eci_t))

@@ -159,6 +159,12 @@ def test_elements_that_hold_for_less_than_a_day_are_judged_by_the_orbits_for_whi
     assert len(day_of(scenario("realsat"))) == orbits
 
 
+def test_a_day_ends_with_the_table_of_the_field():
+    assert 1 <= len(day_of(scenario("cubesat6u", 'time.epoch_utc="2029-12-31T20:00:00Z"'))) <= 3
+    with pytest.raises(TableError, match=r"^time\.epoch_utc, .*covers 1900 to 2030"):
+        day_of(scenario("cubesat6u", 'time.epoch_utc="2029-12-31T23:00:00Z"'))
+
+
 def test_elements_without_a_position_in_the_first_orbit_are_refused_in_one_sentence(monkeypatch):
     made = torques.make_orbit
     monkeypatch.setattr(torques, "make_orbit", lambda *flown: Decaying(made(*flown), 20000.0))
