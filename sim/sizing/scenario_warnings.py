@@ -9,6 +9,7 @@ import numpy as np
 from fsw.core.commands import HANDLERS, Situation
 from fsw.core.orbit.tle import tle_elements
 from fsw.core.step import boot
+from fsw.input.schema import TableError
 from fsw.table.calibration import MagnetometerTable
 from fsw.table.config import flight_config
 from fsw.table.estimator import table_bounds
@@ -95,6 +96,8 @@ def scenario_warnings(scenario: Scenario, ticks: int | None = None) -> list[str]
     A run of it takes so many ticks; None: as the scenario says.
     """
     told = [doubt for judge in _JUDGES for doubt in judge(scenario)]
+    if _has_an_orbit(scenario):
+        told += [doubt for judge in _JUDGES_OF_AN_ORBIT for doubt in judge(scenario)]
     flown = ticks_of(scenario, None) if ticks is None else ticks
     told += ignored_keys(scenario)
     told += unsent_telecommands(scenario.telecommand, scenario.time.tick_hz, flown)
@@ -358,8 +361,16 @@ _JUDGES: tuple[Callable[[Scenario], Iterator[str]], ...] = (
     _sensors,
     _sizes,
     _gravity,
-    _load,
     _beyond_bounds,
-    _drag_and_light,
     _telecommands,
 )
+_JUDGES_OF_AN_ORBIT: tuple[Callable[[Scenario], Iterator[str]], ...] = (_load, _drag_and_light)
+
+
+def _has_an_orbit(scenario: Scenario) -> bool:
+    """Whether elements and field hold for an orbit: a shorter flight flies without."""
+    try:
+        orbit_nodes(scenario)
+    except TableError:
+        return False
+    return True

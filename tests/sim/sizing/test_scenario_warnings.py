@@ -198,3 +198,8 @@ def test_what_counts_is_how_long_the_run_is():
     assert "at 600 s, will not be sent: the last tick is at 599 s" in doubt
     late = with_telecommands(float(ticks_of(asked, None)))
     assert scenario_warnings(late, 2 * ticks_of(asked, None)) == []
+
+
+def test_a_flight_shorter_than_the_orbit_for_which_the_field_holds_is_not_refused():
+    late = load("cubesat6u", {"time": {"epoch_utc": "2029-12-31T23:00:00Z", "orbits": 0.1}})
+    assert not [doubt for doubt in scenario_warnings(late) if "balancing" in doubt]
