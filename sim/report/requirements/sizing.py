@@ -1,5 +1,6 @@
 """What the coils of a scenario can give on average, what its disturbances take, and what its levels cause."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 from math import degrees, radians, sin, sqrt
 from typing import NamedTuple
@@ -68,7 +69,8 @@ def balance(scenario: Scenario, torque_nm: Vec3, what: str) -> Balance:
     load, of_dipole = dipole.needed / dipole.given, dipole.residual > dipole.torque
     if what != "attitude":
         return Balance(load, two_digits(scenario.coils.largest_am2 * load / MOST_LOAD), of_dipole)
-    load = max(load, torque_balance(scenario).load)
+    with suppress(TableError):  # of a flight in an orbit that elements or field do not outlast
+        load = max(load, torque_balance(scenario).load)
     return Balance(load, levels_against(scenario, load)[2], of_dipole)
 
 
