@@ -19,7 +19,7 @@ import numpy as np
 from fsw.core.algebra.vector import Mat3, Vec3
 from fsw.core.laws.entry import Aim, LawEntry
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
-from fsw.core.laws.lqr import LqrGains, by_schedule, orbit_problem, schedule, without_memory
+from fsw.core.laws.lqr import LqrGains, balanced_pd, by_schedule, orbit_problem, schedule
 from fsw.core.laws.plan.game import game_periodic
 from fsw.core.laws.plan.riccati import NotHeldError, Schedule
 
@@ -82,5 +82,5 @@ def h_infinity(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Con
 
 
 LAWS = {
-    "h_infinity": LawEntry(43, Aim.THREE_AXIS, without_memory, h_infinity, HInfinityGains),
+    "h_infinity": LawEntry(43, Aim.THREE_AXIS, balanced_pd, h_infinity, HInfinityGains),
 }

@@ -18,7 +18,7 @@ from typing import Protocol
 import numpy as np
 
 from fsw.core.algebra.quaternion import Quaternion, dcm
-from fsw.core.algebra.vector import Mat3, Vec3, add, cross, scale, transform, transpose
+from fsw.core.algebra.vector import Mat3, Vec3, add, cross, scale, sub, transform, transpose
 from fsw.core.estimation.attitude import Attitude
 from fsw.core.laws.entry import Aim, LawEntry
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
@@ -34,6 +34,7 @@ from fsw.core.laws.plan.riccati import (
     periodic,
     regulator_problem,
 )
+from fsw.core.laws.projection import torque_dipole
 from fsw.core.orbit.ephemeris import Reference
 
 STEPS = 48
@@ -219,11 +220,18 @@ def exact_torque(inputs: LawInput, reference: Reference, table: Schedule, config
     return add(expected_torque(inputs, table), turned_nm)
 
 
-def without_memory(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
-    """Far from the goal: the PD law's far form, without memory for the law near it."""
-    return pd_far(inputs, (), setpoint, config).without_memory()
+def balanced_pd(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
+    """Far from the goal: the PD law's far form, less the estimated torque; no memory for the law near it.
+
+    Within the limits of ``acquisition_error`` the attitude's term cannot balance a torque that takes a third
+    of what the coils give.
+    """
+    wanted_am2 = pd_far(inputs, (), setpoint, config).m_body_am2
+    if not inputs.attitude.usable:
+        return Demand()
+    return Demand(sub(wanted_am2, torque_dipole(inputs.torque_body_nm, inputs.b_body_t)))
 
 
 LAWS = {
-    "lqr": LawEntry(40, Aim.THREE_AXIS, without_memory, lqr, LqrGains),
+    "lqr": LawEntry(40, Aim.THREE_AXIS, balanced_pd, lqr, LqrGains),
 }

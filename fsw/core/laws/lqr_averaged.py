@@ -29,11 +29,11 @@ from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Set
 from fsw.core.laws.lqr import (
     STEPS,
     LqrGains,
+    balanced_pd,
     dipole,
     expected_torque,
     orbit_problem,
     within,
-    without_memory,
 )
 from fsw.core.laws.plan.riccati import Array, Problem, Schedule, orbit_cost, pushes_of
 
@@ -117,5 +117,5 @@ def lqr_averaged(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: C
 
 
 LAWS = {
-    "lqr_averaged": LawEntry(44, Aim.THREE_AXIS, without_memory, lqr_averaged, AveragedGains),
+    "lqr_averaged": LawEntry(44, Aim.THREE_AXIS, balanced_pd, lqr_averaged, AveragedGains),
 }

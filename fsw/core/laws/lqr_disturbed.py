@@ -39,6 +39,7 @@ from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Set
 from fsw.core.laws.lqr import (
     STEPS,
     LqrGains,
+    balanced_pd,
     dipole,
     exact_torque,
     latitude_argument,
@@ -47,7 +48,6 @@ from fsw.core.laws.lqr import (
     orbit_problem,
     schedule,
     within,
-    without_memory,
 )
 from fsw.core.laws.motion import wheel_momentum
 from fsw.core.laws.plan.riccati import Array, Problem, Schedule, pushes_of
@@ -233,5 +233,5 @@ def _expected_change(
 
 
 LAWS = {
-    "lqr_disturbed": LawEntry(45, Aim.THREE_AXIS, without_memory, lqr_disturbed, DisturbedGains),
+    "lqr_disturbed": LawEntry(45, Aim.THREE_AXIS, balanced_pd, lqr_disturbed, DisturbedGains),
 }

@@ -19,13 +19,13 @@ from fsw.core.laws.entry import Aim, LawEntry
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.lqr import (
     STEPS,
+    balanced_pd,
     check_weights,
     dipole,
     expected_torque,
     latitude_argument,
     node,
     within,
-    without_memory,
 )
 from fsw.core.laws.plan.orbit_ahead import check_horizon, orbit_ahead
 from fsw.core.laws.plan.riccati import Array, Schedule, backward
@@ -129,5 +129,5 @@ def _step(memory: Memory, tick: int, steps_per_tick: float, applied: int) -> int
 
 
 LAWS = {
-    "mpc": LawEntry(41, Aim.THREE_AXIS, without_memory, mpc, MpcGains),
+    "mpc": LawEntry(41, Aim.THREE_AXIS, balanced_pd, mpc, MpcGains),
 }

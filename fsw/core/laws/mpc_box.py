@@ -22,12 +22,12 @@ from fsw.core.laws.entry import Aim, LawEntry
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.lqr import (
     STEPS,
+    balanced_pd,
     check_weights,
     expected_torque,
     latitude_argument,
     node,
     orbital_state,
-    without_memory,
 )
 from fsw.core.laws.plan.box import box_minimum
 from fsw.core.laws.plan.orbit_ahead import check_horizon, orbit_ahead
@@ -106,5 +106,5 @@ def mpc_box(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Contro
 
 
 LAWS = {
-    "mpc_box": LawEntry(160, Aim.THREE_AXIS, without_memory, mpc_box, BoxGains),
+    "mpc_box": LawEntry(160, Aim.THREE_AXIS, balanced_pd, mpc_box, BoxGains),
 }

@@ -21,7 +21,7 @@ from fsw.core.algebra.quaternion import dcm
 from fsw.core.algebra.vector import transform, transpose
 from fsw.core.laws.entry import Aim, LawEntry
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
-from fsw.core.laws.lqr import STEPS, check_weights, without_memory
+from fsw.core.laws.lqr import STEPS, balanced_pd, check_weights
 from fsw.core.laws.mpc import MpcGains, by_plan
 from fsw.core.laws.plan.orbit_ahead import check_horizon, orbit_ahead
 from fsw.core.laws.plan.riccati import Array
@@ -108,6 +108,6 @@ def mpc_held(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: Contr
 
 
 LAWS = {
-    "mpc_fitted": LawEntry(161, Aim.THREE_AXIS, without_memory, mpc_fitted, FittedGains),
-    "mpc_held": LawEntry(162, Aim.THREE_AXIS, without_memory, mpc_held, HeldFieldGains),
+    "mpc_fitted": LawEntry(161, Aim.THREE_AXIS, balanced_pd, mpc_fitted, FittedGains),
+    "mpc_held": LawEntry(162, Aim.THREE_AXIS, balanced_pd, mpc_held, HeldFieldGains),
 }

@@ -37,12 +37,12 @@ from fsw.core.laws.entry import Aim, LawEntry, Need
 from fsw.core.laws.interface import ControlConfig, Demand, LawInput, Memory, Setpoint
 from fsw.core.laws.lqr import (
     STEPS,
+    balanced_pd,
     check_weights,
     expected_torque,
     latitude_argument,
     node,
     orbital_state,
-    without_memory,
 )
 from fsw.core.laws.plan.cost_to_go import cost_to_go, times
 from fsw.core.laws.plan.orbit_ahead import OrbitAhead, check_horizon, interpolated_orbit
@@ -227,5 +227,5 @@ def _costs(problem: Problem, ahead: OrbitAhead, dipole_am2: Vec3, last: Array) -
 
 
 LAWS = {
-    "pulse_mpc": LawEntry(42, Aim.THREE_AXIS, without_memory, pulse_mpc, PulseMpcGains, needs=Need.PULSES),
+    "pulse_mpc": LawEntry(42, Aim.THREE_AXIS, balanced_pd, pulse_mpc, PulseMpcGains, needs=Need.PULSES),
 }

@@ -1,4 +1,4 @@
-"""A satellite whose coils are weak beside its gains is caught, and does not tumble on."""
+"""A satellite whose coils are weak beside its gains or a torque is caught, and does not tumble on."""
 
 import pytest
 
@@ -6,7 +6,7 @@ from fsw.input.schema import merge
 from fsw.wire.messages import Mode
 from sim.campaign import population
 from sim.campaign.flight import record_scenario
-from sim.scenario.schema import load
+from sim.scenario.schema import load, parse_settings
 
 
 @pytest.mark.long
@@ -26,3 +26,12 @@ def test_a_3u_of_the_population_with_coils_to_spare_points_within_three_orbits(s
     driven = {"coils": {"driver": "continuous", "max_dipole_am2": 0.048}}
     scenario = load("cubesat3u", merge(population.satellite("3u", satellite), driven))
     assert record_scenario(scenario, satellite, 3.0).estimates.mode[-1] == Mode.POINT
+
+
+@pytest.mark.long
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [911, 912])
+def test_a_3u_whose_coils_balance_a_torque_for_a_third_of_their_time_points_within_two_orbits(seed):
+    """Without the estimated torque taken off it is over 90 deg away after eight."""
+    loaded = parse_settings(("disturbance.torque_nm=[6e-9,6e-9,6e-9]",))
+    assert record_scenario(load("cubesat3u", loaded), seed, 2.0).estimates.mode[-1] == Mode.POINT

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from fsw.core.estimation.attitude import UNKNOWN
-from fsw.core.laws.interface import Wheel
+from fsw.core.laws.interface import Demand, Wheel
 from fsw.core.laws.lqr import (
     STEPS,
     LqrGains,
+    balanced_pd,
     exact_torque,
     expected_torque,
     latitude_argument,
@@ -19,7 +20,6 @@ from fsw.core.laws.lqr import (
     rotation,
     schedule,
     within,
-    without_memory,
 )
 from fsw.core.laws.pd import pd, pd_far
 from sim.design.theory.bodies import Body
@@ -207,9 +207,26 @@ def test_with_knowledge_something_finite_is(bench, settings, inputs):
 def test_far_from_the_goal_the_pd_law_flies_and_leaves_no_memory(bench, settings, inputs):
     point = bench.setpoint(k_w=K_W, k_a=K_A, k_i=0.08)
     foreign = tuple(float(k) for k in range(136))
-    demand = without_memory(inputs, foreign, point, settings)
+    demand = balanced_pd(inputs, foreign, point, settings)
     assert demand.m_body_am2 == pd_far(inputs, (), point, settings).m_body_am2
     assert demand.memory == ()
+
+
+def test_far_from_the_goal_the_estimated_torque_is_taken_off_as_far_as_it_can_be(bench, settings, inputs):
+    """What is left of it lies along the field."""
+    point, torque = bench.setpoint(k_w=K_W, k_a=K_A), np.array([3e-6, -2e-6, 5e-6])
+    without = np.array(balanced_pd(inputs, (), point, settings).m_body_am2)
+    balanced = inputs.replace(torque_body_nm=tuple(torque.tolist()))
+    taken_off = np.array(balanced_pd(balanced, (), point, settings).m_body_am2) - without
+    b = np.array(inputs.b_body_t)
+    left = torque + np.cross(taken_off, b)
+    np.testing.assert_allclose(np.cross(left, b), 0.0, atol=1e-18)
+    assert abs(taken_off @ b) < 1e-12
+
+
+def test_far_from_the_goal_nothing_is_asked_for_without_an_attitude(bench, settings, inputs):
+    blind = inputs.replace(attitude=UNKNOWN, torque_body_nm=TORQUE)
+    assert balanced_pd(blind, (), bench.setpoint(k_w=K_W, k_a=K_A), settings) == Demand()
 
 
 def test_both_signs_of_a_quaternion_are_one_turn():
