@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 from math import nan
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from sim.campaign.claim import Claim, ClaimOutcome, Study, Task
 from sim.campaign.code_digest import PROJECT
@@ -17,6 +17,7 @@ from sim.console import detail
 from sim.errors import HarnessError
 
 Errors = tuple[type[Exception], ...]
+Result = TypeVar("Result")
 
 OF_THE_MACHINE: Errors = (OSError, MemoryError, ImportError)
 """No room, no memory, no package: what a claim says is not touched by them."""
@@ -42,7 +43,7 @@ def guarded(study: Study, passed: Errors = ()) -> Study:
     return replace(study, tasks=tasks, conclude=partial(_conclude, study, passed))
 
 
-def attempt(task: Callable[[], Any], passed: Errors = ()) -> Any:  # noqa: ANN401  (as in Task)
+def attempt(task: Callable[[], Result], passed: Errors = ()) -> Result | Failed:
     """What it gives, or why it gives nothing."""
     try:
         return task()
@@ -55,6 +56,7 @@ def attempt(task: Callable[[], Any], passed: Errors = ()) -> Any:  # noqa: ANN40
 
 def claims_of(study: Study) -> list[Claim]:
     """The claims that a study makes; where it does not tell them beforehand, one that stands for them."""
+    judged: list[ClaimOutcome] | Failed
     if isinstance(study, FlightStudy):
         counted = f"; {len(study.tasks)} {study.counted}" if study.counted else ""
         judged = campaign(study.id, study.source + counted, (), study.figures).conclude([])

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -12,6 +12,7 @@ from torquer.cli.options import Number
 if TYPE_CHECKING:
     from sim.new_scenario.satellite import NewSatellite
 
+Answer = TypeVar("Answer")
 _ABOVE_0 = Number(min=0.0, min_open=True)
 _THREE = (float, float, float)
 _OPTIONS = (
@@ -134,11 +135,12 @@ def asked(figures: dict[str, Any], tle: Path | None) -> tuple[dict[str, Any], Pa
     return found, tle
 
 
-def _optional(question: str, read: Callable[[str], Any]) -> Any:  # noqa: ANN401  (what is read)
+def _optional(question: str, read: Callable[[str], Answer]) -> Answer | None:
     """An answer, or None."""
-    return click.prompt(
+    answer: Answer | None = click.prompt(
         question, default="", show_default=False, value_proc=lambda text: read(text) if text else None
     )
+    return answer
 
 
 def _tle_file(text: str) -> Path:

@@ -1,7 +1,5 @@
 """The verdict of phasing in words and as JSON, held against the onboard table."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -110,7 +108,7 @@ def _sigma(coils: CoilAxes) -> NDArray[np.float64]:
     return np.sqrt(coils.covariance.diagonal()).reshape(3, 3)
 
 
-def _matrix(values: Any, sigmas: Any, form: str) -> list[str]:  # noqa: ANN401  (arrays)
+def _matrix(values: NDArray[np.float64], sigmas: NDArray[np.float64], form: str) -> list[str]:
     return [
         "  " + "  ".join(form.format(value, sigma) for value, sigma in zip(row, sigma_row, strict=True))
         for row, sigma_row in zip(values.tolist(), sigmas.tolist(), strict=True)

@@ -2,6 +2,7 @@
 
 from dataclasses import astuple, fields
 from math import radians, sqrt
+from typing import ClassVar
 
 import filter_steps
 import numpy as np
@@ -105,7 +106,7 @@ class TestStates:
 
 
 class TestLimitsOfThePair:
-    KNOWN = {  # noqa: RUF012  (never changed)
+    KNOWN: ClassVar = {
         "magnetometer_bias_nt": 700.0,
         "magnetometer_scale_percent": 0.4,
         "magnetometer_misalignment_deg": 1.5,
@@ -115,7 +116,7 @@ class TestLimitsOfThePair:
         "magnetometer_shadow_nt": 320.0,
         "storm_nt": 130.0,
     }
-    SENSORS = {"magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.3}  # noqa: RUF012  (never changed)
+    SENSORS: ClassVar = {"magnetometer_sigma_nt": 150.0, "sun_sigma_deg": 0.3}
 
     def test_are_the_bounds_and_the_noise_at_the_edge_of_the_gate(self):
         limits = plausibility_config(table_with(uncertainty=self.KNOWN, estimator=self.SENSORS))

@@ -7,6 +7,7 @@ all axes, parameters that are all nonzero and unequal. Rotations are exact here,
 from dataclasses import dataclass, replace
 from math import radians
 from types import SimpleNamespace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -75,7 +76,7 @@ class Satellite:
     s_eci = unit((-0.8, 0.35, 0.4))
     gravity_ps2 = 3.3e-6
     driven_am2 = (0.0, -8.0, 2.0)
-    sigma = {"field": np.full(3, 2e-7), "sun": np.full(3, radians(0.5))}  # noqa: RUF012  (never changed)
+    sigma: ClassVar = {"field": np.full(3, 2e-7), "sun": np.full(3, radians(0.5))}
     sigma["both"] = np.concatenate((sigma["field"], sigma["sun"]))
 
     @property
