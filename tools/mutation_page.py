@@ -26,6 +26,8 @@ page; the tests of each module are in `tests/mutation/targets.toml`, the reasons
 `tests/mutation/survivors.toml`. Tests that run too long count as failed. A module that has changed since its
 measurement is marked as such, and `make mutation` measures it again.
 
+{verdict}.
+
 | part | module | mutants | noticed | too long | survived, listed | survived, not listed |
 |---|---|---|---|---|---|---|
 {rows}
@@ -148,9 +150,21 @@ def write_page() -> None:
         for module, one in sorted(stored(COVERAGE).items())
     ]
     text = TEXT.format(
-        rows="\n".join(rows), survivors="\n".join(reasons) or "None.", coverage="\n".join(coverage)
+        verdict=_verdict(results, old),
+        rows="\n".join(rows),
+        survivors="\n".join(reasons) or "None.",
+        coverage="\n".join(coverage),
     )
     PAGE.write_text(text, encoding="utf-8")
+
+
+def _verdict(results: dict[str, Any], old: list[str]) -> str:
+    modules = [module for target in targets() for module in target.modules]
+    measured = [module for module in modules if module in results]
+    made = sum(results[module]["mutants"] for module in measured)
+    left = f"{made} mutants, {len(unlisted(results))} that no test notices and no reason lists"
+    changed, missing = len(set(old) & set(measured)), len(modules) - len(measured)
+    return f"{left}; of {len(modules)} modules {changed} changed since, {missing} not measured"
 
 
 def note_coverage(measured: dict[str, Any]) -> None:

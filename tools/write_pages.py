@@ -141,8 +141,8 @@ EVIDENCE = (
         "mutation",
         "changed lines of code",
         "make mutation",
-        r"\| (\d+) \|$",
-        "{total} that no test notices and no reason lists",
+        r"^(\d+ mutants, .*)\.$",
+        "{}",
     ),
     Evidence(
         "replay",
