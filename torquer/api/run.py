@@ -79,7 +79,8 @@ class Run(PrintedResult):
         """``summary.json``: pulses, duty, pointing, estimate, events, judged by the truth of the plant."""
         path = self.path / run_dir.SUMMARY
         if not self.concluded:
-            raise HarnessError(f"{self.path} has no {path.name}: torquer report {self.path} makes it")
+            why = self.failures[Verdict.COMPLETE.value]
+            raise HarnessError(f"there is no {path.name} ({why}): torquer report {self.path} makes it")
         try:
             summary = json.loads(path.read_text(encoding="utf-8"))
         except (OSError, ValueError, RecursionError) as error:

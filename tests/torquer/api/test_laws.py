@@ -195,6 +195,8 @@ def test_a_function_that_fails_says_at_which_of_its_lines(tmp_path):
     run = fly(fails, tmp_path / "run")
     assert "it fails: line " in run.ended
     assert "ZeroDivisionError" in run.ended
+    with pytest.raises(torquer.InputError, match=r"there is no summary\.json .*ZeroDivisionError"):
+        run.summary  # noqa: B018  to be asked for is to fail
 
 
 @pytest.mark.long
