@@ -1,7 +1,7 @@
 """``torquer judge``: a flight software of one's own, judged."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -36,7 +36,6 @@ EXAMPLES = examples(
 @scenario_argument()
 @click.option(
     "--flight-software",
-    "software",
     metavar="COMMAND",
     help="Started for each flight, without a shell; {bus}, {port}, {scenario} stand for those of the flight.",
 )
@@ -100,27 +99,13 @@ EXAMPLES = examples(
 @sentences
 def judge(
     scenario: str,
-    software: str | None,
-    bus: str | None,
-    profile: str,
     pace: str | None,
     paced: bool,
-    answer_s: float,
-    boot_s: float,
     orbits: float | None,
-    seed: int | None,
-    out: Path | None,
     faults: bool,
-    rows: tuple[str, ...],
-    phases: int | None,
-    runs: int | None,
-    keep: str,
     board: str | None,
-    arm: bool,
-    seconds: float | None,
-    deadman_s: float | None,
     settings: tuple[str, ...],
-    junit: Path | None,
+    **options: Any,  # noqa: ANN401  (as click gives them)
 ) -> int:
     """Fly SCENARIO against any flight software and judge it: rules of the bus, requirements, and why not.
 
@@ -142,28 +127,14 @@ def judge(
     one_flight = board is None and not faults
     judged = judge(
         scenario if campaign else load_scenario(scenario, settings, ticks if one_flight else None),
-        software,
-        bus=bus,
-        profile=profile,
         pace=pace or ("realtime" if paced else "lockstep"),
-        answer_s=answer_s,
-        boot_s=boot_s,
         orbits=orbits,
-        seed=seed,
         faults=faults,
-        rows=rows,
-        phases=phases,
-        runs=runs,
-        keep=keep,
         board=board,
-        arm=arm,
-        seconds=seconds,
-        deadman_s=deadman_s,
         set=parse_settings(settings) if campaign else None,
-        out=out,
-        junit=junit,
         tell=_say,
         progress=True,
+        **options,
     )
     for line, wrong in judged.found.lines:
         say(line, failed=wrong)
