@@ -52,9 +52,9 @@ instructions, an array that the kernel returns 1300, the lookup of a constant th
 
 What holds most back is the way of the code to the processor. It is run through once a tick, and not much of
 it twice: in callgrind's caches of 32 KB and 512 KB a tick of `microsat`, step and plant, has 206 000
-instructions, and fetches 6800 lines of 64 bytes of code anew from beyond the first cache and 3200 of them from
-beyond the second. By the usual latencies (14 and some 50 cycles) that is three fifths of its time. So less code
-a tick would help, and neither its order nor its alignment.
+instructions, and fetches 6800 lines of 64 bytes of code anew from beyond the first cache and 3200 of them
+from beyond the second. By the usual latencies (14 and some 50 cycles) that is three fifths of its time. So
+less code a tick would help, and neither its order nor its alignment.
 
 Tried, and not worth what it costs: `-O1` in place of `-O2` builds in five sixths of the time, and the plant
 then takes 2 to 4 % more instructions; hidden symbols save 0.7 % and are kept; link-time optimisation flies

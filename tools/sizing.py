@@ -201,20 +201,20 @@ def fly_cubesats(seeds: int, workers: int) -> list[Cubesat]:
         written = [write_new(one, Path(folder, f"{one.name}.toml")) for one in CUBESATS]
         studies = [
             Study(
-                scenario.name,
+                one.scenario.name,
                 tuple(
-                    partial(fly_order, Order(str(file), {}, FIRST + place, ORBITS)) for place in range(seeds)
+                    partial(fly_order, Order(str(one.file), {}, FIRST + place, ORBITS))
+                    for place in range(seeds)
                 ),
                 lambda flights: [],
                 has_flights=True,
             )
-            for file, scenario, _ in written
+            for one in written
         ]
         with progress("flying cubesats", seeds * len(studies)) as watch:
             flown = run(with_cache(studies), workers, watch, lambda study: None)
     return [
-        _cubesat(scenario, warnings, study.results)
-        for (_, scenario, warnings), study in zip(written, flown, strict=True)
+        _cubesat(one.scenario, one.warnings, study.results) for one, study in zip(written, flown, strict=True)
     ]
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 from functools import cache
 from math import prod
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
@@ -103,11 +103,9 @@ def new(satellite: NewSatellite, out: Path | None) -> int:
         HarnessError: figures are missing, the name is taken, the file exists or cannot be written.
         TableError: the figures make no satellite.
     """
-    file, scenario, doubts = write_new(satellite, out)
-    for doubt in doubts:
-        warn(doubt)
-    expectation = expect(scenario)
-    pointing_deg = expectation.pointing_deg if points(expectation, gravity_on(scenario)) else None
+    file, scenario, warnings, pointing_deg = write_new(satellite, out)
+    for warning in warnings:
+        warn(warning)
     about = "no pointing" if pointing_deg is None else f"about {pointing_deg:.1f} deg RMS"
     say(f"written: {file}; {about} to expect (torquer size {file})")
     say(f"fly it: torquer sil {file}")
@@ -115,8 +113,24 @@ def new(satellite: NewSatellite, out: Path | None) -> int:
     return 0
 
 
-def write_new(satellite: NewSatellite, out: Path | None) -> tuple[Path, Scenario, tuple[str, ...]]:
-    """Write the scenario; its file, what is in it, and what of it is most likely wrong, a sentence each.
+class WrittenScenario(NamedTuple):
+    """A scenario and its file.
+
+    Attributes:
+        file: in which it stands.
+        scenario: what stands there.
+        warnings: what of it is most likely wrong, a sentence each.
+        pointing_deg: to expect, root mean square; None: none to rely on.
+    """
+
+    file: Path
+    scenario: Scenario
+    warnings: tuple[str, ...]
+    pointing_deg: float | None
+
+
+def write_new(satellite: NewSatellite, out: Path | None) -> WrittenScenario:
+    """Write the scenario.
 
     Raises:
         HarnessError: as for ``new``.
@@ -128,11 +142,13 @@ def write_new(satellite: NewSatellite, out: Path | None) -> tuple[Path, Scenario
     scenario = scenario_made(text)
     with writing(file), file.open("x", encoding="utf-8") as target:
         target.write(text)
-    doubts = [*figure_warnings(satellite, scenario), *scenario_warnings(scenario)]
+    warnings = [*figure_warnings(satellite, scenario), *scenario_warnings(scenario)]
     expectation = expect(scenario)
-    if points(expectation, gravity_on(scenario)) and (doubt := doubt_of(expectation)):
-        doubts.append(doubt)
-    return file, scenario, tuple(doubts)
+    if not points(expectation, gravity_on(scenario)):
+        return WrittenScenario(file, scenario, tuple(warnings), None)
+    if doubt := doubt_of(expectation):
+        warnings.append(doubt)
+    return WrittenScenario(file, scenario, tuple(warnings), expectation.pointing_deg)
 
 
 def check_new(name: str, file: Path) -> None:

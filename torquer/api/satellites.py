@@ -177,5 +177,5 @@ def new(
         cells=given.sun == "cells",
         exact=given.bounds == "exact",
     )
-    path, scenario, warnings = write_new(satellite, optional_path(out, "out"))
-    return NewScenario(path, TypedScenario.of(scenario), warnings)
+    written = write_new(satellite, optional_path(out, "out"))
+    return NewScenario(written.file, TypedScenario.of(written.scenario), written.warnings)

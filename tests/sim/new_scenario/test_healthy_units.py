@@ -23,7 +23,7 @@ ONE_U = NewSatellite(
 @pytest.mark.slow
 def test_no_healthy_unit_is_isolated_when_the_sun_is_back(tmp_path):
     """By seed 101 the attitude is up to 90 deg wrong when the second shadow ends."""
-    file, _, _ = write_new(ONE_U, tmp_path / "one-u-low.toml")
+    file = write_new(ONE_U, tmp_path / "one-u-low.toml").file
     flight = fly_order(Order(str(file), seed=101, orbits=1.75))
     assert flight.summary["isolated"] == []
     assert any(event["name"] == "FILTER_STARTED" for event in flight.summary["events"])
