@@ -182,7 +182,7 @@ def oldest_pulse(solution: Solution, coil: int, test: WeakTest) -> PartSum:
 
 
 def weak_by_pulses(
-    solution: Solution, earlier: tuple[Older, Older, Older], test: WeakTest
+    solution: Solution, earlier: tuple[Older, Older, Older], test: WeakTest, believed_part: float
 ) -> tuple[int, float] | None:
     """The coil that is certainly weak, not sound, and its fraction; None while it may be another.
 
@@ -190,13 +190,18 @@ def weak_by_pulses(
         solution: of the latest pulses.
         earlier: by coil, what those before show.
         test: the evidence has to exceed its threshold, and that of every other coil by as much.
+        believed_part: the most that counts as its fault. Earlier pulses that show more than this do not count
+            against it: they are those of a sound coil on a heavier satellite.
     """
+    believed = WeakTest(min(believed_part, test.weak_part), test.sound_part, test.threshold)
     found = solution.explanations
     alike = min([one.distance for one in found if one.coil == ALL], default=inf)
     likely = [one for one in found if one.fits and one.part < test.weak_part and one.coil != ALL]
     for one in likely:
         own = indices_of(one.coil, solution.causes)
         older = earlier[one.coil] if one.pulses == len(own) else NOTHING_OLDER
+        if older.parts.nats(believed) < 0.0:
+            older = Older(kept=older.kept)
         nats = older.add(sum_pulses(solution, own[: one.pulses], test)).nats(test)
         rivals = [other.distance for other in likely if other.coil != one.coil]
         alone = min(rivals, default=inf) - one.distance >= 2.0 * test.threshold

@@ -116,7 +116,7 @@ def _isolate(
     if ended is not None:
         oldest = explanations.oldest_pulse(solution, ended, weak)
         health.older = with_item(earlier, ended, earlier[ended].add(oldest).bound(weak))
-    by_pulses = explanations.weak_by_pulses(solution, earlier, weak)
+    by_pulses = explanations.weak_by_pulses(solution, earlier, weak, believed.by_pulses)
     by_gain = explanations.weak_by_gain(estimate, gain_nats, weak)
     for found, most in ((by_pulses, believed.by_pulses), (by_gain, believed.by_gain)):
         if found is not None and found[1] < most and _are_others_sound(health, found[0], gain_nats):

@@ -45,8 +45,8 @@ def solution(causes, deviation, sigma, correlation=0.0, uncertain=MODEL_ERROR):
     return Solution(tuple(causes), 1.0 + deviation, deviation, covariance, uncertain)
 
 
-def weak(*arguments, earlier=NONE_OLDER):
-    return weak_by_pulses(solution(*arguments), earlier, WEAK)
+def weak(*arguments, earlier=NONE_OLDER, believed=WEAK.weak_part):
+    return weak_by_pulses(solution(*arguments), earlier, WEAK, believed)
 
 
 @pytest.mark.parametrize("coil", [0, 1, 2])
@@ -149,6 +149,22 @@ class TestPulsesTracedNoLonger:
         assert weak(*self.UNSURE, earlier=self.older(1, 0.95)) is None
         assert weak(*self.UNSURE, earlier=self.older(1, 0.95, 20)) is None
 
+    @pytest.mark.parametrize(("before", "accused"), [(0.66, False), (0.1, True)])
+    def test_not_where_an_open_coil_alone_is_believed_and_they_show_a_weak_one(self, before, accused):
+        """On a satellite heavier than its table every pulse does less: one odd pulse opens no coil."""
+        odd, weight = ((2, 1), (-0.2, -0.94), (0.07, 0.06)), 1500.0
+        parts = PartSum(12, weight, weight * before, weight * (before**2 + 0.006))
+        earlier = (NOTHING_OLDER, Older(parts), NOTHING_OLDER)
+        assert (weak(*odd, earlier=earlier, believed=0.2) is not None) is accused
+        assert weak(*odd, earlier=earlier) is not None, "where a weak coil is believed, they agree with it"
+
+    def test_an_open_coil_is_accused_by_two_pulses_whatever_it_was_before(self):
+        opened = ((1, 1, 2), (-0.95, -0.94, -0.3), (0.08, 0.06, 0.07))
+        assert weak(*opened, earlier=self.older(1, 0.66, 12), believed=0.2) == (
+            1,
+            pytest.approx(0.05, abs=0.05),
+        )
+
     def test_not_against_a_coil_that_has_been_sound_since(self):
         """It failed within those that are traced, or not at all."""
         since = ((1, 1, 1), (-0.9, 0.02, 0.03), (0.1, 0.1, 0.1))
@@ -181,7 +197,7 @@ def test_what_the_filter_knew_of_a_gain_counts_with_what_it_did_not():
     knowing = Solution(
         (1, 1, 0), np.array((0.6, 0.6, 1.0)) + deviation, deviation, covariance, np.full(3, MODEL_ERROR)
     )
-    assert weak_by_pulses(knowing, NONE_OLDER, WEAK) == (1, pytest.approx(0.375, abs=0.03))
+    assert weak_by_pulses(knowing, NONE_OLDER, WEAK, WEAK.weak_part) == (1, pytest.approx(0.375, abs=0.03))
     assert weak((1, 1, 0), deviation, (0.04, 0.05, 0.03)) is None
 
 

@@ -55,7 +55,7 @@ def test_the_coil_that_conducts_is_told_from_the_sun_alone(coil, sign):
     estimate, _ = fly_stray(scale(sign, AXES[coil]))
     solution = solve(estimate.copy(), CONFIG)
     assert conducting_coil(solution) == (coil if sign > 0.0 else None), "the sign of the current is estimate"
-    assert weak_by_pulses(solution, NONE_OLDER, WEAK) is None
+    assert weak_by_pulses(solution, NONE_OLDER, WEAK, WEAK.weak_part) is None
 
 
 @pytest.mark.parametrize(
