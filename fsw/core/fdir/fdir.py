@@ -198,9 +198,11 @@ def _believed(estimate: Estimate | None, both: Pair, proven: bool, config: FdirC
     """Which fractions of effect count as a coil's fault: none, those of a weak coil, or of a much weaker one.
 
     Parameters beyond the table's bounds may come from that coil, or make a sound one seem somewhat weak; so
-    may whatever misled a filter that lagged. Single pulses then show an open coil or no coil's fault.
+    may whatever misled a filter that lagged. Single pulses then show an open coil or no coil's fault; and
+    none while it lags: innovations that contradict the covariance contradict what it makes of pulses.
     """
-    if not proven or estimate is None:
+    lags = both.proof_required >= config.sensors.weights.threshold
+    if not proven or lags or estimate is None:
         return BelievedParts(-inf, -inf)
     weak_part = config.coils.weak.weak_part
     if not both.proof_required and is_credible_but_coils(estimate, config.sensors.credibility):

@@ -221,9 +221,10 @@ class TestJudgement:
         [
             (PROVEN, (WEAK_PART, WEAK_PART)),
             (with_values(PROVEN, proof_required=5.0), (OPEN_PART, 0.5)),
+            (with_values(PROVEN, proof_required=100.0), (-inf, -inf)),
             (with_values(PROVEN, proof=0.0), (-inf, -inf)),
         ],
-        ids=["proven", "lagged", "not proven"],
+        ids=["proven", "lagged", "lags", "not proven"],
     )
     def test_what_is_believed_of_a_coil_while_the_estimate_is(
         self, make_world, judged, monkeypatch, pair, believed
