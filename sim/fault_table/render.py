@@ -30,8 +30,9 @@ UNIT named`: it may be isolated. `named or doubted`: it is isolated, or both sen
 alone, a lamp in the shadow alone, and there was none; a coil can only be judged by pulses that it fires in
 the light while the sensors are not in dispute, and there it has fired fewer than five. Every second case
 flies a satellite of the population `50kg` (`sim/campaign/population.py`), each another. Figures are the worst
-over all cases. Phases that are counted from a pulse need one: a case without it fails. Where a real
-process is killed or stopped, its steps and its state are not seen: there it is judged by what is on the bus.
+over all cases. A fault that does not begin with the flight waits until the attitude is valid. Phases that
+are counted from a pulse need one then: a case without it fails. Where a real process is killed or stopped,
+its steps and its state are not seen: there it is judged by what is on the bus.
 """
 
 
