@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
-from typing import Protocol, final
+from typing import Protocol
 
 from fsw.bus.interface import Bus
 from fsw.wire.frame import Frame
@@ -59,33 +59,6 @@ class TruthLog(Protocol):
         """No row follows."""
 
 
-@final
-class _Records:
-    """Log and truth of a tick, which are written while the flight software computes the next one."""
-
-    __slots__ = ("_frames", "_log", "_row", "_timestamp_us", "_truth")
-
-    def __init__(self, log: FrameLog, truth: TruthLog) -> None:
-        self._log = log
-        self._truth = truth
-        self._timestamp_us = 0
-        self._frames: list[Frame] = []
-        self._row: TruthRow | None = None
-
-    def keep(self, timestamp_us: int, frames: list[Frame], row: TruthRow) -> None:
-        """Keep those of a tick until ``write``."""
-        self._timestamp_us, self._frames, self._row = timestamp_us, frames, row
-
-    def write(self) -> None:
-        """Write what was kept, once."""
-        row = self._row
-        if row is None:
-            return
-        self._row = None
-        self._log.write(self._timestamp_us, self._frames)
-        self._truth.append(row)
-
-
 def fly(
     plant: Plant,
     bus: Bus,
@@ -132,39 +105,32 @@ def fly(
     answers: list[Frame] = []
     period_s = 1.0 / (tick_hz * (pace.factor or inf))
     silence = Silence(patience.silence_s, period_s, began)
-    records = _Records(log, truth)
-    try:
-        for tick in range(ticks):
-            timestamp_us = epoch_us + tick * 1_000_000 // tick_hz
-            sent = plant.begin_tick() if uplink is None else uplink(tick) + plant.begin_tick()
-            late, before, sync = answers, waiting_frames(bus), sent[-1]
-            bus.send(sent)
-            records.write()
-            row = plant.truth()
-            if pace.factor is None:
-                answers = lockstep_answers(bus, tick, sync, patience.answer_s)
-            else:
-                answers = frames_until(bus, began + (tick + 1) * period_s)
-                plant.slips += not has_answer(answers, tick)
-                silence.end(before + answers, tick)
-            if overhear is not None:
-                from_others = [frame for frame in answers if frame is not sync]
-                overhear(tick, before, from_others, len(from_others) < len(answers))
-            if has_from_ground(answers):
-                received, answers = split_at_sync(late + before + sent, answers, tick)
-                before += received
-            for frame in before:
-                plant.receive(frame)
-            for frame in answers:
-                plant.receive(frame)
-            records.keep(timestamp_us, before + sent + answers, row)
-            if pace.factor is not None:  # who watches in real time is not to wait for the next tick
-                records.write()
-            plant.end_tick()
-            if watch is not None and tick % WATCH_TICKS == 0:
-                watch(tick)
-    finally:
-        records.write()
+    for tick in range(ticks):
+        timestamp_us = epoch_us + tick * 1_000_000 // tick_hz
+        sent = plant.begin_tick() if uplink is None else uplink(tick) + plant.begin_tick()
+        late, before, sync = answers, waiting_frames(bus), sent[-1]
+        bus.send(sent)
+        if pace.factor is None:
+            answers = lockstep_answers(bus, tick, sync, patience.answer_s)
+        else:
+            answers = frames_until(bus, began + (tick + 1) * period_s)
+            plant.slips += not has_answer(answers, tick)
+            silence.end(before + answers, tick)
+        if overhear is not None:
+            from_others = [frame for frame in answers if frame is not sync]
+            overhear(tick, before, from_others, len(from_others) < len(answers))
+        if has_from_ground(answers):
+            received, answers = split_at_sync(late + before + sent, answers, tick)
+            before += received
+        for frame in before:
+            plant.receive(frame)
+        for frame in answers:
+            plant.receive(frame)
+        log.write(timestamp_us, before + sent + answers)
+        truth.append(plant.truth())
+        plant.end_tick()
+        if watch is not None and tick % WATCH_TICKS == 0:
+            watch(tick)
     if not has_answer(answers, ticks - 1):
         log.write(timestamp_us, late_answers(bus, ticks - 1))
     end = plant.end()

@@ -19,7 +19,6 @@ from sim.flight import fsw_answers
 from sim.flight.flight_loop import fly
 from sim.flight.virtual_bus import VirtualBus
 from sim.plant.dynamics.torques import SOURCES
-from sim.plant.errors import PlantError
 from sim.plant.plant import Plant
 from sim.record.bus_log import BusLog
 from sim.record.candump import read_log
@@ -35,23 +34,6 @@ FROM_FSW = {0x080, 0x200, 0x201, 0x202, 0x203, 0x280, 0x410, 0x610}
 
 def done(tick):
     return TickDone(tick, 7).encode()
-
-
-class Records:
-    """Log and truth that count the ticks of which they have both."""
-
-    def __init__(self):
-        self.written = self.ticks = 0
-
-    def write(self, timestamp_us, frames):
-        self.written += any(frame.can_id == Sync.ID for frame in frames)
-
-    def append(self, row):
-        self.ticks += 1
-        assert self.ticks == self.written
-
-    def flush(self):
-        assert self.ticks == self.written
 
 
 @pytest.fixture
@@ -180,39 +162,6 @@ class TestLockstep:
         assert len(read_truth(tmp_path / "truth.h5")["t_s"]) == 3
         entries = list(read_log(tmp_path / "bus.log"))
         assert TickDone.decode(entries[-1].frame.data).tick == 2
-
-    @pytest.mark.parametrize(("pace", "recorded"), [(LOCKSTEP, [0, 0, 1, 2]), (Pace(1e4), [0, 1, 2, 3])])
-    def test_a_tick_is_recorded_while_the_flight_software_computes_the_next(self, scripted, pace, recorded):
-        """In real time at once: someone may watch."""
-        records, found = Records(), []
-
-        def answer(tick):
-            found.append(records.ticks)
-            return [done(tick)]
-
-        scenario = load("microsat")
-        plant = Plant(plant_config(scenario, 3))
-        fly(plant, scripted(answer), records, records, 4, scenario.epoch_unix_s, 1, pace)
-        assert found == recorded
-        assert records.ticks == 4
-
-    def test_a_tick_whose_motion_diverges_is_recorded(self, tmp_path, scripted):
-        class Diverges(Plant):
-            def end_tick(self):
-                if self.tick == 3:
-                    raise PlantError("the motion diverges in tick 3")
-                super().end_tick()
-
-        scenario = load("microsat")
-        bus = scripted(lambda tick: [done(tick)])
-        with (
-            pytest.raises(PlantError),
-            BusLog(tmp_path / "bus.log", bus.name) as log,
-            TruthFile(tmp_path / "truth.h5", 20, SOURCES) as truth,
-        ):
-            fly(Diverges(plant_config(scenario, 3)), bus, log, truth, 20, scenario.epoch_unix_s, 1)
-        assert read_truth(tmp_path / "truth.h5")["t_s"].tolist() == [0.0, 1.0, 2.0, 3.0]
-        assert TickDone.decode(list(read_log(tmp_path / "bus.log"))[-1].frame.data).tick == 3
 
     def test_requests_reach_the_board(self, flown, scripted):
         """A request in answer to tick 100 is driven from then on, and shows in the truth."""
