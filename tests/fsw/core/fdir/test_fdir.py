@@ -11,6 +11,7 @@ from with_values import with_values
 from fsw.core.fdir import fdir
 from fsw.core.fdir.coils.health import NONE_OLDER, CoilHealth
 from fsw.core.fdir.coils.weak_test import NOTHING_OLDER, Older, PartSum
+from fsw.core.fdir.evidence import INFLATION
 from fsw.core.fdir.faults import OPEN_PART, CoilFault, SensorFault
 from fsw.core.fdir.fdir import Evidence, Health
 from fsw.core.fdir.sensors.cells import CellWatch
@@ -219,10 +220,10 @@ class TestJudgement:
     @pytest.mark.parametrize(
         ("pair", "believed"),
         [
-            (PROVEN, (WEAK_PART, WEAK_PART)),
-            (with_values(PROVEN, proof_required=5.0), (OPEN_PART, 0.5)),
-            (with_values(PROVEN, proof_required=100.0), (-inf, -inf)),
-            (with_values(PROVEN, proof=0.0), (-inf, -inf)),
+            (PROVEN, (WEAK_PART, WEAK_PART, 1.0)),
+            (with_values(PROVEN, proof_required=5.0), (OPEN_PART, 0.5, 1.0)),
+            (with_values(PROVEN, proof_required=100.0), (OPEN_PART, 0.5, INFLATION)),
+            (with_values(PROVEN, proof=0.0), (-inf, -inf, 1.0)),
         ],
         ids=["proven", "lagged", "lags", "not proven"],
     )
@@ -232,7 +233,7 @@ class TestJudgement:
         asked = []
 
         def judge_effect(health, view, reference, state, tick, parts, *others):
-            asked.append((parts.by_pulses, parts.by_gain))
+            asked.append((parts.by_pulses, parts.by_gain, parts.inflation))
 
         monkeypatch.setattr(fdir.torques, "judge_effect", judge_effect)
         judged(sensors(pair=pair))
