@@ -23,7 +23,7 @@ from sim.scenario.schema import Scenario, flight_table, load, parse_settings
 
 POPULATION = "50kg"
 ARMED_S = 180.0
-"""Least time in which the flight settles before a fault: boot, first lockout, filter [s]."""
+"""Time in which the flight settles before a fault: boot, first lockout, filter [s]."""
 BEFORE_ECLIPSE = 'time.epoch_utc="2015-03-27T03:13:11Z"'
 """Start of a flight 600 s before an eclipse."""
 ECLIPSE_S = 500.0
@@ -136,23 +136,20 @@ def phase_s(when: When, phase: int, rng: Random) -> float:
 def _fly_to_reference(when: When, rig: Rig, orbit_s: float) -> int | None:
     """Fly until the reference tick of the phases: the next tick, or the one before.
 
-    A flight that is to have settled has a valid attitude by then, which a satellite that is unlike its table
-    may take minutes for. None: there is no such tick, since a step raised an exception or no pulse came.
+    None: there is none, since a step raised an exception or no pulse came.
     """
     hz, record = rig.record.tick_hz, rig.record
-    after_s = {When.BOOT: 0.0, When.ECLIPSE: ECLIPSE_S, When.ORBIT: orbit_s}.get(when, ARMED_S)
-    settles = when in (When.PULSE, When.SUNLIT)
-    while (tick := rig.plant.tick) < (PATIENCE_S if settles else after_s) * hz:
-        settled = settles and tick >= after_s * hz and record.error_deg[-1] is not None
-        if settled and when is When.SUNLIT:
-            return tick
+    after_s = {When.BOOT: 0.0, When.SUNLIT: ARMED_S, When.ECLIPSE: ECLIPSE_S, When.ORBIT: orbit_s}
+    until_s = after_s.get(when, PATIENCE_S)
+    while rig.plant.tick < until_s * hz:
         rig.tick()
+        tick = rig.plant.tick
         if record.crash is not None:
             return None
-        if settled and any(record.coil_drives[-1].current_a):
-            return tick
+        if when is When.PULSE and tick > ARMED_S * hz and any(record.coil_drives[-1].current_a):
+            return tick - 1
     if when is When.PULSE:
-        record.unfired_s = PATIENCE_S
+        record.unfired_s = until_s
         return None
     return rig.plant.tick
 

@@ -87,7 +87,7 @@ def state_is_finite(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) ->
 def begins_with_a_pulse(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:
     """A pulse came where one was awaited, to count from."""
     after_s = record.unfired_s
-    return after_s is None, "" if after_s is None else f"no pulse to begin at in {after_s:.0f} s"
+    return after_s is None, "" if after_s is None else f"no pulse in {after_s:.0f} s"
 
 
 def answers_every_sync(row: FaultRow, record: FaultFlightRecord, bounds: Bounds) -> tuple[bool, str]:

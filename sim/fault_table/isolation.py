@@ -226,12 +226,16 @@ def _not_isolated(row: FaultRow, fault: RowFault, record: FaultFlightRecord) -> 
     """A coil shows its fault only while it is on: a few pulses are needed as evidence.
 
     Those after a faulty sensor has made the sensors disagree do not count: there is no estimate to judge by.
+    Nor is there one for a coil that is stuck on before an attitude was ever valid.
     """
     if not can_isolate(fault.unit):
         return None, f"fsw cannot isolate {fault.unit} yet"
+    onset = onset_tick(fault, record)
+    if "stuck" in row.expect and all(error is None for error in record.error_deg[:onset]):
+        return None, f"{fault.unit} is not isolated, and no attitude was valid before its fault"
     if not fault.unit.startswith("coil ") or "stuck" in row.expect:
         return False, f"{fault.unit} is not isolated"
-    requests, onset = zip(record.request_ticks, record.request_coils, strict=True), onset_tick(fault, record)
+    requests = zip(record.request_ticks, record.request_coils, strict=True)
     of_sensor = not all(other.unit.startswith("coil ") for other in row.faults)
     end = _doubted(record.onset or 0, record) if of_sensor else inf
     seen = ((tick, coil) for tick, coil in requests if onset <= tick < end and record.lit[tick])

@@ -28,11 +28,11 @@ nothing aboard can tell, as the row says; with one sensor left 15 deg), and meet
 UNIT named`: it may be isolated. `named or doubted`: it is isolated, or both sensors are said to disagree.
 `not yet`: nothing could identify the unit in the time of the row. A Sun sensor shows most faults in the light
 alone, a lamp in the shadow alone, and there was none; a coil can only be judged by pulses that it fires in
-the light while the sensors are not in dispute, and there it has fired fewer than five. Every second case
+the light while the sensors are not in dispute, and there it has fired fewer than five; one that is stuck on
+only by an attitude that was valid before. Every second case
 flies a satellite of the population `50kg` (`sim/campaign/population.py`), each another. Figures are the worst
-over all cases. A fault that does not begin with the flight waits until the attitude is valid. Phases that
-are counted from a pulse need one then: a case without it fails. Where a real process is killed or stopped,
-its steps and its state are not seen: there it is judged by what is on the bus.
+over all cases. Phases that are counted from a pulse need one: a case without it fails. Where a real
+process is killed or stopped, its steps and its state are not seen: there it is judged by what is on the bus.
 """
 
 

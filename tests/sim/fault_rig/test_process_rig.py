@@ -59,7 +59,7 @@ def test_a_process_that_does_not_fire_fails_and_is_flown_no_further(bounds):
     assert record.ticks == PATIENCE_TICKS
     outcomes = checks.judge(FaultRow("struck", "", "sigkill"), record, bounds)
     failed = {one.check: one.said for one in outcomes if one.verdict is CheckVerdict.FAIL}
-    assert failed["fires"] == "no pulse to begin at in 4120 s"
+    assert failed["fires"] == "no pulse in 4120 s"
 
 
 def test_half_of_the_strikes_are_within_the_pulse():

@@ -196,9 +196,15 @@ def test_the_board_identifies_the_coil_that_is_on(bounds):
     assert not checks.board_identifies_unit(stuck, record(board=later), bounds)[0]
 
 
-def test_a_coil_that_conducts_by_itself_must_be_isolated_without_any_pulse_of_its_own(bounds):
+@pytest.mark.parametrize(("valid_before", "holds"), [(1, False), (0, None)])
+def test_a_coil_that_conducts_by_itself_must_be_isolated_without_any_pulse_of_its_own(
+    bounds, valid_before, holds
+):
+    """Unless no attitude was valid before: what it does to one that comes later shows nothing."""
     row = FaultRow("planted", "", "none", unit="coil 2", expect=("named", "stuck"))
-    assert checks.isolates_faulty_unit(row, record(), bounds)[0] is False
+    flown = record()
+    flown.error_deg = [None] * (100 - valid_before) + [0.3] * (400 + valid_before)
+    assert checks.isolates_faulty_unit(row, flown, bounds)[0] is holds
 
 
 @pytest.mark.parametrize(("pulses", "holds"), [(4, None), (5, False)])
