@@ -13,7 +13,6 @@ from fsw.core.fdir.coils import currents, retest, torques
 from fsw.core.fdir.coils import health as coil_health
 from fsw.core.fdir.coils.health import CoilHealth, CoilHealthConfig
 from fsw.core.fdir.coils.torques import BelievedParts
-from fsw.core.fdir.evidence import INFLATION
 from fsw.core.fdir.faults import OPEN_PART
 from fsw.core.fdir.sensors import health as sensor_health
 from fsw.core.fdir.sensors import pair, plausibility
@@ -199,16 +198,14 @@ def _believed(estimate: Estimate | None, both: Pair, proven: bool, config: FdirC
     """Which fractions of effect count as a coil's fault: none, those of a weak coil, or of a much weaker one.
 
     Parameters beyond the table's bounds may come from that coil, or make a sound one seem somewhat weak; so
-    may whatever misled a filter that lagged. Single pulses then show an open coil or no coil's fault. While
-    it lags its innovations contradict its covariance, and so what it makes of pulses.
+    may whatever misled a filter that lagged. Single pulses then show an open coil or no coil's fault.
     """
     if not proven or estimate is None:
         return BelievedParts(-inf, -inf)
     weak_part = config.coils.weak.weak_part
     if not both.proof_required and is_credible_but_coils(estimate, config.sensors.credibility):
         return BelievedParts(weak_part, weak_part)
-    lags = both.proof_required >= config.sensors.weights.threshold
-    return BelievedParts(OPEN_PART, min(UNKNOWN_PART, weak_part), INFLATION if lags else 1.0)
+    return BelievedParts(OPEN_PART, min(UNKNOWN_PART, weak_part))
 
 
 def _has_unobservable_torque(coils: CoilHealth, used: Used, config: FdirConfig) -> bool:

@@ -182,11 +182,7 @@ def oldest_pulse(solution: Solution, coil: int, test: WeakTest) -> PartSum:
 
 
 def weak_by_pulses(
-    solution: Solution,
-    earlier: tuple[Older, Older, Older],
-    test: WeakTest,
-    believed_part: float,
-    inflation: float = 1.0,
+    solution: Solution, earlier: tuple[Older, Older, Older], test: WeakTest, believed_part: float
 ) -> tuple[int, float] | None:
     """The coil that is certainly weak, not sound, and its fraction; None while it may be another.
 
@@ -196,7 +192,6 @@ def weak_by_pulses(
         test: the evidence has to exceed its threshold, and that of every other coil by as much.
         believed_part: the most that counts as its fault. Earlier pulses that show more than this do not count
             against it: they are those of a sound coil on a heavier satellite.
-        inflation: how many times the covariance of the solution the true one may be.
     """
     believed = WeakTest(min(believed_part, test.weak_part), test.sound_part, test.threshold)
     found = solution.explanations
@@ -210,7 +205,7 @@ def weak_by_pulses(
         nats = older.add(sum_pulses(solution, own[: one.pulses], test)).nats(test)
         rivals = [other.distance for other in likely if other.coil != one.coil]
         alone = min(rivals, default=inf) - one.distance >= 2.0 * test.threshold
-        if nats >= test.threshold and alone and alike - one.distance > inflation * SIGMAS**2:
+        if nats >= test.threshold and alone and alike - one.distance > SIGMAS**2:
             return one.coil, one.part
     return None
 

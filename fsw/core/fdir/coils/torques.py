@@ -29,16 +29,14 @@ class BelievedParts:
     """How small the fraction of its effect has to be to count as a coil's own fault.
 
     ``by_pulses``: for the fraction that its latest pulses show, each by itself; ``by_gain``: for the one that
-    the filter has estimated from all of them, together with whatever else they may show. ``inflation``: how
-    many times the covariance of the filter the true one may be.
+    the filter has estimated from all of them, together with whatever else they may show.
     """
 
-    __slots__ = ("by_gain", "by_pulses", "inflation")
+    __slots__ = ("by_gain", "by_pulses")
 
-    def __init__(self, by_pulses: float, by_gain: float, inflation: float = 1.0) -> None:
+    def __init__(self, by_pulses: float, by_gain: float) -> None:
         self.by_pulses = by_pulses
         self.by_gain = by_gain
-        self.inflation = inflation
 
 
 def judge_effect(
@@ -118,7 +116,7 @@ def _isolate(
     if ended is not None:
         oldest = explanations.oldest_pulse(solution, ended, weak)
         health.older = with_item(earlier, ended, earlier[ended].add(oldest).bound(weak))
-    by_pulses = explanations.weak_by_pulses(solution, earlier, weak, believed.by_pulses, believed.inflation)
+    by_pulses = explanations.weak_by_pulses(solution, earlier, weak, believed.by_pulses)
     by_gain = explanations.weak_by_gain(estimate, gain_nats, weak)
     for found, most in ((by_pulses, believed.by_pulses), (by_gain, believed.by_gain)):
         if found is not None and found[1] < most and _are_others_sound(health, found[0], gain_nats):

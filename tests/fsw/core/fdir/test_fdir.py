@@ -11,7 +11,6 @@ from with_values import with_values
 from fsw.core.fdir import fdir
 from fsw.core.fdir.coils.health import NONE_OLDER, CoilHealth
 from fsw.core.fdir.coils.weak_test import NOTHING_OLDER, Older, PartSum
-from fsw.core.fdir.evidence import INFLATION
 from fsw.core.fdir.faults import OPEN_PART, CoilFault, SensorFault
 from fsw.core.fdir.fdir import Evidence, Health
 from fsw.core.fdir.sensors.cells import CellWatch
@@ -220,12 +219,11 @@ class TestJudgement:
     @pytest.mark.parametrize(
         ("pair", "believed"),
         [
-            (PROVEN, (WEAK_PART, WEAK_PART, 1.0)),
-            (with_values(PROVEN, proof_required=5.0), (OPEN_PART, 0.5, 1.0)),
-            (with_values(PROVEN, proof_required=100.0), (OPEN_PART, 0.5, INFLATION)),
-            (with_values(PROVEN, proof=0.0), (-inf, -inf, 1.0)),
+            (PROVEN, (WEAK_PART, WEAK_PART)),
+            (with_values(PROVEN, proof_required=5.0), (OPEN_PART, 0.5)),
+            (with_values(PROVEN, proof=0.0), (-inf, -inf)),
         ],
-        ids=["proven", "lagged", "lags", "not proven"],
+        ids=["proven", "lagged", "not proven"],
     )
     def test_what_is_believed_of_a_coil_while_the_estimate_is(
         self, make_world, judged, monkeypatch, pair, believed
@@ -233,7 +231,7 @@ class TestJudgement:
         asked = []
 
         def judge_effect(health, view, reference, state, tick, parts, *others):
-            asked.append((parts.by_pulses, parts.by_gain, parts.inflation))
+            asked.append((parts.by_pulses, parts.by_gain))
 
         monkeypatch.setattr(fdir.torques, "judge_effect", judge_effect)
         judged(sensors(pair=pair))
