@@ -1,10 +1,11 @@
 """``torquer campaign``: fly the runs that have no result yet, then show all results."""
 
 import os
+import re
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -13,7 +14,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from fsw.input.schema import Nested, Section
+from fsw.input.schema import Nested, Section, TableError
 from fsw.table.config import flight_config
 from sim.campaign.code_digest import code_digest
 from sim.campaign.definition.campaign import FILE, SCENARIO, Campaign
@@ -136,7 +137,7 @@ def campaign(
     nominal = scenario_of(chosen.base, source)
     if nominal.own_law is not None:
         flight_config(flight_table(nominal), source)  # a fault of it would be that of every run
-    for doubt in scenario_warnings(nominal):
+    for doubt in (*scenario_warnings(nominal), *warnings_of_runs(chosen, scenario_warnings(nominal))):
         warn(doubt)
     folder = out or new_folder(Path("campaigns"), chosen.name)
     check_folder(folder, (FILE, SCENARIO, RESULTS, LOCK, PAGE, *([PARQUET] if options.parquet else [])))
@@ -157,6 +158,33 @@ def campaign(
             _say_how_to_resume(folder, chosen, results)
             raise
         return _conclude(folder, chosen, results, options.parquet)
+
+
+SAMPLED = 20
+"""Runs that are looked at before the first one flies."""
+
+
+def warnings_of_runs(chosen: Campaign, of_nominal: Sequence[str]) -> list[str]:
+    """What is most likely wrong in the first runs as they are drawn, and not in the scenario itself.
+
+    One of those that differ in their numbers alone, and in how many of these runs there is one.
+    """
+    known = {_without_numbers(doubt) for doubt in of_nominal}
+    found: dict[str, list[tuple[int, str]]] = {}
+    looked_at = range(min(SAMPLED, chosen.runs) if chosen.disperse else 0)
+    for run in looked_at:
+        with suppress(TableError):  # values that are not allowed: its row will say so
+            for doubt in scenario_warnings(chosen.scenario(chosen.draw(run))):
+                if (words := _without_numbers(doubt)) not in known:
+                    found.setdefault(words, []).append((run, doubt))
+    return [
+        f"in {len(doubts)} of the first {len(looked_at)} runs, as in run {doubts[0][0]}: {doubts[0][1]}"
+        for doubts in found.values()
+    ]
+
+
+def _without_numbers(sentence: str) -> str:
+    return re.sub(r"-?\d[\d.]*(e[+-]?\d+)?", "", sentence)
 
 
 def _check_resumable(source: str, over: Nested, settings: Nested, out: Path | None) -> None:

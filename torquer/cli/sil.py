@@ -22,6 +22,7 @@ from torquer.cli.options import (
     report_failures,
     scenario_argument,
     sentences,
+    warn_of,
 )
 
 if TYPE_CHECKING:
@@ -87,6 +88,8 @@ def sil(
 
     prepare_junit(junit)
     again = _campaign_run(source, run, scenario, orbits, seed, expected, settings)
+    if again:
+        warn_of(again.scenario)
     chosen = (
         again.scenario
         if again

@@ -27,6 +27,8 @@ from sim.sizing.levels import TOO_WEAK
 SHOWN = 3
 BEYOND = 1.2
 """A deviation above this many times its bound is stated, if it is more than ordinary for such a satellite."""
+SLIGHT = 0.05
+"""Part of what is ordinary that is enough once the estimate was misled: its filter is made for the bounds."""
 WITHOUT_SENSORS = ("coil_error", "inertia_error_kgm2")
 """What matters to a controller with perfect knowledge."""
 
@@ -46,8 +48,13 @@ WORDS = {
 """A parameter in words, the unit in which it is stated, and how many of these are one of SI."""
 
 
-def beyond_bounds(scenario: Scenario) -> list[str]:
-    """Its parameters beyond their bounds, a clause each, the worst first; at most ``SHOWN``."""
+def beyond_bounds(scenario: Scenario, least_part: float = 1.0) -> list[str]:
+    """Its parameters beyond their bounds, a clause each, the worst first; at most ``SHOWN``.
+
+    Args:
+        scenario: the satellite, and its onboard table.
+        least_part: of what is ordinary for such a satellite; less is no cause, whatever its bound.
+    """
     table = flight_table(scenario)
     bounds = limits(table_bounds(table), table.body.inertia)
     albedo = table.cells.albedo if table.cells else None
@@ -59,7 +66,7 @@ def beyond_bounds(scenario: Scenario) -> list[str]:
         if scenario.knowledge == "perfect" and name not in WITHOUT_SENSORS:
             continue
         times, true, bound = max(
-            (abs(true) / max(BEYOND * bound, least), abs(true), bound)
+            (abs(true) / max(BEYOND * bound, least_part * least), abs(true), bound)
             for true, bound, least in zip(values, bounds[name], ordinary[name], strict=True)
         )
         if times > 1.0:
@@ -149,6 +156,8 @@ HOPELESS = 0.25
 """Part of what gravity takes below which the highest level is too weak, however short the flight."""
 HONEST = 0.9
 """Part of the time inside its own 3 sigma from which an estimate is honest."""
+MOSTLY = 0.5
+"""Part of the last orbit for which the attitude is valid, if the estimate is good for anything."""
 UNSURE = 0.02
 """Part of the shadow from which an estimate that the control cannot use counts."""
 LATE = 0.4
@@ -231,8 +240,7 @@ def _tumbling(missed: Missed, evidence: FlightEvidence) -> str:
 
 
 def _shadow(missed: Missed, evidence: FlightEvidence) -> str:
-    honest = evidence.within_3sigma is None or evidence.within_3sigma >= HONEST
-    if evidence.unsure_dark < UNSURE or not honest or beyond_bounds(evidence.scenario):
+    if evidence.unsure_dark < UNSURE or not _is_honest(evidence) or beyond_bounds(evidence.scenario):
         return ""  # less certain by what the bounds say, not by what contradicts them
     return (
         f"for {part(evidence.unsure_dark)} of its time in the Earth's shadow the estimate was less certain "
@@ -246,20 +254,26 @@ def _estimate(missed: Missed, evidence: FlightEvidence) -> str:
         return ""
     if evidence.first_valid is None:
         return "the estimate never converged: no attitude was called valid"
-    if evidence.valid_part < 0.5 or evidence.estimate_deg is None:
+    if evidence.valid_part < MOSTLY or evidence.estimate_deg is None:
         return f"the attitude was called valid for {part(evidence.valid_part)} of the last orbit only"
     share = 1.0 if missed.name == "ake" else 0.4
     if missed.limit is None or missed.what == "spin" or evidence.estimate_deg < share * missed.limit:
         return ""
-    within = evidence.within_3sigma
     wrong = f"the estimate is wrong by {number(evidence.estimate_deg)} deg RMS"
-    if within is not None and within < HONEST:
-        return f"{wrong}, and dishonest: inside its own 3 sigma {part(within)} of the time"
+    if evidence.within_3sigma is not None and not _is_honest(evidence):
+        return f"{wrong}, and dishonest: inside its own 3 sigma {part(evidence.within_3sigma)} of the time"
     return f"{wrong}, as it states itself"
 
 
+def _is_honest(evidence: FlightEvidence) -> bool:
+    """Whether its errors are those that the estimate states; it may have been valid too rarely to tell."""
+    return evidence.within_3sigma is None or evidence.within_3sigma >= HONEST
+
+
 def _mismatch(missed: Missed, evidence: FlightEvidence) -> str:
-    found = beyond_bounds(evidence.scenario)
+    lost = evidence.first_valid is not None and evidence.valid_part < MOSTLY
+    misled = lost or not _is_honest(evidence)
+    found = beyond_bounds(evidence.scenario, SLIGHT if misled else 1.0)
     return f"the satellite is not within the bounds of its onboard table: {'; '.join(found)}" if found else ""
 
 

@@ -1,14 +1,17 @@
 """A campaign is continued by the code that began it."""
 
+import re
 import shlex
 import sqlite3
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
+from fsw.input.schema import merge
 from sim.campaign.code_digest import code_digest
-from sim.campaign.command import CampaignOptions, FlownCampaign, _watch, campaign
+from sim.campaign.command import CampaignOptions, FlownCampaign, _watch, campaign, warnings_of_runs
 from sim.campaign.results.store import CODE, RESULTS, RunRow, Status, open_results
 from sim.errors import HarnessError
 
@@ -37,7 +40,35 @@ def meta(folder, statement):
 @pytest.mark.long
 def test_by_the_same_code(begun, capsys):
     assert resume(begun) == "continued"
-    assert capsys.readouterr().err == ""
+    assert "code" not in capsys.readouterr().err
+
+
+class TestWarningsOfRuns:
+    """Before the first flight: what the runs as they are drawn have against their onboard table."""
+
+    def test_a_dispersion_beyond_a_bound_that_the_scenario_keeps(self, small):
+        (warning,) = (one for one in warnings_of_runs(small, []) if "residual_dipole" in one)
+        count, run = map(int, re.match(r"in (\d+) of the first 6 runs, as in run (\d): ", warning).groups())
+        off = [max(map(abs, drawn_dipole(small, number))) for number in range(6)]
+        assert 0 < count <= 6
+        assert f"off by {off[run]:.3g}, and flight.uncertainty.residual_dipole_am2 = 0" in warning
+
+    def test_what_the_scenario_was_warned_of_is_not_said_again(self, small):
+        of_run = [one.split(": ", 1)[1] for one in warnings_of_runs(small, [])]
+        assert of_run
+        assert warnings_of_runs(small, of_run) == []
+
+    def test_none_where_the_table_declares_what_is_drawn(self, small):
+        declared = {"flight": {"uncertainty": {"residual_dipole_am2": 0.1}}}
+        assert not [one for one in warnings_of_runs(with_base(small, declared), []) if "dipole" in one]
+
+
+def drawn_dipole(campaign, run):
+    return campaign.scenario(campaign.draw(run)).disturbance.residual_dipole_am2
+
+
+def with_base(campaign, settings):
+    return replace(campaign, base=merge(campaign.base, settings))
 
 
 @pytest.mark.long

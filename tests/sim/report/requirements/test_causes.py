@@ -103,6 +103,14 @@ def test_a_cause_is_found_and_no_other(cause):
     assert names(FOUND[cause], MISSED.get(cause, APE)) == [cause]
 
 
+@pytest.mark.parametrize("misled", [{"valid_part": 0.1}, {"within_3sigma": 0.67}], ids=["lost", "dishonest"])
+def test_of_a_misled_estimate_the_table_that_admits_less_is_a_cause(misled):
+    undeclared = sound("disturbance.residual_dipole_am2=[0.0005,-0.008,0.005]")
+    assert names(undeclared) == ["unknown"]
+    assert "mismatch" in names(replace(undeclared, **misled))
+    assert "mismatch" not in names(replace(sound(), **misled))
+
+
 @pytest.mark.parametrize("led", [{"valid_part": 0.46}, {"unsure_dark": 0.2}], ids=["estimate", "shadow"])
 def test_an_estimate_that_coarse_pulses_disturb_is_no_cause_beside_them(led):
     assert names(replace(FOUND["coarse"], **led)) == ["coarse"]

@@ -50,6 +50,9 @@ FLIGHTS = {
     "residual dipole": Flight(
         ("disturbance.residual_dipole_am2=[0.3,0.3,0.3]",), 0.5, "disturbance", WRONG_TABLE | {"mismatch"}
     ),
+    "undeclared dipole": Flight(
+        ("disturbance.residual_dipole_am2=[0.0005,-0.008,0.005]",), 2.0, "mismatch", WRONG_TABLE, quick=False
+    ),
     "saturated dipole": Flight(
         (PERFECT, "coils.max_dipole_am2=0.002", *UNDISTURBED), 0.5, "weak", scenario="kalman-50kg"
     ),
