@@ -19,10 +19,11 @@ from fsw.wire.messages import TcAckResult, TcGain, TcLaw, TcOrbitElement, TcPara
 from sim.design.from_scenario import body_of
 from sim.flight.record_flight import ticks_of
 from sim.scenario.assemble import plant_config
-from sim.scenario.residual_errors import coil_errors, magnetometer_errors, reading_of
+from sim.scenario.residual_errors import reading_of
 from sim.scenario.schema import Scenario, flight_table
 from sim.scenario.sections import ScenarioCoils, ScenarioOrbit, SunSensorSection
 from sim.scenario.telecommands import unsent_telecommands
+from sim.sizing.deviations import deviations, slight_disturbance
 from sim.sizing.expectation import field_across, torque_balance
 from sim.sizing.gravity import gravity_on, gravity_words
 from sim.sizing.levels import TOO_WEAK, levels_against, levels_for
@@ -79,8 +80,6 @@ FASTEST_DEGPS = 30.0
 LEAST_INCLINATION_DEG = 10.0
 NOISE_NT, NOISE_DEG = (1.0, 5000.0), (1e-3, 10.0)
 """Plausible noise of a magnetometer and of a Sun sensor; none at all is a deliberate choice."""
-SLIGHT, SLIGHT_NT, SLIGHT_KM = 0.01, 100.0, 1.0
-"""Beyond its bound, but of no consequence: part of what the coils can give, bias, way along the track."""
 LEAST_TIMES = 2.5
 """The bound of the torque over drag and light, half of what lets the filter follow them along the orbit."""
 LARGEST_M = 20.0
@@ -267,50 +266,9 @@ def _beyond_bounds(scenario: Scenario) -> Iterator[str]:
     """What the satellite is differs from what the onboard table says by more than its bound admits."""
     if scenario.knowledge == "perfect":
         return
-    table, plant = flight_table(scenario), plant_config(scenario, seed=0)
-    known, disturbance = table_bounds(table), scenario.disturbance
-    dipole_am2, torque_nm = _slight(scenario)
-    bias_t = magnetometer_errors(plant.magnetometer, table.calibration).bias_t
-    dipoles = coil_errors(plant.coils, table.calibration) + np.eye(3)
-    gains = (np.linalg.norm(dipoles, axis=0) - 1.0).tolist()
-    for key, off, bound, slight, of_table in (
-        ("disturbance.torque_nm", disturbance.torque_nm, known.torque_nm, torque_nm, "torque_nm"),
-        (
-            "disturbance.residual_dipole_am2",
-            disturbance.residual_dipole_am2,
-            known.dipole_am2,
-            dipole_am2,
-            "residual_dipole_am2",
-        ),
-        (
-            "sensors.magnetometer.bias_nt",
-            [1e9 * bias for bias in bias_t],
-            1e9 * known.mag_bias_t,
-            SLIGHT_NT,
-            "magnetometer_bias_nt",
-        ),
-        ("coils.dipole_scale", gains, known.coil_gain_part, SLIGHT, "coil_gain_percent"),
-        (
-            "orbit.along_track_km",
-            (scenario.orbit.along_track_km,),
-            1e-3 * known.along_track_m,
-            SLIGHT_KM,
-            "along_track_km",
-        ),
-    ):
-        worst = max(map(abs, off))
-        if worst > max(bound * (1.0 + ROUNDING), slight):
-            in_table, unit = (100.0, " %") if of_table.endswith("_percent") else (1.0, "")
-            yield (
-                f"{key} is off by {in_table * worst:.3g}{unit}, and flight.uncertainty.{of_table} = "
-                f"{in_table * bound:g}: the filter is not made for it"
-            )
-
-
-def _slight(scenario: Scenario) -> tuple[float, float]:
-    """Dipole (A m^2) and torque (N m) that are of no consequence beside what the coils give in the mean."""
-    dipole_am2 = SLIGHT * scenario.coils.largest_am2 * scenario.coils.on_part
-    return dipole_am2, dipole_am2 * field_across(body_of(scenario))
+    for one in deviations(scenario, table_bounds(flight_table(scenario))):
+        if one.worst > max(one.bound * (1.0 + ROUNDING), one.slight):
+            yield f"{one.words}: the filter is not made for it"
 
 
 def _drag_and_light(scenario: Scenario) -> Iterator[str]:
@@ -319,7 +277,7 @@ def _drag_and_light(scenario: Scenario) -> Iterator[str]:
         return
     known = table_bounds(flight_table(scenario))
     peak_nm = float(np.abs(surface_torque(scenario, orbit_nodes(scenario))).max())
-    if LEAST_TIMES * peak_nm > max(known.torque_nm, _slight(scenario)[1]):
+    if LEAST_TIMES * peak_nm > max(known.torque_nm, slight_disturbance(scenario)[1]):
         yield (
             f"disturbance.drag and .solar_pressure reach {peak_nm:.2g} N m on body.plates, and "
             f"flight.uncertainty.torque_nm = {known.torque_nm:.2g}: the filter follows what changes along "

@@ -1,24 +1,24 @@
 """Why a requirement is missed: a table of causes, each a pure function of what is known of the flight."""
 
 from collections.abc import Callable, Sequence
-from math import degrees, exp, inf, log
+from math import exp, inf, log
 from typing import NamedTuple
 
 import numpy as np
 
 from fsw.table.estimator import table_bounds
-from fsw.table.uncertainty import UncertaintyTable, limits
+from fsw.table.uncertainty import UncertaintyTable
 from fsw.table.uncertainty import bounds as ordinary_bounds
 from fsw.wire.messages import Mode
 from sim.design.from_scenario import body_of, pulsing_of
 from sim.design.theory.floquet import NEUTRAL, degree_of_stability, monodromy
 from sim.design.theory.linear import Gains, closed_loop
 from sim.design.theory.pulsed import PulsedLoop
-from sim.report.figures.parameters import true_parameters
 from sim.report.requirements.evidence import FlightEvidence, Missed
 from sim.report.requirements.sizing import balance, gradient_level_am2, least_error_deg, pulse_turn_deg
 from sim.report.requirements.words import number, orbits, part
 from sim.scenario.schema import Scenario, flight_table
+from sim.sizing.deviations import deviations
 from sim.sizing.gravity import gravity_on, gravity_words
 from sim.sizing.levels import TOO_WEAK
 
@@ -29,50 +29,26 @@ BEYOND = 1.2
 """A deviation above this many times its bound is stated, if it is more than ordinary for such a satellite."""
 SLIGHT = 0.05
 """Part of what is ordinary that is enough once the estimate was misled: its filter is made for the bounds."""
-WITHOUT_SENSORS = ("coil_error", "inertia_error_kgm2")
-"""What matters to a controller with perfect knowledge."""
-
-WORDS = {
-    "mag_bias_t": ("magnetometer bias", "nT", 1e9),
-    "torque_body_nm": ("disturbance torque", "N m", 1.0),
-    "dipole_body_am2": ("residual dipole", "A m^2", 1.0),
-    "coil_error": ("gain or axes of the coils off by", "%", 100.0),
-    "inertia_error_kgm2": ("inertia off by", "kg m^2", 1.0),
-    "mag_turn_rad": ("magnetometer turned by", "deg", degrees(1.0)),
-    "mag_scale": ("scale of the magnetometer off by", "%", 100.0),
-    "sun_turn_rad": ("Sun sensor turned by", "deg", degrees(1.0)),
-    "delay_s": ("age of the samples", "s", 1.0),
-    "cell_gain": ("gain of a Sun cell off by", "%", 100.0),
-    "earth_light": ("Earth's light off by", "% of the Sun's", 100.0),
-}
-"""A parameter in words, the unit in which it is stated, and how many of these are one of SI."""
 
 
 def beyond_bounds(scenario: Scenario, least_part: float = 1.0) -> list[str]:
-    """Its parameters beyond their bounds, a clause each, the worst first; at most ``SHOWN``.
+    """Its deviations beyond their bounds, a clause each, the worst first; at most ``SHOWN``.
 
     Args:
         scenario: the satellite, and its onboard table.
         least_part: of what is ordinary for such a satellite; less is no cause, whatever its bound.
     """
     table = flight_table(scenario)
-    bounds = limits(table_bounds(table), table.body.inertia)
     albedo = table.cells.albedo if table.cells else None
     usual = ordinary_bounds(UncertaintyTable(), table.ordinary, albedo)
-    ordinary = limits(usual, table.body.inertia)
-    at_start = {"lit": np.ones(1), "t_s": np.zeros(1)}
     found = []
-    for name, values in true_parameters(scenario, table, at_start).items():
-        if scenario.knowledge == "perfect" and name not in WITHOUT_SENSORS:
-            continue
-        times, true, bound = max(
-            (abs(true) / max(BEYOND * bound, least_part * least), abs(true), bound)
-            for true, bound, least in zip(values, bounds[name], ordinary[name], strict=True)
-        )
-        if times > 1.0:
-            words, unit, factor = WORDS[name]
-            found.append((times, f"{words} {factor * true:.3g} {unit}, its bound is {factor * bound:.3g}"))
-    return [sentence for _, sentence in sorted(found, reverse=True)[:SHOWN]]
+    for one, ordinary in zip(
+        deviations(scenario, table_bounds(table)), deviations(scenario, usual), strict=True
+    ):
+        least = max(BEYOND * one.bound, least_part * ordinary.bound, one.slight)
+        if one.worst > least:
+            found.append((one.worst / least, one.words))
+    return [clause for _, clause in sorted(found, reverse=True)[:SHOWN]]
 
 
 # --- Why a flight settled late: causes from its course

@@ -149,7 +149,7 @@ def test_every_cause_of_the_table_is_tried():
         ("dark", "begins in eclipse until 0.30 orbits: the attitude is known from 0.32 orbits on"),
         ("tumbling", "5.2 deg/s at the start, still 4.7 deg/s; ACQUIRE begins under 0.3 deg/s"),
         ("estimate", "wrong by 7 deg RMS, and dishonest: inside its own 3 sigma 12 % of the time"),
-        ("mismatch", "inertia off by 0.93 kg m^2, its bound is 0"),
+        ("mismatch", "body.inertia_kgm2 is off by 91.2 %, and flight.uncertainty.inertia_percent = 0"),
         ("any_law", "a torque of 5.20e-07 N m on the mean leaves some 4.42 deg whatever the law"),
         (
             "disturbance",
