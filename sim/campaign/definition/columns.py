@@ -43,7 +43,8 @@ NUMBERS: tuple[str, ...] = (
     *_parameters(),
 )
 """Figures of a run; NULL where a flight has none."""
-TEXTS = ("mode_final", "isolated")
+TEXTS = ("mode_final", "isolated", "unsettled_causes", "unsettled_why")
+"""Besides them: the causes for which it has not settled, by name, and in words; empty where it has."""
 _OF_REQUIREMENTS = {"verdict": "TEXT", "measured": "REAL", "limit": "REAL"}
 """What a row holds of each requirement of the scenario, with its type in SQLite."""
 
@@ -53,12 +54,15 @@ def cells(summary: Mapping[str, Any]) -> dict[str, Cell]:
     flat = dict(_flat(summary))
     known = {name: flat[name] for name in (*NUMBERS, *TEXTS) if name in flat}
     units, outcomes = summary["isolated"], [one["verdict"] for one in summary["requirements"]]
+    reasons = summary.get("diagnosis", {}).get("reasons", ())
     return {
         **known,
         # Without a judgement of each, nobody knows how many are missed: no limit on it is met then.
         "requirements_failed": None if Outcome.NOT_JUDGED in outcomes else outcomes.count(Outcome.FAILED),
         "isolated": ", ".join(units),
         "isolated_units": len(units),
+        "unsettled_causes": ", ".join(reason["cause"] for reason in reasons),
+        "unsettled_why": "; ".join(reason["text"] for reason in reasons),
     }
 
 

@@ -69,6 +69,21 @@ class Sensitivity:
 
 
 @dataclass(frozen=True, slots=True)
+class UnsettledRuns:
+    """Runs that have not settled, for the same causes.
+
+    Attributes:
+        causes: by name.
+        runs: their numbers.
+        why: the sentences of the first of them.
+    """
+
+    causes: tuple[str, ...]
+    runs: tuple[int, ...]
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
 class CampaignAnalysis:
     """What the page shows.
 
@@ -78,6 +93,7 @@ class CampaignAnalysis:
         success: runs that meet all requirements, of those that have a result; a failed one does not.
         by_requirement: the same for each requirement.
         shares: the requirements of the scenario.
+        unsettled: the runs that have not settled, by their causes, the most frequent ones first.
         figures: the first is the one that runs are ranked by.
         indices: percentiles of each pointing index over all runs.
         profiles: of each index, (runs that were flown, points).
@@ -93,6 +109,7 @@ class CampaignAnalysis:
     success: Proportion
     by_requirement: dict[FigureRequirement, Proportion]
     shares: tuple[RequirementShare, ...]
+    unsettled: tuple[UnsettledRuns, ...]
     figures: tuple[FigureStatistics, ...]
     indices: dict[str, dict[Interpretation, IndexPercentile]]
     profiles: dict[str, Array]
@@ -128,6 +145,7 @@ def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
             entry: clopper_pearson(count, total, settings.confidence) for entry, count in met.items()
         },
         shares=requirement_shares(campaign, results, len(failures)),
+        unsettled=_unsettled(results),
         figures=figures,
         indices=table(profiles, settings.probability, settings.confidence, len(failures)),
         profiles=profiles,
@@ -137,6 +155,18 @@ def analyse(campaign: Campaign, results: Results) -> CampaignAnalysis:
         errors=results.profiles(ERROR_HISTORY),
         orbits=np.where(np.isfinite(columns["orbits"]), columns["orbits"], campaign.base["time"]["orbits"]),
     )
+
+
+def _unsettled(results: Results) -> tuple[UnsettledRuns, ...]:
+    found: dict[str, list[tuple[int, str]]] = {}
+    for run, causes, why in results.each(("run", "unsettled_causes", "unsettled_why"), Status.DONE):
+        if causes:
+            found.setdefault(str(causes), []).append((int(str(run)), str(why)))
+    groups = [
+        UnsettledRuns(tuple(causes.split(", ")), tuple(run for run, _ in those), those[0][1])
+        for causes, those in found.items()
+    ]
+    return tuple(sorted(groups, key=lambda group: -len(group.runs)))
 
 
 def _figure(

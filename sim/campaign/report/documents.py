@@ -66,6 +66,7 @@ def _values(campaign: Campaign, analysis: CampaignAnalysis) -> Json:
             for entry, found in analysis.by_requirement.items()
         },
         "scenario_requirements": share_json(analysis.shares),
+        "unsettled": [asdict(those) for those in analysis.unsettled],
         "missed": [str(one) for one in verdicts(campaign, analysis) if one.met is False],
         "figures": {figure.name: _figure(figure) for figure in analysis.figures},
         "indices_deg": {

@@ -81,6 +81,13 @@ def _sections(folder: Path, campaign: Campaign, analysis: CampaignAnalysis) -> I
             *scenario_requirements.run_tables(analysis.shares, folder),
         )
         yield PageSection("scenario", "Requirements of the scenario", note, tables)
+    if analysis.unsettled:
+        count = sum(len(those.runs) for those in analysis.unsettled)
+        note = (
+            f"{count} of {analysis.done} runs have not settled to the end of their flight. Those of the same "
+            "causes are a row, with the reasons of the first of them."
+        )
+        yield PageSection("unsettled", "Runs that have not settled", note, (text.unsettled_table(analysis),))
     if analysis.failures:
         note = "Not flown to their end; they count as runs that meet nothing."
         yield PageSection("failures", "Runs that failed", note, (text.failure_table(analysis),))

@@ -19,6 +19,8 @@ INDEX_NAMES = {
 }
 ALIKE = 0.01
 """Runs whose length differs by less than this part have the scenario's: it is rounded to ticks."""
+MOST_REASONS = 3
+"""Most groups of runs that have not settled, each for other causes, on the terminal."""
 STRONGEST = 3
 """Most dependences listed on the terminal."""
 _ABSENT = "–"
@@ -32,6 +34,10 @@ def lines(campaign: Campaign, analysis: CampaignAnalysis) -> list[str]:
     rows = [heading, f"  {label}{proportion(analysis.success, campaign)}"]
     rows += [f"  required   {one}" for one in verdicts(campaign, analysis) if one.group == "requirement"]
     rows += share_lines(analysis.shares, campaign)
+    rows += [
+        f"  unsettled  {len(those.runs)} of {analysis.done}, as run {those.runs[0]}: {those.why}"
+        for those in analysis.unsettled[:MOST_REASONS]
+    ]
     rows += [f"  {figure.words}: {_percentiles(figure, campaign)}" for figure in analysis.figures]
     strongest = [
         f"{analysis.input_words[each.column].words} {each.correlation.value:+.2f}"
@@ -167,6 +173,12 @@ def worst_table(analysis: CampaignAnalysis) -> Table:
         figures = (_value_of(figure, run) for figure in analysis.figures)
         rows.append((str(run), *figures, *(f"{analysis.inputs[name][flown[run]]:.4g}" for name in inputs)))
     return Table(head, rows)
+
+
+def unsettled_table(analysis: CampaignAnalysis) -> Table:
+    """The runs that have not settled, by their causes."""
+    rows = [(str(len(those.runs)), str(those.runs[0]), those.why) for those in analysis.unsettled]
+    return Table(("runs", "the first", "why it has not settled"), rows)
 
 
 def failure_table(analysis: CampaignAnalysis) -> Table:

@@ -51,7 +51,19 @@ def test_keys_become_columns():
         "isolated": "coil 1, sun sensor",
         "isolated_units": 2,
         "event_count": 4711,
+        "unsettled_causes": "",
+        "unsettled_why": "",
     }
+
+
+def test_a_run_that_has_not_settled_says_why():
+    reasons = [
+        {"cause": "estimate", "text": "never valid"},
+        {"cause": "mismatch", "text": "off by 9 %"},
+    ]
+    found = cells(SUMMARY | {"diagnosis": {"reasons": reasons}})
+    assert found["unsettled_causes"] == "estimate, mismatch"
+    assert found["unsettled_why"] == "never valid; off by 9 %"
 
 
 def test_failed_requirements_are_not_counted_while_one_is_not_judged():

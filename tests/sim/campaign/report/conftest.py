@@ -52,6 +52,18 @@ def done_row(small):
 
 
 @pytest.fixture(scope="session")
+def unsettled(campaign_of_40, done_row, tmp_path_factory):
+    """Statistics of 12 of them, of which six have not settled: five for the same two causes."""
+    with open_results(tmp_path_factory.mktemp("unsettled"), campaign_of_40) as results:
+        for run in range(12):
+            causes = {3: "weak"}.get(run, "estimate, mismatch" if run > 6 else "")
+            why = {"unsettled_causes": causes, "unsettled_why": f"{causes} <of> {run}" if causes else ""}
+            row = done_row(run)
+            results.add(replace(row, cells=row.cells | why))
+        return analyse(campaign_of_40, results)
+
+
+@pytest.fixture(scope="session")
 def campaign_of_40(small):
     """The campaign of these results."""
     return replace(small, runs=40)

@@ -86,6 +86,20 @@ def test_runs_without_a_figure_rank_as_the_worst(small, tmp_path, done_row):
     assert len(figures["pointing_deg_max_last_orbit"].ranked) == 20
 
 
+def test_runs_that_have_not_settled_stand_together_by_their_causes(unsettled):
+    most, other = unsettled.unsettled
+    assert (most.causes, most.runs, most.why) == (
+        ("estimate", "mismatch"),
+        (7, 8, 9, 10, 11),
+        "estimate, mismatch <of> 7",
+    )
+    assert (other.causes, other.runs) == (("weak",), (3,))
+
+
+def test_where_all_have_settled_there_are_none(analysis):
+    assert analysis.unsettled == ()
+
+
 def test_a_run_that_failed_ranks_as_the_worst(analysis):
     first = analysis.figures[0]
     assert first.without == 2

@@ -121,6 +121,14 @@ def test_few_runs_are_no_error(small, done_row, failed_row, tmp_path, done, fail
     assert (("section", "failures") in seen) == bool(failed)
 
 
+@pytest.mark.long
+def test_runs_that_have_not_settled_have_their_reasons(campaign_of_40, unsettled, tmp_path):
+    write_page(tmp_path / "page.html", campaign_of_40, unsettled, "1.2.3")
+    shown = (tmp_path / "page.html").read_text()
+    assert "6 of 12 runs have not settled to the end of their flight" in shown
+    assert "estimate, mismatch &lt;of&gt; 7" in shown
+
+
 # --- What is drawn is listed by the section of the scenario, each number with its distribution
 
 

@@ -27,6 +27,16 @@ def test_lines_say_what_matters(campaign_of_40, analysis):
     assert lines[-1] == "  failed     2, first run 7: run 7: <too> fast"
 
 
+def test_lines_say_why_runs_have_not_settled(campaign_of_40, unsettled):
+    lines = [line for line in text.lines(campaign_of_40, unsettled) if "unsettled" in line]
+    assert lines == [
+        "  unsettled  5 of 12, as run 7: estimate, mismatch <of> 7",
+        "  unsettled  1 of 12, as run 3: weak <of> 3",
+    ]
+    found = as_json(campaign_of_40, unsettled)["unsettled"]
+    assert found[1] == {"causes": ["weak"], "runs": [3], "why": "weak <of> 3"}
+
+
 def test_where_nothing_is_required_the_runs_keep_limits_and_are_no_success(small, done_row, tmp_path):
     campaign = replace(small, requirements=())
     with open_results(tmp_path, campaign) as results:
