@@ -27,16 +27,14 @@ from sim.sizing.levels import TOO_WEAK
 SHOWN = 3
 BEYOND = 1.2
 """A deviation above this many times its bound is stated, if it is more than ordinary for such a satellite."""
-SLIGHT = 0.05
-"""Part of what is ordinary that is enough once the estimate was misled: its filter is made for the bounds."""
 
 
-def beyond_bounds(scenario: Scenario, least_part: float = 1.0) -> list[str]:
+def beyond_bounds(scenario: Scenario, misled: bool = False) -> list[str]:
     """Its deviations beyond their bounds, a clause each, the worst first; at most ``SHOWN``.
 
     Args:
         scenario: the satellite, and its onboard table.
-        least_part: of what is ordinary for such a satellite; less is no cause, whatever its bound.
+        misled: the estimate was; then what is ordinary for such a satellite counts, too, beyond its bound.
     """
     table = flight_table(scenario)
     albedo = table.cells.albedo if table.cells else None
@@ -45,7 +43,7 @@ def beyond_bounds(scenario: Scenario, least_part: float = 1.0) -> list[str]:
     for one, ordinary in zip(
         deviations(scenario, table_bounds(table)), deviations(scenario, usual), strict=True
     ):
-        least = max(BEYOND * one.bound, least_part * ordinary.bound, one.slight)
+        least = max(BEYOND * one.bound, one.slight, 0.0 if misled else ordinary.bound)
         if one.worst > least:
             found.append((one.worst / least, one.words))
     return [clause for _, clause in sorted(found, reverse=True)[:SHOWN]]
@@ -249,7 +247,7 @@ def _is_honest(evidence: FlightEvidence) -> bool:
 def _mismatch(missed: Missed, evidence: FlightEvidence) -> str:
     lost = evidence.first_valid is not None and evidence.valid_part < MOSTLY
     misled = lost or not _is_honest(evidence)
-    found = beyond_bounds(evidence.scenario, SLIGHT if misled else 1.0)
+    found = beyond_bounds(evidence.scenario, misled)
     return f"the satellite is not within the bounds of its onboard table: {'; '.join(found)}" if found else ""
 
 
