@@ -78,6 +78,7 @@ class TestTutorial:
         settled = flown("upright", failed=True)["controlled"].get("settle_orbits", inf)
         assert settled > 3.0
 
+    @pytest.mark.timeout(1200)
     def test_all_runs_of_the_campaign_meet_its_requirement(self, flown):
         assert "All 20 meet it here" in page("tutorial.md")
         (share,) = [line for line in fly("campaign campaign.toml --out series") if "  success " in line]
