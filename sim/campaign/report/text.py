@@ -177,8 +177,11 @@ def worst_table(analysis: CampaignAnalysis) -> Table:
 
 def unsettled_table(analysis: CampaignAnalysis) -> Table:
     """The runs that have not settled, by their causes."""
-    rows = [(str(len(those.runs)), str(those.runs[0]), those.why) for those in analysis.unsettled]
-    return Table(("runs", "the first", "why it has not settled"), rows)
+    rows = [
+        (f"{len(those.runs)} of {analysis.done}, as run {those.runs[0]}", those.why)
+        for those in analysis.unsettled
+    ]
+    return Table(("runs", "why they have not settled"), rows)
 
 
 def failure_table(analysis: CampaignAnalysis) -> Table:

@@ -58,6 +58,7 @@ def test_no_scenario_that_ships_is_doubted(scenario):
         ),
         ("initial.rate_degps=[60,0,0]", ["initial.rate_degps is 60 deg/s"]),
         ("control.leak_s=30", ["control.leak_s = 30", "103 s"]),
+        ("disturbance.residual_dipole_am2=[0.0001,0,0]", ["residual_dipole_am2 is off by 0.0001", "= 0"]),
         ("disturbance.residual_dipole_am2=[0.002,0,0]", ["residual_dipole_am2 is off by 0.002", "= 0"]),
         ("sensors.magnetometer.bias_nt=[0,5000,0]", ["bias_nt is off by 5e+03", "= 500"]),
         (

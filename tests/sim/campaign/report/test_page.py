@@ -126,6 +126,7 @@ def test_runs_that_have_not_settled_have_their_reasons(campaign_of_40, unsettled
     write_page(tmp_path / "page.html", campaign_of_40, unsettled, "1.2.3")
     shown = (tmp_path / "page.html").read_text()
     assert "6 of 12 runs have not settled to the end of their flight" in shown
+    assert "5 of 12, as run 7" in shown
     assert "estimate, mismatch &lt;of&gt; 7" in shown
 
 
