@@ -5,6 +5,7 @@ from os import PathLike, fspath
 from pathlib import Path
 
 from fsw.input.schema import Model, Nested, TableError, merge, validated
+from sim.console import warn
 from sim.scenario.schema import Scenario, load
 from sim.scenario.settings import nested, plain
 
@@ -23,6 +24,14 @@ def chosen_scenario(
         TableError: there is none, or a key is unknown or out of range.
     """
     return load(scenario_source(scenario), laid_over(settings, law))
+
+
+def warn_of(scenario: Scenario, ticks: int | None = None) -> None:
+    """Say what is most likely wrong in a scenario of which a run takes so many ticks."""
+    from sim.sizing.scenario_warnings import scenario_warnings  # noqa: PLC0415  loaded when something flies
+
+    for doubt in scenario_warnings(scenario, ticks):
+        warn(doubt)
 
 
 def laid_over(settings: Settings | None, law: str | PathLike[str] | None = None) -> Nested:

@@ -15,7 +15,15 @@ from sim.design.command import design as design_gains
 from sim.design.render import NOISE, as_json, as_text
 from sim.progress import shown
 from sim.value_types import Json
-from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
+from torquer.api.arguments import (
+    ScenarioLike,
+    Settings,
+    checked,
+    chosen_scenario,
+    optional_path,
+    path_text,
+    warn_of,
+)
 from torquer.api.errors import one_sentence
 from torquer.api.printed import PrintedResult
 
@@ -107,6 +115,7 @@ def design(
     """
     given = checked(_GivenGains, "design", gains=gains).gains
     chosen = chosen_scenario(scenario, set)
+    warn_of(chosen)
     file = path_text(scenario, "write: scenario") if write else None
     with shown(progress):
         return Design(design_gains(chosen, given, optional_path(out, "out"), file))

@@ -29,7 +29,15 @@ from sim.report.charts.lines import Lines
 from sim.report.conclude import conclude
 from sim.report.follow import follow
 from sim.scenario.schema import Scenario, expecting, orbit_period_s
-from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
+from torquer.api.arguments import (
+    ScenarioLike,
+    Settings,
+    checked,
+    chosen_scenario,
+    optional_path,
+    path_text,
+    warn_of,
+)
 from torquer.api.audit import optional_key
 from torquer.api.errors import one_sentence
 from torquer.api.laws import LawLike, check_two_processes, checked_law, law_given
@@ -67,7 +75,8 @@ def fly(
     """Fly a scenario, as ``torquer sil`` does, which flies as two processes where no bus is given.
 
     The same scenario and seed give the same log on every bus, byte for byte. A flight that fails raises
-    nothing: ``ok`` and ``failures`` of the run tell. Flights may run in several threads at once.
+    nothing: ``ok`` and ``failures`` of the run tell. What is most likely wrong in the scenario is said on
+    stderr before. Flights may run in several threads at once.
 
     Args:
         scenario: name of a shipped scenario, path of a file, or a scenario.
@@ -111,6 +120,7 @@ def _fly(scenario: Scenario, options: _FlightOptions, folder: Path | None) -> Ru
     if options.bus != "virtual":
         check_two_processes(scenario, options.bus)
     check_can_fly(scenario, options.seed)
+    warn_of(scenario, ticks)
     notes = _notes(law)
     with _flight_on(options.bus, scenario) as (kind, flight):
         path = run_dir.begin(folder, scenario, options.seed, ticks, kind, pace, options.compress)

@@ -12,7 +12,15 @@ from sim.new_scenario.command import write_new
 from sim.new_scenario.satellite import NewSatellite
 from sim.sizing.command import SizingReport, sizing_report
 from sim.value_types import Json
-from torquer.api.arguments import ScenarioLike, Settings, checked, chosen_scenario, optional_path, path_text
+from torquer.api.arguments import (
+    ScenarioLike,
+    Settings,
+    checked,
+    chosen_scenario,
+    optional_path,
+    path_text,
+    warn_of,
+)
 from torquer.api.errors import one_sentence
 from torquer.api.printed import PrintedResult
 from torquer.api.scenarios import TypedScenario
@@ -101,7 +109,9 @@ def size(scenario: ScenarioLike, *, set: Settings | None = None) -> Sizing:
     Raises:
         InputError: the scenario or a key of it.
     """
-    return Sizing(sizing_report(chosen_scenario(scenario, set)))
+    chosen = chosen_scenario(scenario, set)
+    warn_of(chosen)
+    return Sizing(sizing_report(chosen))
 
 
 @one_sentence

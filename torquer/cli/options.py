@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec
 import click
 
 from fsw.bus.open_bus import KINDS
-from sim.console import Console, detail, fail, print_document, speaking, warn
+from sim.console import Console, detail, fail, print_document, speaking
 from torquer.cli.completions import of_buses, of_laws, of_paces, of_scenarios, of_settings
 
 if TYPE_CHECKING:
@@ -238,20 +238,24 @@ def load_scenario(
     Raises:
         TableError: not found, or not valid.
     """
-    from sim.scenario.schema import load, parse_settings
+    from torquer.api.arguments import warn_of
 
-    scenario = load(name_or_path, parse_settings(settings))
-    detail(f"scenario {scenario.name} of {name_or_path}{', ' + ', '.join(settings) if settings else ''}")
+    scenario = read_scenario(name_or_path, settings)
     warn_of(scenario, None if ticks_of_run is None else ticks_of_run(scenario))
     return scenario
 
 
-def warn_of(scenario: "Scenario", ticks: int | None = None) -> None:
-    """Say what is most likely wrong in a scenario of which a run takes so many ticks."""
-    from sim.sizing.scenario_warnings import scenario_warnings
+def read_scenario(name_or_path: str, settings: tuple[str, ...]) -> "Scenario":
+    """The same for what says itself what is most likely wrong.
 
-    for doubt in scenario_warnings(scenario, ticks):
-        warn(doubt)
+    Raises:
+        TableError: not found, or not valid.
+    """
+    from sim.scenario.schema import load, parse_settings
+
+    scenario = load(name_or_path, parse_settings(settings))
+    detail(f"scenario {scenario.name} of {name_or_path}{', ' + ', '.join(settings) if settings else ''}")
+    return scenario
 
 
 def say_report(found: "CommissioningReport") -> int:

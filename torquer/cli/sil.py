@@ -18,11 +18,10 @@ from torquer.cli.options import (
     bus_option,
     examples,
     law_and_settings,
-    load_scenario,
+    read_scenario,
     report_failures,
     scenario_argument,
     sentences,
-    warn_of,
 )
 
 if TYPE_CHECKING:
@@ -82,19 +81,12 @@ def sil(
 ) -> int:
     """Fly SCENARIO (realsat): plant and flight software as two processes on a bus (virtual: in one)."""
     from sim.console import answer, detail, fail, say
-    from sim.flight.record_flight import ticks_of
     from sim.junit import prepare_junit, write_junit
     from torquer.api.flight import fly
 
     prepare_junit(junit)
     again = _campaign_run(source, run, scenario, orbits, seed, expected, settings)
-    if again:
-        warn_of(again.scenario)
-    chosen = (
-        again.scenario
-        if again
-        else load_scenario(scenario or "realsat", settings, lambda chosen: ticks_of(chosen, orbits))
-    )
+    chosen = again.scenario if again else read_scenario(scenario or "realsat", settings)
     flown = fly(
         chosen,
         orbits=orbits,

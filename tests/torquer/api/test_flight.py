@@ -71,6 +71,17 @@ def test_what_flies_can_be_read_again_and_what_cannot_is_refused_before_anything
 
 
 @pytest.mark.long
+def test_what_is_most_likely_wrong_is_said_once_before_by_the_command_too(tmp_path, capsys, command):
+    known = "disturbance.residual_dipole_am2 is off by 0.008, and flight.uncertainty.residual_dipole_am2 = 0"
+    undeclared = {"disturbance.residual_dipole_am2": [0.0, -0.008, 0.0]}
+    torquer.fly("microsat", set=undeclared, orbits=SHORT, out=tmp_path / "api")
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line == f"torquer: warning: {known}: the filter is not made for it"
+    words = ("microsat", "--orbits", SHORT, "--bus", "virtual", "--out", tmp_path / "command")
+    done = command("sil", *words, "--set", "disturbance.residual_dipole_am2=[0,-0.008,0]")
+    assert done.stderr.count("warning: ") == done.stderr.count(known) == 1
+
+
 def test_what_is_expected_is_judged_and_a_failure_of_the_run(tmp_path):
     run = torquer.fly("microsat", orbits=1.0, expect=["ape<2", "ape<90"], out=tmp_path / "run")
     assert [one["verdict"] for one in run.summary["requirements"][-2:]] == ["failed", "met"]
