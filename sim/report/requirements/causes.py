@@ -132,6 +132,10 @@ HONEST = 0.9
 """Part of the time inside its own 3 sigma from which an estimate is honest."""
 MOSTLY = 0.5
 """Part of the last orbit for which the attitude is valid, if the estimate is good for anything."""
+AS_LARGE = 0.4
+"""Part of a limit from which an error of the estimate is a cause."""
+HALVES_IN_SHADOW = 4
+"""Half orbits at the end in which the estimate in the shadow counts: what it has misled takes an orbit."""
 UNSURE = 0.02
 """Part of the shadow from which an estimate that the control cannot use counts."""
 LATE = 0.4
@@ -222,6 +226,16 @@ def _shadow(missed: Missed, evidence: FlightEvidence) -> str:
     )
 
 
+def _shadow_estimate(missed: Missed, evidence: FlightEvidence) -> str:
+    worst_deg = max(evidence.dark_course[-HALVES_IN_SHADOW:], default=0.0)
+    if missed.limit is None or missed.what == "spin" or worst_deg < AS_LARGE * missed.limit:
+        return ""
+    return (
+        "in the Earth's shadow, with the magnetometer alone, the estimate was wrong by "
+        f"{number(worst_deg)} deg RMS, and the control follows it"
+    )
+
+
 def _estimate(missed: Missed, evidence: FlightEvidence) -> str:
     gives_none = not evidence.own_software and evidence.first_valid is None
     if evidence.scenario.knowledge != "filter" or gives_none:
@@ -230,7 +244,7 @@ def _estimate(missed: Missed, evidence: FlightEvidence) -> str:
         return "the estimate never converged: no attitude was called valid"
     if evidence.valid_part < MOSTLY or evidence.estimate_deg is None:
         return f"the attitude was called valid for {part(evidence.valid_part)} of the last orbit only"
-    share = 1.0 if missed.name == "ake" else 0.4
+    share = 1.0 if missed.name == "ake" else AS_LARGE
     if missed.limit is None or missed.what == "spin" or evidence.estimate_deg < share * missed.limit:
         return ""
     wrong = f"the estimate is wrong by {number(evidence.estimate_deg)} deg RMS"
@@ -417,10 +431,21 @@ ALL = KNOWING | {"duty", "energy"}
 BEFORE_KNOWING = frozenset(("isolated", "safe", "dark", "tumbling"))
 BEFORE_POINTING = frozenset(("safe", "dark", "tumbling", "shadow", "estimate"))
 CANNOT_POINT = frozenset(("isolated", "gravity", "unstable", "disturbance", "any_law"))
+OF_ESTIMATE = frozenset(("shadow", "estimate", "shadow_estimate"))
 POINT_IS_LOST = BEFORE_POINTING | CANNOT_POINT | {"coarse", "weak", "not_settled"}
 
 OF_OWN_SOFTWARE = frozenset(
-    ("isolated", "safe", "dark", "shadow", "mismatch", "unstable", "never_in_point", "fell_back")
+    (
+        "isolated",
+        "safe",
+        "dark",
+        "shadow",
+        "shadow_estimate",
+        "mismatch",
+        "unstable",
+        "never_in_point",
+        "fell_back",
+    )
 )
 """What lies in modes, events, table or laws of this project's flight software."""
 
@@ -442,11 +467,15 @@ CAUSES: Sequence[Diagnosis] = (
     Diagnosis("not_settled", POINTING, _not_settled, CANNOT_POINT | {"safe", "shadow", "estimate", "coarse"}),
     Diagnosis("short", POINTING, _short, POINT_IS_LOST),
     Diagnosis("never_in_point", POINTING, _never_in_point, POINT_IS_LOST | {"short"}),
-    Diagnosis("fell_back", SETTLING, fell_back, CANNOT_POINT | {"safe", "tumbling", "shadow", "estimate"}),
-    Diagnosis("left_again", SETTLING, left_again, POINT_IS_LOST | {"fell_back"}),
-    Diagnosis("slow", SETTLING, slow, POINT_IS_LOST | {"fell_back", "left_again"}),
+    Diagnosis("shadow_estimate", POINTING, _shadow_estimate, POINT_IS_LOST | {"mismatch", "short"}),
+    Diagnosis("fell_back", SETTLING, fell_back, CANNOT_POINT | {"safe", "tumbling"} | OF_ESTIMATE),
+    Diagnosis("left_again", SETTLING, left_again, POINT_IS_LOST | OF_ESTIMATE | {"fell_back"}),
+    Diagnosis("slow", SETTLING, slow, POINT_IS_LOST | OF_ESTIMATE | {"fell_back", "left_again"}),
     Diagnosis(
-        "swings", SETTLING, swings, POINT_IS_LOST | {"fell_back", "left_again", "short", "never_in_point"}
+        "swings",
+        SETTLING,
+        swings,
+        POINT_IS_LOST | OF_ESTIMATE | {"fell_back", "left_again", "short", "never_in_point"},
     ),
 )
 """In the order in which one may lead to the next."""

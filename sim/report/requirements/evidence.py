@@ -68,6 +68,7 @@ class FlightEvidence:
         fell_back: since when and for how long the controller was in SAFE or DETUMBLE after a better mode.
         unsure_dark: part of the ticks in the Earth's shadow, after the first valid one, in which the filter
             is less certain than the control can use.
+        dark_course: by half orbit, RMS of the knowledge error in the Earth's shadow, deg; 0 without a shadow.
         own_software: the flight software is this project's, whose modes, table and laws are known.
     """
 
@@ -92,6 +93,7 @@ class FlightEvidence:
     pulses: tuple[tuple[float, int], ...] = ()
     fell_back: tuple[tuple[Mode, float, float], ...] = ()
     unsure_dark: float = 0.0
+    dark_course: tuple[float, ...] = ()
     own_software: bool = True
 
 
@@ -108,6 +110,8 @@ class EvidenceGatherer:
         self._slow_degps = table.modes.slow_degps
         self._usable_rad = np.radians(table.estimator.usable_sigma_deg)
         self._dark = self._unsure_dark = 0
+        halves = int(2.0 * ticks / self._orbit) + 1
+        self._dark_squares, self._dark_ticks = np.zeros(halves), np.zeros(halves)
         self._taken = 0
         self._estimate, self._rate, self._torque = Mean(), Mean(), np.zeros(3)
         self._valid = self._inside = self._saturated = 0
@@ -167,6 +171,7 @@ class EvidenceGatherer:
             pulses=tuple((float(pulse.start_s) / orbit_s, abs(pulse.level)) for pulse in audit.pulses),
             fell_back=tuple(self._fell_back()) if self._own_software else (),
             unsure_dark=self._unsure_dark / self._dark if self._dark else 0.0,
+            dark_course=tuple(np.sqrt(self._dark_squares / np.maximum(1.0, self._dark_ticks)).tolist()),
             own_software=self._own_software,
         )
 
@@ -217,6 +222,11 @@ class EvidenceGatherer:
         certain = np.max(variances, axis=1) <= self._usable_rad**2
         self._dark += int(dark.sum())
         self._unsure_dark += int((dark & ~certain).sum())
+        known = dark & np.isfinite(estimates.q_body_from_orbit[:rows]).all(axis=1)
+        error_deg = np.degrees(magnitudes(knowledge_errors(truth, estimates)[known]))
+        halves = ((first + np.flatnonzero(known)) * 2.0 / self._orbit).astype(int)
+        self._dark_squares += np.bincount(halves, error_deg**2, len(self._dark_squares))
+        self._dark_ticks += np.bincount(halves, minlength=len(self._dark_ticks))
 
     def _take_estimate(self, truth: Histories, estimates: Estimates, recent: slice) -> None:
         valid = estimates.valid[: len(truth["t_s"])].copy()

@@ -91,6 +91,7 @@ FOUND = {
     "not_settled": replace(sound(), trend=(16.0, 11.0, 8.0, 5.6, 4.0, 2.8)),
     "never_in_point": replace(sound(), in_mode=STUCK, first_in_point=None),
     "short": replace(sound(), orbits=0.5, trend=(40.0,)),
+    "shadow_estimate": replace(sound(), course=BACK, dark_course=(9.0, 0.3, 0.2, 3.1, 0.4)),
     "fell_back": replace(sound(), course=BACK, fell_back=((Mode.DETUMBLE, 1.54, 0.19),)),
     "left_again": replace(sound(), course=BACK),
     "slow": replace(sound(), course=SLOW),
