@@ -137,7 +137,8 @@ def campaign(
     nominal = scenario_of(chosen.base, source)
     if nominal.own_law is not None:
         flight_config(flight_table(nominal), source)  # a fault of it would be that of every run
-    for doubt in (*scenario_warnings(nominal), *warnings_of_runs(chosen, scenario_warnings(nominal))):
+    doubts = scenario_warnings(nominal)
+    for doubt in (*doubts, *warnings_of_runs(chosen, doubts)):
         warn(doubt)
     folder = out or new_folder(Path("campaigns"), chosen.name)
     check_folder(folder, (FILE, SCENARIO, RESULTS, LOCK, PAGE, *([PARQUET] if options.parquet else [])))

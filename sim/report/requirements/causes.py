@@ -96,19 +96,36 @@ def slow(missed: Missed, evidence: FlightEvidence) -> str:
     )
 
 
+def recent(missed: Missed, evidence: FlightEvidence) -> str:
+    """The error has fallen below the limit, and has not been there for an orbit."""
+    trend = evidence.trend
+    if missed.settled is not None or missed.limit is None or not _falls(trend) or trend[-1] > missed.limit:
+        return ""
+    return (
+        f"too early to say: {number(trend[-1])} {_unit(missed)} RMS in the last half orbit, and not within "
+        f"{number(missed.limit)} for an orbit yet"
+    )
+
+
 def swings(missed: Missed, evidence: FlightEvidence) -> str:
     """It does not settle, and the error no longer falls."""
     trend = evidence.trend
-    if missed.settled is not None or missed.limit is None or len(trend) < 3 or min(trend) <= 0.0:
+    if missed.settled is not None or missed.limit is None or len(trend) < TREND or min(trend) <= 0.0:
         return ""
-    slope = float(np.polyfit(np.arange(len(trend)) / 2.0, np.log(trend), 1)[0])
-    if trend[-1] > missed.limit and slope <= log(FALLS):
+    if _falls(trend):
         return ""
     span = f"{number(min(trend))} to {number(max(trend))} {_unit(missed)} RMS"
     return (
         f"the error falls no longer: {span} in each of the last {len(trend)} half orbits, "
         f"and more than {number(missed.limit)} at times"
     )
+
+
+def _falls(trend: Sequence[float]) -> bool:
+    """Whether it falls by what is told from chance."""
+    if len(trend) < TREND or min(trend) <= 0.0:
+        return False
+    return float(np.polyfit(np.arange(len(trend)) / 2.0, np.log(trend), 1)[0]) <= log(FALLS)
 
 
 def _unit(missed: Missed) -> str:
@@ -471,6 +488,7 @@ CAUSES: Sequence[Diagnosis] = (
     Diagnosis("fell_back", SETTLING, fell_back, CANNOT_POINT | {"safe", "tumbling"} | OF_ESTIMATE),
     Diagnosis("left_again", SETTLING, left_again, POINT_IS_LOST | OF_ESTIMATE | {"fell_back"}),
     Diagnosis("slow", SETTLING, slow, POINT_IS_LOST | OF_ESTIMATE | {"fell_back", "left_again"}),
+    Diagnosis("recent", SETTLING, recent, POINT_IS_LOST | OF_ESTIMATE | {"fell_back", "left_again", "slow"}),
     Diagnosis(
         "swings",
         SETTLING,

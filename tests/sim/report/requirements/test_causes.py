@@ -70,7 +70,7 @@ DIPOLE = ("disturbance.residual_dipole_am2=[0.3,0,0]", "flight.uncertainty.resid
 LATE, NEVER = (Missed("settling", "attitude", 5.0, settled) for settled in (3.27, None))
 BACK = (40.0, 20.0, 3.0, 30.0, 20.0, 10.0, 4.0, 1.0, 0.5, 0.5)
 SLOW = tuple(40.0 * 0.72**half for half in range(10))
-MISSED = {"fell_back": LATE, "left_again": LATE, "slow": LATE, "swings": NEVER}
+MISSED = {"fell_back": LATE, "left_again": LATE, "slow": LATE, "swings": NEVER, "recent": NEVER}
 """What a flight of a cause has missed, where that is not APE."""
 STUCK = {Mode.DETUMBLE: 0.99, Mode.ACQUIRE: 0.01}
 FOUND = {
@@ -95,6 +95,7 @@ FOUND = {
     "fell_back": replace(sound(), course=BACK, fell_back=((Mode.DETUMBLE, 1.54, 0.19),)),
     "left_again": replace(sound(), course=BACK),
     "slow": replace(sound(), course=SLOW),
+    "recent": replace(sound(), course=(57.7, 30.0, 12.0, 2.0), trend=(57.7, 30.0, 12.0, 2.0)),
     "swings": replace(sound(), course=(40.0, *9 * [4.1]), trend=(4.1, 4.3, 3.9, 4.2, 4.0, 4.1)),
 }  # fmt: skip
 
