@@ -6,6 +6,8 @@ from sim.fault_table.row import Bounds, FaultRow, Unseen
 
 WRONG_DEG, ALONE_DEG, WRONG_S = 5.0, 15.0, 120.0
 """A valid attitude may be this wrong for this long while a new fault is being found."""
+_WRONG_IN_SHADOW = (Unseen.IN_SHADOW, Unseen.ALONE, Unseen.AT_FIRST)
+"""Rows in which the only sensor of the shadow may be the wrong one."""
 FIRST_S = 600.0
 """Length of the first minutes, in which both sensors may agree on what is wrong [s]."""
 
@@ -14,8 +16,9 @@ def never_wrong_for_long(row: FaultRow, record: FaultFlightRecord, bounds: Bound
     """No attitude in the answers is valid and more than 5 deg wrong for over 120 s on end.
 
     Where nothing on board can show it, because both sensors agree on what is wrong, the row says so. Where
-    there is only one sensor, as in the shadow, or an estimate is settling, the limit is 15 deg, three times
-    the largest sigma of a valid attitude. Only ticks that are answered count: one that is not ends nothing.
+    the only sensor is the wrong one, as in the shadow, an estimate is settling, or the fault is within a
+    declared bound, the limit is 15 deg, three times the largest sigma of a valid attitude. Only ticks that
+    are answered count: one that is not ends nothing.
     """
     longest = wrong = 0
     worst_deg = 0.0
@@ -26,8 +29,8 @@ def never_wrong_for_long(row: FaultRow, record: FaultFlightRecord, bounds: Bound
         if not record.done[tick]:
             continue  # it says nothing in this tick, neither that the attitude is valid nor that it is not
         error_deg = record.error_deg[tick]
-        alone = tick >= onset or (row.unseen in (Unseen.IN_SHADOW, Unseen.ALONE) and not record.lit[tick])
-        loose = alone or any(tick in ticks for ticks in settling)
+        alone = tick >= onset or (row.unseen in _WRONG_IN_SHADOW and not record.lit[tick])
+        loose = alone or row.unseen is Unseen.WITHIN_BOUND or any(tick in ticks for ticks in settling)
         limit_deg = ALONE_DEG if loose else WRONG_DEG
         wrong = wrong + 1 if error_deg is not None and error_deg > limit_deg else 0
         longest = max(longest, wrong)

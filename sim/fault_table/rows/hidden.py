@@ -24,9 +24,22 @@ def _slow(
     watch_s: float = ORBIT_S,
     **parameters: float,
 ) -> FaultRow:
-    """A fault that begins after a whole orbit without one, and stays."""
+    """A fault that begins after a whole orbit without one, and stays.
+
+    A magnetometer is the only sensor in the shadow.
+    """
     return FaultRow(
-        name, SLOW, kind, parameters, inf, When.ORBIT, expect, unit, within_s=within_s, watch_s=watch_s
+        name,
+        SLOW,
+        kind,
+        parameters,
+        inf,
+        When.ORBIT,
+        expect,
+        unit,
+        within_s=within_s,
+        unseen=Unseen.IN_SHADOW if unit == MAG else Unseen.NEVER,
+        watch_s=watch_s,
     )
 
 
@@ -96,7 +109,7 @@ def _reversed_coil(after_s: float, shows: bool = True) -> RowFault:
 
 
 SLY_ROWS: tuple[FaultRow, ...] = (
-    replace(_slow("mag-twist", "mag_turned", MAG, axis=0.0, deg=0.0, per_s=5e-3), unseen=Unseen.IN_SHADOW),
+    _slow("mag-twist", "mag_turned", MAG, axis=0.0, deg=0.0, per_s=5e-3),
     _slow(
         "mag-gain",
         "mag_scale",
@@ -111,13 +124,21 @@ SLY_ROWS: tuple[FaultRow, ...] = (
     _slow("mag-drift", "mag_bias", MAG, "named or doubted", within_s=ORBIT_S, axis=1.0, nt=0.0, per_s=1.0),
     _slow("mag-late", "mag_late", MAG, watch_s=3000.0),
     _slow("sun-late", "sun_late", SUN, watch_s=3000.0),
-    replace(_slow("both-late", "mag_late", MAG, watch_s=3000.0), then=(RowFault("sun_late", {}, inf, SUN),)),
+    replace(
+        _slow("both-late", "mag_late", MAG, watch_s=3000.0),
+        then=(RowFault("sun_late", {}, inf, SUN),),
+        unseen=Unseen.ALONE,
+    ),
     replace(_from_boot("mag-late-boot", "mag_late", MAG), unseen=Unseen.AT_FIRST),
     replace(
         _from_boot("both-late-boot", "mag_late", MAG, RowFault("sun_late", {}, inf, SUN)),
         unseen=Unseen.ALWAYS,
     ),
-    _from_boot("sun-turned-boot", "sun_turned", SUN, axis=2.0, deg=10.0),
+    _from_boot("sun-turned-boot", "sun_turned", SUN, axis=2.0, deg=20.0),
+    replace(
+        _from_boot("sun-turned-within-bound", "sun_turned", SUN, axis=2.0, deg=10.0),
+        unseen=Unseen.WITHIN_BOUND,
+    ),
     replace(
         _from_boot(
             "both-turned-boot",

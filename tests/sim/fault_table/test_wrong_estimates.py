@@ -73,11 +73,20 @@ class TestHonesty:
             (Unseen.IN_SHADOW, 16.0, False),
             (Unseen.ALONE, 14.0, True),
             (Unseen.ALONE, 16.0, False),
+            (Unseen.AT_FIRST, 14.0, True),
+            (Unseen.AT_FIRST, 16.0, False),
         ],
     )
     def test_less_of_the_only_sensor_that_is_left_in_the_shadow(self, bounds, unseen, deg, holds):
         row = FaultRow("planted", "", "none", unseen=unseen)
-        assert never_wrong_for_long(row, flown(*[deg] * 300, lit=False), bounds)[0] is holds
+        assert never_wrong_for_long(row, flown(*[deg] * 1000, lit=False), bounds)[0] is holds
+
+    @pytest.mark.parametrize(("deg", "holds"), [(14.0, True), (16.0, False)])
+    def test_less_of_a_fault_within_a_declared_bound(self, bounds, deg, holds):
+        row = FaultRow("planted", "", "none", unseen=Unseen.WITHIN_BOUND)
+        found, finding = never_wrong_for_long(row, flown(*[deg] * 300), bounds)
+        assert found is holds
+        assert bool(finding) is not holds
 
     @pytest.mark.parametrize(("onset", "holds"), [(100, True), (150, False)])
     def test_or_from_the_fault_of_the_other_on(self, bounds, onset, holds):

@@ -32,6 +32,10 @@ from fsw.core.fdir.sensors.plausibility import Findings
 SUSPICIOUS: Final = 0.25
 """Fraction of the threshold: with more doubt about the pair, a refusal counts against no single sensor."""
 
+TRIAL: Final = 2 * PAIR_NUMBERS
+"""How many times as long an estimate on trial has to prove itself. A turned sensor may keep the modelled
+angle until the field has turned about the Sun, which takes a sixth of an orbit."""
+
 ALONE: Final = 0.4
 """Fraction of the threshold at which a lag of one sensor alone counts: the other cannot contradict it."""
 
@@ -243,8 +247,8 @@ def _proof(pair: Pair, observed: Observed, weights: EvidenceWeights, credibility
         by = weights.fits if _innovations(estimate) < 0.0 else 0.0
     elif trusted:
         by = -weights.fits
-    slow = PAIR_NUMBERS if pair.standing is Standing.ON_TRIAL else 1
-    return weigh(pair.proof, by / slow, weights.threshold)
+    times = TRIAL if pair.standing is Standing.ON_TRIAL else 1
+    return weigh(pair.proof, by / times, weights.threshold)
 
 
 def _is_unsure(pair: Pair, estimate: Estimate | None) -> bool:

@@ -151,7 +151,7 @@ class TestProof:
         lagged = after(with_values(TRUSTED, proof_required=0.3), observed)
         assert lagged.standing is Standing.ON_TRIAL
         ticks, _ = ticks_until(after(lagged, BEGUN), TAKEN, Standing.TRUSTED)
-        assert 480 < ticks < 560
+        assert 1000 < ticks < 1060
 
     def test_without_a_sample_or_with_the_field_alone_nothing_begins(self):
         for used in (Used(False, False, True), Used(True, False, False)):
@@ -418,7 +418,7 @@ class TestAccord:
         assert 500 < ticks < 530
         assert not is_valid(pair)
         ticks, pair = ticks_until(with_values(pair, accord=0.0), TAKEN, Standing.TRUSTED)
-        assert 500 < ticks < 530
+        assert 1000 < ticks < 1060
         assert is_valid(pair)
 
     def test_one_wrong_angle_undoes_minutes(self):
