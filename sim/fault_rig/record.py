@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from math import acos, degrees, isfinite
 
+from fsw.core.algebra.vector import Vec3, dot
+from fsw.core.estimation.cells.prediction import LEAST_COSINE
 from fsw.core.state import FlightState
 from fsw.wire.frame import Frame
 from fsw.wire.messages import (
@@ -50,6 +52,7 @@ class FaultFlightRecord:
 
     Attributes:
         tick_hz: ticks a second.
+        cell_normals_body: of the Sun cells; empty without cells.
         onset: tick in which the first fault begins; None if none did.
         end: first tick without any; None if one is permanent.
         entries: SYNC, COIL_STATUS and COIL_BOOT as plant and board sent them.
@@ -64,6 +67,7 @@ class FaultFlightRecord:
         refused: number of COIL_REFUSED.
         error_deg: true error of the estimate; None where fsw has no valid one.
         lit: by tick, whether the Sun shines on the satellite.
+        lit_cells: by tick, the numbers of the Sun cells, from 1, on which it shines more than grazingly.
         modes: by tick; None while fsw does not run.
         events: FSW_EVENT.
         board_events: COIL_EVENT.
@@ -78,6 +82,7 @@ class FaultFlightRecord:
     """
 
     tick_hz: int
+    cell_normals_body: tuple[Vec3, ...] = ()
     onset: int | None = None
     end: int | None = None
     entries: list[LogEntry] = field(default_factory=list)
@@ -92,6 +97,7 @@ class FaultFlightRecord:
     refused: int = 0
     error_deg: list[float | None] = field(default_factory=list)
     lit: list[bool] = field(default_factory=list)
+    lit_cells: list[tuple[int, ...]] = field(default_factory=list)
     modes: list[Mode | None] = field(default_factory=list)
     events: list[ReportedEvent] = field(default_factory=list)
     board_events: list[BoardEvent] = field(default_factory=list)
@@ -137,9 +143,11 @@ class FaultFlightRecord:
                 self.events.append(ReportedEvent(tick, event.event, event.argument))
 
     def note_state(self, tick: int, state: FlightState | None, truth: TruthRow) -> None:
-        """Note the mode of fsw in a tick, and the error of its estimate against the truth."""
+        """Note the light and the mode of fsw in a tick, and the error of its estimate against the truth."""
         started = state is not None and state.tick >= 0
         self.lit.append(truth.lit > 0.0)
+        light = [truth.lit * dot(normal, truth.sun_body) for normal in self.cell_normals_body]
+        self.lit_cells.append(tuple([cell for cell, one in enumerate(light, 1) if one > LEAST_COSINE]))
         self.modes.append(state.modes.mode if state is not None and started else None)
         valid = state is not None and started and state.attitude.valid
         self.error_deg.append(_error_deg(state, truth) if state is not None and valid else None)

@@ -17,6 +17,7 @@ from sim.faults.faulty_plant import FaultyPlant, ScheduledFault
 from sim.plant.coil_drive import OFF, CoilDrive
 from sim.plant.config import PlantConfig
 from sim.plant.hardware.actuators import Actuator
+from sim.plant.sensor_config import SunCellsConfig
 from sim.scenario.assemble import plant_config
 from sim.scenario.schema import Scenario
 
@@ -39,8 +40,11 @@ class Rig:
         self._node: FlightNode | None = None
         self._backlog: list[Frame] = []
         self._condition = Condition.DEAD
-        self.plant = FaultyPlant(plant_config(scenario, seed))
-        self.record = FaultFlightRecord(scenario.time.tick_hz)
+        flown = plant_config(scenario, seed)
+        self.plant = FaultyPlant(flown)
+        cells = flown.sun_sensor.cells if isinstance(flown.sun_sensor, SunCellsConfig) else ()
+        normals_body = tuple([cell.normal_body for cell in cells])
+        self.record = FaultFlightRecord(scenario.time.tick_hz, normals_body)
 
     def inject(self, fault: Fault, first: int, end: int | None) -> None:
         """Schedule a fault, for the next tick at the earliest."""

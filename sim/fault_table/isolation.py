@@ -21,9 +21,14 @@ def onset_tick(fault: RowFault, record: FaultFlightRecord) -> int:
 
 
 def shows(fault: RowFault, record: FaultFlightRecord) -> bool:
-    """Whether the flight has a tick in which a fault can be seen: by its kind in sunlight, shadow or both."""
+    """Whether the flight has a tick in which a fault can be seen: by its kind in sunlight, shadow or both.
+
+    A cell that is dead, or weak, is as it should be where the Sun does not shine on it.
+    """
     first = onset_tick(fault, record)
     end = len(record.lit) if fault.lasts_s == inf else first + round(fault.lasts_s * record.tick_hz)
+    if fault.kind in ("cell_dead", "cell_scaled"):
+        return any(int(fault.unit.removeprefix("cell ")) in cells for cells in record.lit_cells[first:end])
     in_light, in_shadow = _shows_in_light(fault), _shows_in_shadow(fault)
     return any(in_light if lit else in_shadow for lit in record.lit[first:end])
 

@@ -4,6 +4,7 @@ from random import Random
 
 import pytest
 
+from fsw.core.algebra.vector import dot
 from fsw.core.events import Event as Number
 from fsw.wire.messages import CoilStatus, PlantEnd
 from sim.errors import HarnessError
@@ -289,3 +290,18 @@ def test_phases_go_through_the_pulse():
     phases = [case.phase_s(When.PULSE, phase, rng) for phase in range(40)]
     assert {0.0, 1.0, 2.0, 3.0, 102.0} <= set(phases)
     assert all(0.0 <= phase <= case.CYCLE_S for phase in phases)
+
+
+def test_the_record_says_on_which_cells_the_sun_shines():
+    scenario, config = prepare(name="cubesat-cells")
+    rig = Rig(scenario, config, 1)
+    for _ in range(3):
+        rig.tick()
+    truth = rig.plant.truth()
+    light = {
+        cell: truth.lit * dot(normal, truth.sun_body)
+        for cell, normal in enumerate(rig.record.cell_normals_body, 1)
+    }
+    assert len(light) == 6
+    assert rig.record.lit_cells[-1]
+    assert set(rig.record.lit_cells[-1]) == {cell for cell, one in light.items() if one > 0.2}

@@ -236,6 +236,7 @@ class TestAFaultThatShowedMustBeNamed:
     def judged(self, bounds, row, lit):
         """The row on a flight in which all coils were fired and fsw reported nothing."""
         flown = FaultFlightRecord(1, onset=100, lit=list(lit) * 20_000, error_deg=[0.3] * 20_000 * len(lit))
+        flown.lit_cells = [(1, 2, 3, 4, 5, 6) if one else () for one in flown.lit]
         flown.request_ticks = list(range(100, 20_000, 100))
         flown.request_coils = [tick // 100 % 3 for tick in flown.request_ticks]
         return checks.isolates_faulty_unit(row, flown, bounds)[0]
@@ -336,3 +337,16 @@ class TestUsedAgain:
         again = replace(self.NAMED, tick=310)
         holds, finding = self.judged(bounds, self.NAMED, self.BACK, again)
         assert (holds, finding) == (False, "coil 1 fired 1 times, and isolated again")
+
+
+@pytest.mark.parametrize(
+    ("kind", "needs_light"), [("cell_dead", True), ("cell_scaled", True), ("cell_stuck", False)]
+)
+def test_a_cell_that_gives_too_little_shows_it_where_the_sun_shines_on_it(bounds, kind, needs_light):
+    row = FaultRow("planted", "", kind, {"cell": 3.0}, inf, unit="cell 3")
+    flown = record()
+    flown.lit_cells = [(1, 2, 3)] * 100 + [(1, 2)] * (len(flown.lit) - 100)
+    undecided = (None, "the fault of cell 3 never shows")
+    assert (checks.isolates_faulty_unit(row, flown, bounds) == undecided) is needs_light
+    flown.lit_cells[150] = (3,)
+    assert checks.isolates_faulty_unit(row, flown, bounds) == (False, "cell 3 is not isolated")
