@@ -85,7 +85,7 @@ def compare(folder: Path, log: Path | None = None, key: PublicKey | None = None)
 
     Args:
         folder: of the run; without a run.json nothing is bound.
-        log: a log to be compared as the run's; None: its own.
+        log: a log to be compared as the run's, unless it is another of its files; None: its own.
         key: run.json must be signed by its private half, and have a digest of every file.
 
     Raises:
@@ -96,7 +96,7 @@ def compare(folder: Path, log: Path | None = None, key: PublicKey | None = None)
     run = run_dir.read_run(folder)
     recorded = digests(run)
     paths = {name: _path(folder, name) for name in (*FILES, *recorded)}
-    if log is not None:
+    if log is not None and log.name not in (RUN, SCENARIO, TRUTH, SUMMARY):
         paths[BUS_LOG] = log
     mismatches = {}
     for name, digest in recorded.items():

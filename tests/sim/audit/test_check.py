@@ -287,6 +287,13 @@ def test_an_error_in_a_log_that_is_not_the_runs_names_both(bound):
         check(bound, None)
 
 
+@pytest.mark.parametrize("name", ["run.json", "scenario.toml"])
+def test_another_file_of_the_run_is_no_log_and_no_log_of_another_run(bound, name):
+    with pytest.raises(LogError, match="not a candump log") as caught:
+        check(bound / name, None)
+    assert "the run's own" not in str(caught.value)
+
+
 # --- where a log ends
 
 
