@@ -57,11 +57,13 @@ GROUP = (
     "sim/audit/status_ticks.py",
     "sim/audit/unreported_time.py",
     "sim/audit/whole_entries.py",
+    "sim/campaign/in_memory.py",
     "sim/plant/**/*.py",
     "sim/flight/flight_loop.py",
     "sim/flight/fsw_answers.py",
     "sim/flight/virtual_bus.py",
     "sim/record/bus_log.py",
+    "sim/record/estimates.py",
     "sim/record/inbox_order.py",
     "sim/record/log_index.py",
 )

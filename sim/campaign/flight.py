@@ -4,31 +4,24 @@ The loop, the bus, the audit and the summary are those of ``torquer sil --bus vi
 input is in memory instead of files, and only as much as they need.
 """
 
-import hashlib
-from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-
-import numpy as np
 
 from fsw.input.schema import Nested
 from fsw.node import FlightNode
 from fsw.table.config import flight_config
-from fsw.wire.frame import Frame
-from fsw.wire.messages import NAMES, CoilDipole, CoilFire, CoilRefused, PlantEnd
 from sim.audit.auditor import AuditReport
 from sim.audit.limits import limits_in
-from sim.audit.whole_entries import JUDGED
+from sim.campaign.in_memory import FrameDigest, FramesInMemory, HistoriesInMemory
 from sim.faults.section import make_plant
 from sim.flight.flight_loop import fly
 from sim.flight.record_flight import MOST_IN_MEMORY, ticks_of
 from sim.flight.virtual_bus import VirtualBus
-from sim.plant.truth_row import TruthRow
-from sim.record.candump import LogEntry, read_log
-from sim.record.estimates import EstimateRecorder, Estimates
+from sim.record.candump import read_log
+from sim.record.estimates import Estimates
 from sim.record.run_record import FlightRecord
-from sim.record.truth import COLUMNS, Histories
+from sim.record.truth import Histories
 from sim.report.figures.performance import perform
 from sim.report.flight_audit import audit_flight
 from sim.report.summary import BusTally, summarise
@@ -36,39 +29,6 @@ from sim.scenario.assemble import effects_of, plant_config
 from sim.scenario.schema import Scenario, flight_table, load
 from sim.scenario.telecommands import uplink
 from sim.value_types import Json
-
-# --- SHA-256 of the frames of a flight: of all, and of the commands to the coils alone
-
-COMMANDS = frozenset({CoilFire.ID, CoilDipole.ID})
-
-
-class FrameDigest:
-    """Digests of frames in their order.
-
-    Two flights with the same digest of all frames are equal to the last bit: each TICK_DONE has the CRC of
-    the flight state. Each frame is sealed by a CRC of its own that includes its identifier, so that the data
-    suffice.
-    """
-
-    def __init__(self) -> None:
-        self._all, self._commands = hashlib.sha256(), hashlib.sha256()
-
-    def take(self, frames: Sequence[Frame]) -> None:
-        """Add the frames of a tick."""
-        self._all.update(b"".join([frame.data for frame in frames]))
-        for frame in frames:
-            if frame.can_id in COMMANDS:
-                self._commands.update(frame.data)
-
-    @property
-    def frames(self) -> str:
-        """Of all frames, in hex."""
-        return self._all.hexdigest()
-
-    @property
-    def commands(self) -> str:
-        """Of the commands, in hex."""
-        return self._commands.hexdigest()
 
 
 def digest_of(log: Path) -> FrameDigest:
@@ -87,16 +47,6 @@ def digest_of(log: Path) -> FrameDigest:
 
 Figures = dict[str, float]
 Measure = Callable[[Scenario, Histories, Estimates], Figures]
-
-_JUDGED = (
-    JUDGED
-    | {CoilRefused.ID, PlantEnd.ID}
-    | {can_id for can_id, name in NAMES.items() if name.endswith("_EVENT")}
-)
-"""Identifiers of the frames that audit and tally evaluate."""
-
-_WIDTHS = {name: width for name, width, *_ in COLUMNS if name != "r_eci_m"}
-"""Of the histories that summaries and measures need: the first numbers of a row."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +129,7 @@ def record_scenario(scenario: Scenario, seed: int, orbits: float | None = None) 
     """
     ticks = ticks_of(scenario, orbits, MOST_IN_MEMORY)
     node = FlightNode(flight_config(flight_table(scenario)))
-    log, truth = _Frames(), _Truth(ticks, node)
+    log, truth = FramesInMemory(), HistoriesInMemory(ticks, node)
     plant = make_plant(plant_config(scenario, seed), scenario.fault, effects_of(scenario))
     outcome = fly(
         plant,
@@ -200,45 +150,3 @@ def record_scenario(scenario: Scenario, seed: int, orbits: float | None = None) 
     report = audit_flight(log.entries, limits_in(scenario.model_dump(mode="json"), scenario.name), scenario)
     estimates = truth.recorder.estimates()
     return RecordedFlight(scenario, run, truth.histories(), estimates, report, tally, log.digest)
-
-
-class _Frames:
-    """The frames that are evaluated after the flight, numbered like the lines of a log."""
-
-    def __init__(self) -> None:
-        self.entries: list[LogEntry] = []
-        self.digest = FrameDigest()
-        self._line = 0
-
-    def write(self, timestamp_us: int, frames: list[Frame]) -> None:
-        self.digest.take(frames)
-        for frame in frames:
-            self._line += 1
-            if frame.can_id in _JUDGED:
-                self.entries.append(LogEntry(self._line, timestamp_us, "virtual", frame))
-
-
-class _Truth:
-    """The histories that summaries and measures need, and with each row the estimate on board."""
-
-    def __init__(self, ticks: int, node: FlightNode) -> None:
-        self._rows = array("d")
-        self._width = sum(_WIDTHS.values())
-        self.recorder = EstimateRecorder(ticks)
-        self._node = node
-
-    def append(self, row: TruthRow) -> None:
-        self._rows.fromlist(row.numbers()[: self._width])
-        self.recorder.take(self._node.state)
-
-    def histories(self) -> Histories:
-        """By name; each a copy of its columns."""
-        rows = np.frombuffer(self._rows).reshape(-1, self._width)
-        columns = np.split(rows, np.cumsum([*_WIDTHS.values()])[:-1], axis=1)
-        return {
-            name: np.ascontiguousarray(column[:, 0] if width == 1 else column)
-            for (name, width), column in zip(_WIDTHS.items(), columns, strict=True)
-        }
-
-    def flush(self) -> None:
-        """Nothing is buffered."""

@@ -11,7 +11,8 @@ from fsw.input.schema import merge
 from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilFire, MagField, Mode
 from sim.campaign.claim import ClaimVerdict
-from sim.campaign.flight import FlightResult, FrameDigest, Order, digest_of, fly_order, record_scenario
+from sim.campaign.flight import FlightResult, Order, digest_of, fly_order, record_scenario
+from sim.campaign.in_memory import FrameDigest
 from sim.campaign.study import (
     Figure,
     Group,

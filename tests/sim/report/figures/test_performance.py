@@ -6,9 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fsw.core.estimation.mekf import start
+from fsw.table.config import flight_config
 from sim.report.figures.estimate_error import converged_tick
 from sim.report.figures.performance import BLOCK_TICKS, Performance, perform
-from sim.scenario.schema import load, parse_settings
+from sim.scenario.schema import flight_table, load, parse_settings
 
 
 def in_blocks(run, estimates, *cuts):
@@ -101,10 +103,12 @@ def test_a_spin_is_held_against_its_reference_across_blocks(made_run):
 
 def test_the_last_estimate_of_the_filter_outlives_blocks_without_one(made_run):
     run = made_run(ticks=300)
-    estimates = replace(run.estimates(), last="the last one")
+    config = flight_config(flight_table(run.scenario))
+    last = start((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), config.estimator.mekf)
+    estimates = replace(run.estimates(), last=last)
     performance, truth = Performance(run.scenario, 300), run.truth()
     for first in (0, 100, 200):
         rows = slice(first, first + 100)
-        part = replace(estimates.part(rows), last="the last one" if first == 100 else None)
+        part = replace(estimates.part(rows), last=last if first == 100 else None)
         performance.take({name: history[rows] for name, history in truth.items()}, part)
-    assert performance.last_estimate == "the last one"
+    assert performance.last_estimate is last
