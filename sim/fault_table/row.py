@@ -41,7 +41,7 @@ class Unseen(StrEnum):
 
     NEVER = ""
     IN_SHADOW = "in the shadow nothing shows it"
-    """The sensor that is wrong is the only one there is; or a coil turns the satellite about the field."""
+    """The sensor that is wrong is the only one there is."""
     AT_FIRST = "for its first minutes both sensors agree, in the shadow nothing shows it"
     """A late field sample looks like a magnetometer bias until the satellite has turned."""
     WITHIN_BOUND = "the light of the Earth may turn the Sun by as much"

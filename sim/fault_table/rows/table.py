@@ -202,14 +202,7 @@ def _from_boot(name: str, kind: str, unit: str, **parameters: float) -> Rows:
     )
 
 
-def _coils(
-    name: str,
-    kind: str,
-    *expect: str,
-    watch_s: float = 2e3,
-    unseen: Unseen = Unseen.NEVER,
-    **parameters: float,
-) -> Rows:
+def _coils(name: str, kind: str, *expect: str, watch_s: float = 2e3, **parameters: float) -> Rows:
     """The same fault of each coil."""
     return tuple(
         FaultRow(
@@ -220,7 +213,6 @@ def _coils(
             inf,
             expect=expect,
             unit=f"coil {coil}",
-            unseen=unseen,
             watch_s=watch_s,
         )
         for coil in range(3)
@@ -407,9 +399,9 @@ ROWS: Rows = (
     ),
     *_coils("coil-open", "coil_open", "named", "board names", watch_s=6000.0),
     *_coils("coil-reversed", "coil_wired", "named", watch_s=6000.0, scale=-1.0),
-    *_coils("coil-weak", "coil_wired", "named", watch_s=12000.0, unseen=Unseen.IN_SHADOW, scale=0.1),
+    *_coils("coil-weak", "coil_wired", "named", watch_s=12000.0, scale=0.1),
     # With a third of its effect: what it lacks may be within the bounds of gain, dipole and torque together.
-    *_coils("coil-third", "coil_wired", "bounded", watch_s=12000.0, unseen=Unseen.IN_SHADOW, scale=0.3),
+    *_coils("coil-within-bounds", "coil_wired", "bounded", watch_s=12000.0, scale=0.3),
     *_coils("coil-stuck-on", "coil_stuck_on", "named", "bounded", "stuck", "board names", ampere=0.4),
     FaultRow(
         "coil-stuck-on-in-eclipse",
