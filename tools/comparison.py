@@ -157,10 +157,6 @@ def main(words: Sequence[str] | None = None) -> int:
     return int(any(score.limits_ok is False for satellite in satellites for score in satellite.scores))
 
 
-if __name__ == "__main__":
-    sys.exit(main())
-
-
 # --- The picture of a comparison: a line for each law, a mark for each driver of its coils
 
 MARKS = {Driver.PULSED: ("o", AXES_COLOURS[0], 0.16), Driver.CONTINUOUS: ("D", AXES_COLOURS[1], -0.16)}
@@ -214,3 +210,7 @@ def _legend() -> Iterator[Line2D]:
         yield Line2D([], [], marker=shape, color=colour, linestyle="", markersize=4.2, label=driver.value)
     yield Line2D([], [], marker="o", color=MUTED, markerfacecolor="none", linestyle="", markersize=4.2,
                  label="hollow: never settled")  # fmt: skip
+
+
+if __name__ == "__main__":
+    sys.exit(main())

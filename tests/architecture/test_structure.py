@@ -22,6 +22,17 @@ def test_every_folder_says_what_it_is_for(folder):
     assert ast.get_docstring(ast.parse((folder / "__init__.py").read_text()))
 
 
+SCRIPTS = [*MODULES, *sorted((ROOT / "tools").glob("*.py")), *sorted((ROOT / "benchmarks").glob("*.py"))]
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=relative)
+def test_a_script_runs_its_main_after_all_that_it_defines(path):
+    statements = ast.parse(path.read_text()).body
+    main = [at for at, statement in enumerate(statements) if "sys.exit(main(" in ast.unparse(statement)]
+    main = [at for at in main if isinstance(statements[at], ast.If)]
+    assert main in ([], [len(statements) - 1])
+
+
 # --- tests mirror the packages
 
 TEST_FOLDERS = sorted(
