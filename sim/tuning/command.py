@@ -20,7 +20,7 @@ from sim.scenario.schema import Scenario, load, shipped_names
 from sim.tuning.applicable import check_suited, coils_of, is_suited, laws_for
 from sim.tuning.kept import KeptGains, body_checksum, gains_text, read_gains, write_gains
 from sim.tuning.rigid_flight import STEP_S
-from sim.tuning.search import BUDGET, ORBITS, SEED, TunedGains, tune
+from sim.tuning.search import BUDGET, ORBITS, SEED, TunedGains, confirm, tune
 
 DRIVERS = ("pulsed", "continuous")
 FASTEST_RAD = 0.4
@@ -38,7 +38,8 @@ def design_laws(
 ) -> KeptGains:
     """Search the gains of laws for a scenario, print them, and keep each in the file once it is found.
 
-    A law that the file has is not searched again; a file for another body or by other rules is left alone.
+    A law that the file has is searched again only where whole flights no longer bear its gains out; a file
+    for another body or by other rules is left alone.
 
     Args:
         name: of the scenario, or its path.
@@ -57,24 +58,24 @@ def design_laws(
     chosen = _chosen(scenario, laws)
     check_suited(chosen, name, over)
     path = path or Path(f"{scenario.name}-gains.toml")
-    rules = KeptGains(body_checksum(scenario), budget, orbits)
-    kept = read_gains(path) or rules
-    if replace(kept, rows={}) != rules:
+    none = KeptGains(body_checksum(scenario), budget, orbits)
+    kept = read_gains(path) or none
+    if replace(kept, rows={}) != none:
         raise HarnessError(
             f"{path}: holds gains of another body, start or coils, or by {kept.flights} flights of "
             f"{kept.orbits:g} orbits and seed {kept.seed} instead of {budget} of {orbits:g} and {SEED}: "
             "give --keep another file"
         )
-    wanted = [
-        (driver, law)
-        for driver in DRIVERS
-        for law in chosen
-        if is_suited(law, scenario, driver) and kept.control(driver, law) is None
-    ]
-    searches = [
-        partial(tune, name, merge(over, coils_of(scenario, driver)), law, budget, orbits, step_s(scenario))
-        for driver, law in wanted
-    ]
+    wanted = [(driver, law) for driver in DRIVERS for law in chosen if is_suited(law, scenario, driver)]
+    rules = (budget, orbits, step_s(scenario))
+    searches = []
+    for driver, law in wanted:
+        over_law, row = merge(over, coils_of(scenario, driver)), kept.rows.get(driver, {}).get(law)
+        searches.append(
+            partial(tune, name, over_law, law, *rules)
+            if row is None
+            else partial(confirm, name, over_law, law, row["control"], row["cost"], *rules)
+        )
     studies = [
         Study(f"{law}, {driver}", (search,), lambda found: [], has_flights=True)
         for (driver, law), search in zip(wanted, searches, strict=True)
@@ -85,9 +86,11 @@ def design_laws(
     def keep(finished: StudyResult) -> None:
         nonlocal kept
         found = finished.results[0]
-        kept = kept.with_row(found)
-        write_gains(path, kept)
-        say(line(found))
+        before = kept.rows.get(found.driver, {}).get(found.law)
+        if found.flights:
+            kept = kept.with_row(found)
+            write_gains(path, kept)
+        say(line(found, None if before is None else before["cost"]))
 
     with progress(f"gains of {counted(len(chosen), 'law')} for {scenario.name}", len(wanted)) as watch:
         run(studies, workers or os.cpu_count() or 1, watch, keep)
@@ -101,14 +104,20 @@ def step_s(scenario: Scenario) -> float:
     return STEP_S if spin == 0.0 else max(2.0, min(STEP_S, 2.0 * (FASTEST_RAD / spin // 2.0)))
 
 
-def line(found: TunedGains) -> str:
-    """One law for the terminal."""
+def line(found: TunedGains, earlier: float | None = None) -> str:
+    """One law for the terminal; ``earlier`` is what the gains cost that the file had of it."""
     settled = found.cost.settle_orbits
     when = "never settled" if settled is None else f"settled after {settled:.2f} orbits"
     gains = gains_text(found.control)
+    if earlier is None:
+        origin = ""
+    elif found.flights == 0:
+        origin = "; the file's, borne out"
+    else:
+        origin = f"; searched again, as the file's no longer cost {earlier:.3f}"
     return (
         f"{found.law}, {found.driver}: {when}, then {found.cost.rms:.3g} RMS; cost {found.cost.total:.3f}, "
-        f"before {found.before.total:.3f}; {gains}"
+        f"before {found.before.total:.3f}; {gains}{origin}"
     )
 
 

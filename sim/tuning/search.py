@@ -9,6 +9,9 @@ What is best there may be a fluke, or fail where the filter does not know all. S
 a whole flight, beside one with the scenario's own, and where they are not better there, the next best that
 are not near them; after ``CANDIDATES`` of them the scenario's own stay.
 
+Gains that were found earlier are of the flight software of that day. They stay where whole flights of today
+bear them out; otherwise the law is searched again.
+
 Source: Halton 1960 for the sequence, Nelder and Mead 1965 for the simplex, both by SciPy.
 """
 
@@ -66,6 +69,8 @@ SEED = 2
 """Of the whole flights: a comparison flies others by default."""
 NEAR = 0.3
 """Gains are near others where no logarithm differs by so much."""
+WORSE = 0.1
+"""By so much of it the cost of earlier gains may have grown."""
 USED = 1e-9
 """A gain whose change alters the cost by less is not used by the law."""
 DIRECT: Nested = {"knowledge": "perfect", "field": {"model": "direct_dipole"}}
@@ -84,7 +89,7 @@ class TunedGains:
         control: the keys of ``[control]`` that were searched; empty: the scenario's own.
         cost: of the whole flight with them.
         before: of that with the scenario's own gains.
-        flights: of the search.
+        flights: of the search; 0: gains that were found earlier, borne out today.
     """
 
     law: str
@@ -168,6 +173,32 @@ def tune(
         _search(trials, free, budget)
     control, cost, own = _proven(trials)
     return TunedGains(law, as_it_is.coils.driver, control, cost, own, len(trials.flown))
+
+
+def confirm(
+    scenario: str,
+    over: Nested,
+    law: str,
+    control: Nested,
+    total: float,
+    budget: int = BUDGET,
+    orbits: float = ORBITS,
+    step_s: float | None = None,
+    whole: WholeFlight = fly_whole,
+) -> TunedGains:
+    """Gains that were found earlier at a cost of ``total``, if they still fly so; else those of a search.
+
+    The other arguments are those of ``tune``.
+
+    Raises:
+        TableError: the scenario is not valid.
+    """
+    trials = _Trials(scenario, over, law, orbits, step_s, whole)
+    cost = trials.whole_cost(control)
+    own = trials.whole_cost({}) if control else cost
+    if cost.total <= min(total * (1.0 + WORSE), own.total):
+        return TunedGains(law, load(scenario, over).coils.driver, control, cost, own, 0)
+    return tune(scenario, over, law, budget, orbits, step_s, whole)
 
 
 def _proven(trials: _Trials) -> tuple[Nested, Cost, Cost]:

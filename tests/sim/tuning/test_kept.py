@@ -2,11 +2,13 @@
 
 import pytest
 
+from fsw.core.laws.table import LAWS
+from fsw.input.schema import merge
 from sim.errors import HarnessError
 from sim.scenario.schema import load, shipped_names
 from sim.tuning import command, kept
-from sim.tuning.applicable import is_suited, laws_for
-from sim.tuning.cost import Cost
+from sim.tuning.applicable import coils_of, is_suited, laws_for
+from sim.tuning.cost import Cost, cost_of
 from sim.tuning.kept import (
     KeptGains,
     body_checksum,
@@ -15,7 +17,7 @@ from sim.tuning.kept import (
     shipped_gains,
     write_gains,
 )
-from sim.tuning.search import TunedGains
+from sim.tuning.search import WORSE, TunedGains, fly_whole
 
 FOUND = TunedGains(
     "lqr",
@@ -112,6 +114,21 @@ def test_those_that_ship_are_no_worse_in_a_whole_flight_than_the_scenarios_own()
                 assert better or (not row["control"] and row["cost"] == row["cost_before"]), (path.stem, law)
 
 
+@pytest.mark.long
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(path.stem for path in kept.FOLDER.glob("*.toml")))
+def test_those_that_ship_still_fly_as_they_did(name):
+    """One law of each aim and driver of a body; ``make gains`` flies all of them."""
+    scenario, shipped = load(name), read_gains(kept.FOLDER / f"{name}.toml")
+    for driver, rows in shipped.rows.items():
+        by_aim = {LAWS[law].aim: law for law, row in rows.items() if row["control"]}
+        for law in by_aim.values():
+            row, over = rows[law], merge(coils_of(scenario, driver), {"control": {"law": law}})
+            flown = load(name, merge(over, {"control": rows[law]["control"]}))
+            today = cost_of(fly_whole(flown, shipped.seed, shipped.orbits), flown, LAWS[law].aim)
+            assert today.total <= row["cost"] * (1.0 + WORSE), (law, driver)
+
+
 def test_the_gains_in_a_line():
     assert gains_text(FOUND.control) == "k_w 1e+06, gains.lqr.effort 0.2"
     assert gains_text({}) == "the scenario's"
@@ -130,6 +147,19 @@ class TestCommand:
         monkeypatch.setattr(command, "tune", tune)
         return laws
 
+    @pytest.fixture
+    def confirmed(self, monkeypatch):
+        """The laws whose gains were flown again, with these and what they had cost; a little worse today."""
+        laws = []
+
+        def confirm(name, over, law, control, total, *_):
+            laws.append((law, control, total))
+            driver = over["coils"]["driver"]
+            return TunedGains(law, driver, control, Cost(0.52, 1.0, 0.3), Cost(0.9, None, 2.0), 0)
+
+        monkeypatch.setattr(command, "confirm", confirm)
+        return laws
+
     def test_each_law_by_each_driver_that_it_has_a_use_for(self, searched, tmp_path, capsys):
         path = tmp_path / "a.toml"
         found = command.design_laws("microsat", {}, "pd,pulse_mpc", path, workers=1)
@@ -137,12 +167,32 @@ class TestCommand:
         assert read_gains(path) == found
         assert "pd, pulsed: settled after 1.00 orbits, then 0.3 RMS" in capsys.readouterr().out
 
-    def test_what_the_file_has_is_not_searched_again(self, searched, tmp_path):
+    def test_what_the_file_has_is_borne_out_and_not_searched_again(
+        self, searched, confirmed, tmp_path, capsys
+    ):
         path = tmp_path / "a.toml"
         command.design_laws("microsat", {}, "pd", path, workers=1)
+        row, before = read_gains(path).rows["pulsed"]["pd"], path.read_bytes()
         searched.clear()
         command.design_laws("microsat", {}, "pd,lqr", path, workers=1)
         assert {law for law, _ in searched} == {"lqr"}
+        assert confirmed == [("pd", row["control"], row["cost"])] * 2
+        assert read_gains(path).rows["pulsed"]["pd"] == row
+        assert path.read_bytes() != before
+        assert "pd, pulsed: settled after 1.00 orbits, then 0.3 RMS; cost 0.520" in capsys.readouterr().out
+
+    def test_what_no_longer_flies_so_is_replaced_and_said(self, searched, monkeypatch, tmp_path, capsys):
+        path = tmp_path / "a.toml"
+        command.design_laws("microsat", {}, "pulse_mpc", path, workers=1)
+        capsys.readouterr()
+
+        def confirm(name, over, law, control, total, *_):
+            return TunedGains(law, "pulsed", {"k_w": 2.0}, Cost(0.4, 1.0, 0.2), Cost(0.9, None, 2.0), 24)
+
+        monkeypatch.setattr(command, "confirm", confirm)
+        command.design_laws("microsat", {}, "pulse_mpc", path, workers=1)
+        assert read_gains(path).control("pulsed", "pulse_mpc") == {"k_w": 2.0}
+        assert "searched again, as the file's no longer cost 0.500" in capsys.readouterr().out
 
     @pytest.mark.long
     @pytest.mark.slow

@@ -1,6 +1,7 @@
 """The search: within its budget, never worse than the scenario's gains, the same each time; what is free."""
 
 from math import log
+from typing import ClassVar
 
 import pytest
 
@@ -13,7 +14,7 @@ from sim.scenario.schema import load
 from sim.tuning import search
 from sim.tuning.cost import Cost
 from sim.tuning.free_gains import FreeGain, as_control, common_gains, flat, own_gains
-from sim.tuning.search import tune
+from sim.tuning.search import confirm, tune
 
 PULSED = {"coils": {"driver": "pulsed"}}
 
@@ -115,6 +116,43 @@ class TestWholeFlights:
         whole, flown = self.refusing(*(1e6 * 1.2**power for power in range(40)))
         tune("microsat", PULSED, "pd", budget=60, whole=whole)
         assert len(flown) <= 1 + search.CANDIDATES
+
+
+class TestConfirm:
+    """Gains of an earlier day stay where today's whole flights bear them out."""
+
+    GOOD: ClassVar[dict[str, float]] = {"k_w": 1.2e7, "k_a": 4100.0}  # costs 0.225 of the bowl
+
+    @pytest.mark.parametrize("total", [0.225, 0.21, 0.3])
+    def test_what_still_flies_so_stays_without_a_search(self, bowl, total):
+        found = confirm("microsat", PULSED, "pd", self.GOOD, total, budget=20, whole=as_rigid)
+        assert (found.control, found.flights, bowl) == (self.GOOD, 0, [])
+        assert found.cost.total == pytest.approx(0.225)
+
+    def test_what_flies_worse_than_it_did_is_searched_again(self, bowl):
+        found = confirm("microsat", PULSED, "pd", self.GOOD, 0.2, budget=20, whole=as_rigid)
+        assert found == tune("microsat", PULSED, "pd", budget=20, whole=as_rigid)
+
+    def test_what_is_worse_than_the_scenarios_own_is_searched_again(self, bowl):
+        far = {"k_w": 9e7, "k_a": 400.0}
+        found = confirm("microsat", PULSED, "pd", far, 9.0, budget=20, whole=as_rigid)
+        assert found.flights > 0
+        assert found.control != far
+
+    def test_the_scenarios_own_stay_where_they_are_as_good_as_they_were(self, bowl):
+        own = load("microsat").control
+        total = abs(own.k_w / 1e7 - 1.0) + abs(own.k_a / 4000.0 - 1.0)
+        found = confirm("microsat", PULSED, "pd", {}, total, budget=20, whole=as_rigid)
+        assert (found.control, found.cost, found.flights) == ({}, found.before, 0)
+
+    def test_what_fails_today_is_searched_again(self, bowl):
+        def whole(scenario, seed, orbits):
+            if scenario.control.k_w == self.GOOD["k_w"]:
+                raise HarnessError("lost")
+            return scenario.control
+
+        found = confirm("microsat", PULSED, "pd", self.GOOD, 0.225, budget=20, whole=whole)
+        assert found.flights > 0
 
 
 class TestFreeGains:
