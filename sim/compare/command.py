@@ -50,7 +50,8 @@ _MEANING = (
 
 _FOUND = (
     "The best gains that torquer design --laws has found in {flights} flights a law, {orbits:g} orbits each, "
-    "of the rigid body in the direct dipole's field with nothing unknown. Cost: share of the flight until "
+    "of the rigid body in the direct dipole's field with nothing unknown, and that a whole flight has borne "
+    "out: its figures stand here. Cost: share of the flight until "
     "the error stays under 5°, and log2(1 + RMS / 5°) of the last orbit; a law that does not point is judged "
     "by its rate."
 )
@@ -64,14 +65,17 @@ def compare_page(
     window: str,
     by: Controlled,
     kept: KeptGains | None = None,
+    unsettled: Sequence[str] = (),
 ) -> str:
     """The page of a comparison whose figures are over ``window``; without a flight it has no chart.
 
-    With gains ``kept`` for the body it tells those of each law, and what they cost on the rigid body.
+    With gains ``kept`` for the body it tells those of each law, and what they cost in a whole flight; below
+    the table stand those that are ``unsettled`` here.
     """
     flights = [result for result in results if result.history is not None]
     meaning = _MEANING.format(what=by.words, threshold=with_unit(by.threshold, by), window=window)
-    sections = [PageSection("scores", "The laws", meaning, (as_table(scores, by),), text=_failures(scores))]
+    below = "\n".join([*_failures(scores), *unsettled])
+    sections = [PageSection("scores", "The laws", meaning, (as_table(scores, by),), text=below)]
     time = None
     if flights and flights[0].history is not None:
         first = flights[0].history
@@ -148,8 +152,24 @@ def _tiles(scores: Sequence[Score], window: str, by: Controlled) -> list[Tile]:
     return tiles
 
 
-def _failures(scores: Sequence[Score]) -> str:
-    return "\n".join(f"{score.law}, {score.driver}: {score.failure}" for score in scores if score.failure)
+def _failures(scores: Sequence[Score]) -> list[str]:
+    return [f"{score.law}, {score.driver}: {score.failure}" for score in scores if score.failure]
+
+
+def unsettled_gains(scores: Sequence[Score], kept: KeptGains | None, orbits: float) -> list[str]:
+    """A sentence for each law that settled when its gains were found, and does not here in as many orbits."""
+    if kept is None or orbits < kept.orbits:
+        return []
+    sentences = []
+    for score in scores:
+        row = kept.rows.get(score.driver.value, {}).get(score.law)
+        flown = score.tuned and not score.failure
+        if flown and row is not None and "settle_orbits" in row and score.settle_orbits is None:
+            sentences.append(
+                f"{score.law}, {score.driver}: it settled after {row['settle_orbits']:.2f} orbits when its "
+                "gains were found, and does not here"
+            )
+    return sentences
 
 
 # --- What the laws of a comparison are judged by: the quantity that they are meant to control on this body
@@ -195,6 +215,7 @@ class ComparedLaws:
         description: scenario, seed, settings and length of the flights, as in ``compare.json``.
         asked: the laws that were named, and the scenario's own.
         drawn: whether any was flown, so that there is a picture.
+        unsettled: a sentence for each law whose gains settled it when they were found, and do not here.
     """
 
     folder: Path
@@ -204,6 +225,7 @@ class ComparedLaws:
     description: dict[str, Any]
     asked: frozenset[str]
     drawn: bool
+    unsettled: Sequence[str]
 
     @property
     def files(self) -> list[Path]:
@@ -231,7 +253,7 @@ class ComparedLaws:
 
     def __str__(self) -> str:
         heading = _heading(self.scenario, self.description["seed"], self.description["ticks"], self.by)
-        return f"{heading}\n{as_text(self.scores, self.by)}"
+        return "\n".join([heading, as_text(self.scores, self.by), *self.unsettled])
 
 
 class CompareOptions(Section):
@@ -313,11 +335,13 @@ def compare(
     finally:  # flights that are done are written when the rest is given up
         scores = ranked((result.score for result in results), by)
         description["complete"] = len(results) == len(studies)
-        _write(folder, scenario, scores, description, results, by, kept)
+        orbits = ticks / scenario.time.tick_hz / orbit_period_s(scenario)
+        unsettled = unsettled_gains(scores, kept, orbits)
+        _write(folder, scenario, scores, description, results, by, kept, unsettled)
     asked = {scenario.control.law_name} if scenario.control.own else set()
     asked |= {word.strip() for word in (options.laws or "").split(",")}
     drawn = any(result.history for result in results)
-    return ComparedLaws(folder, scenario, scores, by, description, frozenset(asked), drawn)
+    return ComparedLaws(folder, scenario, scores, by, description, frozenset(asked), drawn, unsettled)
 
 
 def _kept(gains: str, scenario: Scenario) -> KeptGains | None:
@@ -355,6 +379,7 @@ def _write(
     results: list[Result],
     by: Controlled,
     kept: KeptGains | None,
+    unsettled: Sequence[str],
 ) -> None:
     seed = f"seed {description['seed']}"
     facts = [seed, f"{description['sim_seconds']:.0f} s", f"judged by the {by.words}"]
@@ -365,7 +390,7 @@ def _write(
         replace_text(folder / CSV, as_csv(scores))
         picture(folder / PICTURE, f"{scenario.name}, {seed}", results, by)
         window = _window(scenario, description["ticks"])
-        page = compare_page(scenario, facts, scores, results, window, by, kept)
+        page = compare_page(scenario, facts, scores, results, window, by, kept, unsettled)
         replace_text(folder / PAGE, page)
 
 

@@ -114,7 +114,7 @@ def line(found: TunedGains, earlier: float | None = None) -> str:
     elif found.flights == 0:
         origin = "; the file's, borne out"
     else:
-        origin = f"; searched again, as the file's no longer cost {earlier:.3f}"
+        origin = f"; searched again, as the file's cost {earlier:.3f} no longer"
     return (
         f"{found.law}, {found.driver}: {when}, then {found.cost.rms:.3g} RMS; cost {found.cost.total:.3f}, "
         f"before {found.before.total:.3f}; {gains}{origin}"

@@ -16,7 +16,7 @@ Source: Halton 1960 for the sequence, Nelder and Mead 1965 for the simplex, both
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import log
 
 import numpy as np
@@ -186,7 +186,9 @@ def confirm(
     step_s: float | None = None,
     whole: WholeFlight = fly_whole,
 ) -> TunedGains:
-    """Gains that were found earlier at a cost of ``total``, if they still fly so; else those of a search.
+    """Gains that were found earlier at a cost of ``total``, if they still fly so; else the best of a search.
+
+    They stay too where the search finds none that are better today.
 
     The other arguments are those of ``tune``.
 
@@ -198,7 +200,8 @@ def confirm(
     own = trials.whole_cost({}) if control else cost
     if cost.total <= min(total * (1.0 + WORSE), own.total):
         return TunedGains(law, load(scenario, over).coils.driver, control, cost, own, 0)
-    return tune(scenario, over, law, budget, orbits, step_s, whole)
+    found = tune(scenario, over, law, budget, orbits, step_s, whole)
+    return found if found.cost.total <= cost.total else replace(found, control=control, cost=cost)
 
 
 def _proven(trials: _Trials) -> tuple[Nested, Cost, Cost]:

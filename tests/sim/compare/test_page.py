@@ -5,11 +5,12 @@ import pytest
 
 from fsw.core.laws.table import LAWS
 from sim.compare.case import Driver
-from sim.compare.command import compare_page
+from sim.compare.command import compare_page, unsettled_gains
 from sim.compare.score import History, Result, Score
 from sim.drawing.canvas import TimeAxis
 from sim.scenario.controlled import Controlled
 from sim.scenario.schema import load
+from sim.tuning.kept import KeptGains
 
 TIME = TimeAxis("orbits of 100.0 min", 6000.0, 0.0, 12000.0, ((1000.0, 3000.0),))
 T_S = np.linspace(0.0, 12000.0, 120)
@@ -63,6 +64,40 @@ def test_broken_limits_are_a_bad_verdict(tmp_path):
     (one,) = [result("pd", 2.0)]
     broken = Result(Score("pd", one.score.aim, Driver.PULSED, error_rms=1.0, limits_ok=False), one.history)
     assert '<li class="bad">✗ limits broken by 1</li>' in written(tmp_path / "compare.html", [broken])
+
+
+def kept(**row):
+    """Gains of pd, found in flights of four orbits."""
+    pd = {"control": {"k_w": 1e7}, "cost": 0.4, "cost_before": 0.5, "rms": 0.7, **row}
+    return KeptGains(1, 24, 4.0, rows={"pulsed": {"pd": pd}})
+
+
+def test_gains_that_settled_when_they_were_found_and_do_not_here_are_named(tmp_path):
+    (one,) = [result("pd", 20.0, tuned=True)]
+    (sentence,) = unsettled_gains([one.score], kept(settle_orbits=1.25), 10.0)
+    assert sentence == (
+        "pd, pulsed: it settled after 1.25 orbits when its gains were found, and does not here"
+    )
+    page = compare_page(
+        load("microsat"), (), [one.score], [one], WINDOW, ATTITUDE, kept(settle_orbits=1.25), [sentence]
+    )
+    assert sentence in page
+
+
+@pytest.mark.parametrize(
+    ("score", "row", "orbits"),
+    [
+        ({"tuned": True, "settle_orbits": 3.0}, {"settle_orbits": 1.25}, 10.0),
+        ({"tuned": True}, {}, 10.0),
+        ({"tuned": False}, {"settle_orbits": 1.25}, 10.0),
+        ({"tuned": True, "failure": "no gains"}, {"settle_orbits": 1.25}, 10.0),
+        ({"tuned": True}, {"settle_orbits": 1.25}, 3.9),
+    ],
+    ids=["settled", "never-settled", "scenario", "not-flown", "shorter"],
+)
+def test_no_other_gains_are(score, row, orbits):
+    assert unsettled_gains([result("pd", 20.0, **score).score], kept(**row), orbits) == []
+    assert unsettled_gains([result("pd", 20.0, tuned=True).score], None, orbits) == []
 
 
 @pytest.mark.long

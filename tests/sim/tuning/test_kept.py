@@ -192,7 +192,7 @@ class TestCommand:
         monkeypatch.setattr(command, "confirm", confirm)
         command.design_laws("microsat", {}, "pulse_mpc", path, workers=1)
         assert read_gains(path).control("pulsed", "pulse_mpc") == {"k_w": 2.0}
-        assert "searched again, as the file's no longer cost 0.500" in capsys.readouterr().out
+        assert "searched again, as the file's cost 0.500 no longer" in capsys.readouterr().out
 
     @pytest.mark.long
     @pytest.mark.slow

@@ -130,8 +130,14 @@ class TestConfirm:
         assert found.cost.total == pytest.approx(0.225)
 
     def test_what_flies_worse_than_it_did_is_searched_again(self, bowl):
-        found = confirm("microsat", PULSED, "pd", self.GOOD, 0.2, budget=20, whole=as_rigid)
+        fair = {"k_w": 2e7, "k_a": 6000.0}
+        found = confirm("microsat", PULSED, "pd", fair, 0.2, budget=20, whole=as_rigid)
         assert found == tune("microsat", PULSED, "pd", budget=20, whole=as_rigid)
+
+    def test_where_the_search_finds_none_that_are_better_the_best_known_stay(self, bowl):
+        found = confirm("microsat", PULSED, "pd", self.GOOD, 0.2, budget=4, whole=as_rigid)
+        assert (found.control, found.flights) == (self.GOOD, 4)
+        assert found.cost.total == pytest.approx(0.225)
 
     def test_what_is_worse_than_the_scenarios_own_is_searched_again(self, bowl):
         far = {"k_w": 9e7, "k_a": 400.0}
