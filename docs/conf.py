@@ -62,6 +62,9 @@ EVIDENCE = (
 EVIDENCE += ("firmware-qemu", "soak", "mutation", "replay")
 """Pages that evidence.md leads to; they are in no menu."""
 
+html_sidebars = dict.fromkeys(("index", "quickstart", "tutorial", *EVIDENCE), ())
+"""Pages with none below them have no side bar, which would be empty."""
+
 WIDE = 5
 """Columns from which on a table is too wide for a telephone."""
 
