@@ -1,7 +1,7 @@
 """The methods of the source papers, methods.toml: where each is, what is claimed for it, and docs/methods.md.
 
 The page has a row a method: what is not measured is called so, and the references of the review that no
-method names are told.
+method names are listed.
 """
 
 import re

@@ -10,7 +10,7 @@ from sim.record.destination import check_file
 from sim.record.whole_file import replace_file, replacing
 
 Files = Mapping[str, Path | None]
-"""By what they are, as the user is told; None: there is none."""
+"""By what they are, as the user reads it; None: there is none."""
 
 
 def check_results(wanted: Files, read: Files) -> None:

@@ -109,8 +109,8 @@ class FlownScenario:
         worst = min((one["verdict"] for one in meant), key=_WORST_FIRST.index)
         if _COMPARISONS[found["sign"]](worst, found["value"]):
             return ""
-        told = "; ".join(f"{one['verdict']}: {one['text']}" for one in meant if one["verdict"] == worst)
-        return f"{expression} does not hold: {told}"
+        text = "; ".join(f"{one['verdict']}: {one['text']}" for one in meant if one["verdict"] == worst)
+        return f"{expression} does not hold: {text}"
 
 
 class Fly(Protocol):

@@ -78,7 +78,7 @@ UNIT_TOLERANCE: Final = 1e-6
 MOST_TIME_ERROR_S: Final = 60
 """By which the time of a SYNC may differ from the table's: in it the satellite flies 4 deg of its orbit."""
 TIME_STALE: Final = 2
-"""Times as long as a sample may be old, no SYNC may have told the right time: one jump is no other clock."""
+"""Times as long as a sample may be old, no SYNC may have had the right time: one jump is no other clock."""
 
 
 def trips(violated: Monitor | None, mode: Mode) -> bool:

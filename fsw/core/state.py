@@ -41,7 +41,7 @@ class FlightState:
 
     ``tick`` is -1 before the first SYNC; ``ignored_syncs`` counts the SYNCs that began no tick, and
     ``syncs`` holds those in doubt; ``field_tick`` and ``status_tick`` are the last ticks with an intact
-    MAG_FIELD and COIL_STATUS, ``time_tick`` that whose SYNC last told the time of the table, ``time_error_s``
+    MAG_FIELD and COIL_STATUS, ``time_tick`` that whose SYNC last had the time of the table, ``time_error_s``
     the last SYNC's time less the expected; ``setpoint`` and
     ``memory`` are the control law's; ``orbit`` and ``upload`` are elements from the ground, those in use
     (None: the table's orbit) and those not loaded yet; ``sent`` are the counters of fsw's own messages;

@@ -25,7 +25,7 @@ class GivenLaw(NamedTuple):
     Attributes:
         law: a function or a ``ControlLaw``, not yet checked.
         reference: by which a table names it.
-        sha256: of its source in hex; None: the source cannot be told.
+        sha256: of its source in hex; None: the source cannot be read.
     """
 
     law: object

@@ -40,8 +40,8 @@ class DriverJudge:
         for coil in COILS:
             self._driven[coil] += bool(fractions[coil])
         if not self._continuous:
-            told = ", ".join(f"{fraction:g}" for fraction in fractions)
-            self._take(any(fractions), entry.line, f"a pulsed driver reports {told} of full scale as driven")
+            text = ", ".join(f"{fraction:g}" for fraction in fractions)
+            self._take(any(fractions), entry.line, f"a pulsed driver reports {text} of full scale as driven")
         return True
 
     def take_level(self, line: int, status: CoilStatus) -> None:

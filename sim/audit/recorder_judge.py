@@ -26,7 +26,7 @@ TOLERANCE_US = 50_000
 _PACE = 0.05
 """Part by which the median second of the stamps may differ from one."""
 _AHEAD = MICRO
-"""A SYNC that comes later than its ticks say by over a second is told."""
+"""A SYNC that comes later than its ticks say by over a second is reported."""
 _KEPT = 64
 """SYNCs that are kept: statuses come at most a few ticks after theirs."""
 

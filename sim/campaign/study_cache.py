@@ -136,7 +136,7 @@ def _canonical(value: object) -> object:
     """A value as one that JSON can write, the same for equal values and another for others.
 
     Raises:
-        TypeError: it cannot be told from others, as a path, which does not say what is in the file.
+        TypeError: it cannot be distinguished from others, as a path, which does not say what is in the file.
     """
     if value is None or (isinstance(value, bool | int | float | str) and not isinstance(value, Enum)):
         return value
@@ -155,7 +155,7 @@ def _canonical(value: object) -> object:
     elif isinstance(value, dict) and all(isinstance(key, str) for key in value):
         parts = {key: _canonical(one) for key, one in value.items()}
     else:
-        raise TypeError(f"{kind} cannot be told from others")
+        raise TypeError(f"{kind} cannot be distinguished from others")
     return [kind, parts]
 
 

@@ -19,7 +19,7 @@ class CommissioningReport:
     Attributes:
         lines: it, for people.
         values: the same as values of JSON.
-        ok: whether it is as it should be, and all of it is told.
+        ok: whether it is as it should be, and all of it is determined.
     """
 
     lines: tuple[ReportLine, ...]

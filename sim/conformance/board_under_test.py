@@ -175,12 +175,12 @@ class BoardUnderTest:
         while True:
             left_s = end_s - self.link.due_s()
             near = left_s < 6 * period_s
-            told_free = self._is_told_free(int(changes.get("coil", 1)))
+            reported_free = self._is_reported_free(int(changes.get("coil", 1)))
             request = self.request(**changes)
             reply = self.send(request)
             if not reply.refused:
                 break
-            if told_free:
+            if reported_free:
                 raise NonconformanceError(f"refused in tick {reply.tick - 1}, of which lockout_ms was 0")
             if reply.refused[0].reason != CoilRefusedReason.LOCKOUT:
                 raise NonconformanceError(f"refused as {reasons(reply)} in a back-off")
@@ -196,7 +196,7 @@ class BoardUnderTest:
             raise NonconformanceError("a request is neither driven nor refused")
         _expect_as_requested(request, reply)
 
-    def _is_told_free(self, coil: int) -> bool:
+    def _is_reported_free(self, coil: int) -> bool:
         """Whether the status of this tick says that no back-off runs for the coil."""
         last = self.link.replies[-1]
         return any(

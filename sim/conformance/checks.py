@@ -220,7 +220,7 @@ def dead_man_in_a_pulse(board: BoardUnderTest) -> None:
     reply = board.expect_refusal(repeated, CoilRefusedReason.REPEATED_SEQ)
     board.expect_off(reply)
     if events := _events(reply):
-        raise NonconformanceError(f"the dead-man was told, and a tick later there are events {events}")
+        raise NonconformanceError(f"the dead-man was reported, and a tick later there are events {events}")
 
 
 def wake_dead_man(board: BoardUnderTest) -> TickReply:

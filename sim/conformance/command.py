@@ -261,7 +261,7 @@ def _failure(check: Check, board: BoardUnderTest, paused_s: Callable[[], float])
         flawed = failure or _raised(partial(check_replies, link.replies[first:], link.kind))
         if not flawed or paused_s() <= MOST_PAUSE_S or repeated == MOST_REPEATED:
             break
-        _restart_anew(link, first)
+        _boot_again(link, first)
         board = BoardUnderTest(link, board.limits)
     return failure, repeated
 
@@ -274,7 +274,7 @@ def _raised(run: Callable[[], None]) -> str | None:
     return None
 
 
-def _restart_anew(link: BoardLink, first: int) -> None:
+def _boot_again(link: BoardLink, first: int) -> None:
     """Restart the board, in whatever tick it is, and forget the replies from ``first`` on."""
     while not link.restart().only(link.kind.boot) and len(link.replies) < first + 6:
         link.step()

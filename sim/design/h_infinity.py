@@ -63,22 +63,22 @@ def norms(
         ],
         axis=1,
     )
-    whole, driven, told, direct = _lifted(closed, g, seen)
+    whole, driven, observed, direct = _lifted(closed, g, seen)
     if np.abs(np.linalg.eigvals(whole)).max() >= 1.0:
         raise UnstableLoopError("the loop is not stable")
-    return Norms(_h2(closed, g, seen, whole), _h_infinity(whole, driven, told, direct, frequencies))
+    return Norms(_h2(closed, g, seen, whole), _h_infinity(whole, driven, observed, direct, frequencies))
 
 
 def _lifted(closed: Array, g: Array, seen: Array) -> tuple[Array, Array, Array, Array]:
     """A, B, C, D of an orbit as one step."""
     steps = len(closed)
     state, reach = np.eye(6), np.zeros((6, 3 * steps))
-    told, direct = np.zeros((steps, 9, 6)), np.zeros((steps, 9, 3 * steps))
+    observed, direct = np.zeros((steps, 9, 6)), np.zeros((steps, 9, 3 * steps))
     for k in range(steps):
-        told[k], direct[k] = seen[k] @ state, seen[k] @ reach
+        observed[k], direct[k] = seen[k] @ state, seen[k] @ reach
         state, reach = closed[k] @ state, closed[k] @ reach
         reach[:, 3 * k : 3 * k + 3] = g
-    return state, reach, told.reshape(-1, 6), direct.reshape(9 * steps, -1)
+    return state, reach, observed.reshape(-1, 6), direct.reshape(9 * steps, -1)
 
 
 def _h2(closed: Array, g: Array, seen: Array, whole: Array) -> float:
@@ -96,11 +96,11 @@ def _h2(closed: Array, g: Array, seen: Array, whole: Array) -> float:
     return float(np.sqrt(total / len(closed)))
 
 
-def _h_infinity(whole: Array, driven: Array, told: Array, direct: Array, frequencies: int) -> float:
+def _h_infinity(whole: Array, driven: Array, observed: Array, direct: Array, frequencies: int) -> float:
     """The largest singular value over the frequencies."""
     largest = 0.0
     for angle in np.linspace(0.0, np.pi, frequencies):
-        response = direct + told @ np.linalg.solve(np.exp(1j * angle) * np.eye(6) - whole, driven)
+        response = direct + observed @ np.linalg.solve(np.exp(1j * angle) * np.eye(6) - whole, driven)
         largest = max(largest, float(np.linalg.eigvalsh(response.conj().T @ response)[-1]))
     return float(np.sqrt(largest))
 
@@ -233,7 +233,7 @@ def central_controller(case: Measured, gamma: float) -> Controller:
     gains, costs = periodic(*told_all) if gamma == np.inf else game_periodic(*told_all, pays)
     pushes, sees, share = pushes_of(problem, case.b_orbit_t), case.sees(), np.diag(problem.cost) / gamma**2
     sigmas, shrunk, unseen = _estimates(case, share)
-    motion, told, answers = (
+    motion, observed, answers = (
         np.empty_like(sigmas),
         np.empty((len(pushes), 6, 3)),
         np.empty((len(pushes), 3, 6)),
@@ -243,9 +243,9 @@ def central_controller(case: Measured, gamma: float) -> Controller:
         if np.abs(np.linalg.eigvals(after)).max() >= 1.0:
             raise NotHeldError("estimate and control do not go together: gamma is too small")
         answers[k] = gains[k, :3, :6] @ np.linalg.inv(np.eye(6) - sigmas[k] @ costs[k, :, :6] / gamma**2)
-        told[k] = f @ shrunk[k] @ sees[k].T / case.error_t**2
-        motion[k] = f + push @ answers[k] + f @ shrunk[k] @ share - told[k] @ sees[k]
-    return Controller(motion, told, answers)
+        observed[k] = f @ shrunk[k] @ sees[k].T / case.error_t**2
+        motion[k] = f + push @ answers[k] + f @ shrunk[k] @ share - observed[k] @ sees[k]
+    return Controller(motion, observed, answers)
 
 
 def _estimates(case: Measured, share: Array) -> tuple[Array, Array, Array]:
@@ -302,7 +302,7 @@ def measured_norm(case: Measured, controller: Controller, frequencies: int = FRE
     problem, pushes, sees = case.problem, pushes_of(case.problem, case.b_orbit_t), case.sees()
     steps, scale = len(pushes), np.tile(np.repeat([1.0 / problem.step_s, 1.0], 3), 2)
     state, reach = np.eye(12), np.zeros((12, 6 * steps))
-    told, direct = np.zeros((steps, 9, 12)), np.zeros((steps, 9, 6 * steps))
+    observed, direct = np.zeros((steps, 9, 12)), np.zeros((steps, 9, 6 * steps))
     for k in range(steps):
         step = np.block(
             [
@@ -313,7 +313,7 @@ def measured_norm(case: Measured, controller: Controller, frequencies: int = FRE
         seen = np.zeros((9, 12))
         seen[:6, :6] = np.diag(np.sqrt(problem.cost))
         seen[6:, 6:] = np.sqrt(problem.effort) * controller.gains[k]
-        told[k], direct[k] = seen * scale @ state, seen * scale @ reach
+        observed[k], direct[k] = seen * scale @ state, seen * scale @ reach
         step = step * scale / scale[:, None]
         state, reach = step @ state, step @ reach
         reach[:6, 6 * k : 6 * k + 3] = case.torque_nm * problem.free[:, 6:] / scale[:6, None]
@@ -323,6 +323,6 @@ def measured_norm(case: Measured, controller: Controller, frequencies: int = FRE
     largest = 0.0
     for angle in np.linspace(0.0, np.pi, frequencies):
         motion = np.linalg.solve(np.exp(1j * angle) * np.eye(12) - state, reach)
-        response = direct.reshape(9 * steps, -1) + told.reshape(-1, 12) @ motion
+        response = direct.reshape(9 * steps, -1) + observed.reshape(-1, 12) @ motion
         largest = max(largest, float(np.linalg.norm(response, 2)))
     return largest

@@ -161,7 +161,7 @@ STEP_S = 40.0
 SETTLED_DEG = 5.0
 """Error below which a flight has settled."""
 ROUNDS = 24
-"""Costs that the search computes, if not told otherwise."""
+"""Costs that the search computes, if not given."""
 
 
 @dataclass(frozen=True, slots=True)

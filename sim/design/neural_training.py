@@ -122,7 +122,7 @@ def train(
         most_am2: of each coil.
         seed: of the search.
         generations: how long to search.
-        report: is told the number of each generation and the lowest cost so far.
+        report: is called with the number of each generation and the lowest cost so far.
     """
     most, (shortest, longest) = np.array([LEVEL, SLOPE, SLOPE] * 2 + [1.0]), np.log(LAGS_ORBITS)
 
@@ -138,7 +138,7 @@ def train(
         members = weights_of(numbers.reshape(7, -1))
         return cost(orbit_rms_deg(body, gains, members, flown, most_am2))
 
-    told = iter(range(1, generations + 2))
+    numbers = iter(range(1, generations + 2))
     found = differential_evolution(
         cast("Callable[..., float]", costs),  # scipy's types know no search of many members at once
         Bounds(-np.ones(7), np.ones(7)),
@@ -150,7 +150,7 @@ def train(
         polish=False,
         vectorized=True,
         updating="deferred",
-        callback=lambda intermediate_result: report(next(told), float(intermediate_result.fun)),
+        callback=lambda intermediate_result: report(next(numbers), float(intermediate_result.fun)),
     )
     return weights_of(np.asarray(found.x, dtype=np.float64)[:, None])[0], float(found.fun)
 

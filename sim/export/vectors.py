@@ -42,7 +42,7 @@ def tick_vectors(entries: Iterable[LogEntry]) -> Iterator[TickVector]:
     """The ticks of a log, first what came before them; a repeated SYNC is none.
 
     Raises:
-        HarnessError: ticks are answered late, so that what belongs to which is not told.
+        HarnessError: ticks are answered late, so that what belongs to which is not known.
     """
     before, now = TickVector(BEFORE), TickVector(0)
     current = before

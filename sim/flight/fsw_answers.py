@@ -105,7 +105,7 @@ def _boot_until(
 
 
 def _note_unheard(unheard: dict[Frame, None], frame: Frame) -> None:
-    """Note a frame once, and no more of them than are told, whatever a babbling node sends."""
+    """Note a frame once, and no more of them than are shown, whatever a babbling node sends."""
     if len(unheard) < MOST_UNHEARD:
         unheard[frame] = None
 

@@ -251,7 +251,7 @@ def judge_campaign(
     keep: KeptFiles,
     tell: Callable[[JudgedCase], object],
 ) -> JudgedSeries:
-    """Fly the runs of a campaign, and judge each, told by ``tell``, and all of them.
+    """Fly the runs of a campaign, and judge each, reported by ``tell``, and all of them.
 
     Raises:
         HarnessError: nothing can be flown.
@@ -318,8 +318,8 @@ def _judge_series(
     flown = _flown(name, fly_series(software, cases, folder, keep), len(cases), tell)
     verdicts = conclude(flown)
     command = software.command
-    told = software.bus if command is None else command.text
-    write_result(folder / PAGE, series_page(name, told, flown, verdicts))
+    name_of_software = software.bus if command is None else command.text
+    write_result(folder / PAGE, series_page(name, name_of_software, flown, verdicts))
     run_dir.write_json(folder / VERDICT, series_json(flown, verdicts))
     return JudgedSeries(name, folder, flown, verdicts)
 
@@ -334,7 +334,7 @@ def _new_folder(out: Path | None, scenario: Scenario) -> Path:
 def _flown(
     name: str, judged: Iterable[JudgedCase], total: int, tell: Callable[[JudgedCase], object]
 ) -> list[JudgedCase]:
-    """The cases as they are judged, each told at once where no bar is shown."""
+    """The cases as they are judged, each printed at once where no bar is shown."""
     bar = sys.stderr.isatty()
     flown = []
     with progress(f"flying {name}", total) as watch:

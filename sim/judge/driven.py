@@ -39,7 +39,7 @@ class DrivenLimits(NamedTuple):
 
     Attributes:
         broken: the first limit that is broken, a clause; empty: none is.
-        unjudged: why nothing can be told, a clause; empty: it can.
+        unjudged: why nothing can be judged, a clause; empty: it can.
     """
 
     broken: str = ""

@@ -18,10 +18,10 @@ from sim.flight.record_flight import check_plant, ticks_of
 from sim.flight.sil import fly_against, serve_bus
 from sim.judge.answers import AnswerRecord, field_samples, read_answers
 from sim.judge.driven import alters_reports, limits_as_driven
-from sim.judge.honesty import wrong_attitude, wrong_rate
 from sim.judge.invariants import InvariantVerdict, JudgedFlightRecord, judge_invariants
 from sim.judge.law_fit import LawFit, fit_law, least_degps
 from sim.judge.profile import Profile, asked_of, not_asked
+from sim.judge.valid_estimates import wrong_attitude, wrong_rate
 from sim.record import run_dir
 from sim.record.candump import whole_entries
 from sim.record.pace import Pace
@@ -40,7 +40,7 @@ LEAST_BRAKING = 0.4
 with one axis reversed, or two swapped, a third of that is left, 0.27, and half is between. Flown were from
 0.45 on by sound laws, and up to 0.39 with the bytes of the field or the axes wrong: docs/own-firmware.md."""
 OF_SOUND_LAWS = frozenset(("gravity", "coarse", "weak", "saturates"))
-"""Causes of a missed requirement by what the satellite is: told of a law in which no mistake is found."""
+"""Causes of a missed requirement by what the satellite is: named for a law in which no mistake is found."""
 PLANT_AND_BOARDS = frozenset(("PLANT", "COIL", "MAG", "SUN", "WHEEL"))
 
 
@@ -132,8 +132,8 @@ class JudgedFlight:
             )
             yield InvariantVerdict(name, Outcome.NOT_JUDGED, why)
             return
-        told = f"mean cosine to the braking dipole {law.brakes:.2f} over {law.pulses} dipoles"
-        found = f"{told}, work on the body {law.work_j:.2g} J"
+        fit = f"mean cosine to the braking dipole {law.brakes:.2f} over {law.pulses} dipoles"
+        found = f"{fit}, work on the body {law.work_j:.2g} J"
         if law.brakes < LEAST_BRAKING:
             found += f", a law that brakes has {LEAST_BRAKING} at least"
         sound = law.brakes >= LEAST_BRAKING and not law.mistake
@@ -172,11 +172,11 @@ def fly_and_judge(
     with _bus_of(software) as (spec, listener):
         path = run_dir.begin(path, flown, seed, ticks, spec.partition(":")[0], software.pace)
         command = software.command
-        told = {
+        named = {
             "command": None if command is None else command.text[:1000],
             "profile": software.profile.value,
         }
-        run_dir.update(path, flight_software=told)
+        run_dir.update(path, flight_software=named)
         given = {"scenario": str((path / run_dir.SCENARIO).absolute())}
         start = None if command is None else partial(command.start, spec, given, path / OUTPUT)
         try:

@@ -14,9 +14,9 @@ from sim.faults.section import forge_answers, forge_sync
 from sim.flight.second_senders import describe_senders
 from sim.judge.answers import AnswerRecord, CoilRequest, crc_as_sent, tick_as_named
 from sim.judge.driven import DrivenLimits
-from sim.judge.honesty import WrongAttitude, WrongRate
 from sim.judge.profile import Profile
 from sim.judge.unheard import tell_unheard
+from sim.judge.valid_estimates import WrongAttitude, WrongRate
 from sim.record.run_record import RunRecord
 from sim.report.requirements.judge import Outcome
 from sim.report.verdict import Verdict
@@ -39,7 +39,7 @@ class JudgedFlightRecord(NamedTuple):
         wrong: attitudes that were called valid and were wrong; None: none is judged.
         driven: what the currents that flowed show of the limits, where a fault alters what the board
             reports; None: the audit of the log counts.
-        wrong_rate: rates that were told and were wrong; None: none is judged.
+        wrong_rate: rates that were sent and were wrong; None: none is judged.
     """
 
     scenario: Scenario
@@ -222,8 +222,8 @@ def _why_improper(flight: JudgedFlightRecord, request: CoilRequest) -> str:
         CoilRefusedReason.BAD_LEVEL: f"there is no level {fire.level}",
         CoilRefusedReason.COIL_ON: "a coil is on",
     }
-    told = values.get(CoilRefusedReason(request.refused), name)
-    return f"{at}: {told} ({name})"
+    reason = values.get(CoilRefusedReason(request.refused), name)
+    return f"{at}: {reason} ({name})"
 
 
 def _waits(flight: JudgedFlightRecord) -> Found:
@@ -322,14 +322,14 @@ def _in_its_turn(flight: JudgedFlightRecord) -> Found:
     if not own:
         return _kept("nothing comes after TICK_DONE, and nothing twice in an answer")
     (tick, name, late), request = own[0], own[0].name in _REQUESTS
-    told = {
+    where = {
         (True, True): f"a late request in tick {tick}: {name} comes after TICK_DONE({tick})",
         (True, False): f"two requests in tick {tick}: {name} comes twice in its answer",
         (False, True): f"late in tick {tick}: {name} comes after TICK_DONE({tick})",
         (False, False): f"twice in the answer to tick {tick}: {name}",
     }[request, late]
     more = f", and {len(own) - 1} more" if len(own) > 1 else ""
-    return _broken(f"{told}{more}")
+    return _broken(f"{where}{more}")
 
 
 _REQUESTS = frozenset(("COIL_FIRE", "COIL_DIPOLE", "WHEEL_TORQUE"))
@@ -347,8 +347,8 @@ def _alone(flight: JudgedFlightRecord) -> Found:
     if forge_answers(faults) or forge_sync(faults):
         return _unjudged("the scenario forges frames")
     record = flight.answers
-    told = {one.name for one in record.out_of_turn} | ({"TICK_DONE"} if record.odd_done else set())
-    explained = {name for name in told if _is_its_own(flight, name)}
+    sent = {one.name for one in record.out_of_turn} | ({"TICK_DONE"} if record.odd_done else set())
+    explained = {name for name in sent if _is_its_own(flight, name)}
     others = [one for one in flight.run.get("second_senders", []) if one["message"] not in explained]
     if others:
         return _broken(describe_senders(others))

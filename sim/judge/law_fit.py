@@ -29,7 +29,7 @@ EVERY_S = 30.0
 LEAST_PART = 0.02
 """Of the largest dipole: a smaller one is not counted."""
 DIFFER, LEAST_DIFFERENT = 0.5, 4
-"""Between the cosines by two readings of the samples, where they are told apart, and in how many dipoles: as
+"""Between the cosines by two readings of the samples, where these differ, and in how many dipoles: as
 unsigned a field is read wrongly only while it passes zero."""
 SHIFT_S = 60.0
 SPANS = range(1, 31)

@@ -26,14 +26,14 @@ def population_verdicts(campaign: Campaign, flown: Sequence[JudgedCase]) -> list
         outcomes = [one.rules[rule] for one in flown if one.rules[rule] is not Outcome.NOT_JUDGED]
         if outcomes:
             broken = outcomes.count(Outcome.FAILED)
-            told = f"broken in {broken} of {len(outcomes)} runs" if broken else f"in {len(outcomes)} runs"
-            found.append(CampaignVerdict("rule", rule, rule, not broken, told))
+            text = f"broken in {broken} of {len(outcomes)} runs" if broken else f"in {len(outcomes)} runs"
+            found.append(CampaignVerdict("rule", rule, rule, not broken, text))
     wanted = f"to be {100.0 * campaign.statistics.probability:g} %"
     words = {str(entry): requirement_words(entry) for entry in campaign.requirements}
     for name, met in _by_requirement(campaign, flown).items():
         part = clopper_pearson(sum(met), len(met), campaign.statistics.confidence)
-        told = f"{proportion(part, campaign)}, {wanted}"
-        found.append(CampaignVerdict("requirement", name, words.get(name, name), meets(part, campaign), told))
+        text = f"{proportion(part, campaign)}, {wanted}"
+        found.append(CampaignVerdict("requirement", name, words.get(name, name), meets(part, campaign), text))
     return found
 
 

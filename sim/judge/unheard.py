@@ -13,7 +13,7 @@ FLAGS = {
     ERROR_FLAG: "bit 29 of its identifier makes it an error frame",
 }
 IDENTIFIER = 0x1FFF_FFFF
-MOST_TOLD = 3
+MOST_NAMED = 3
 FIRST_BOOT = FswBoot(0, 1, 0).encode()
 
 
@@ -32,10 +32,10 @@ def tell_unheard(unheard: UnheardRecord | None) -> str:
     name = NAMES[awaited.can_id]
     found = list(dict.fromkeys(_why(frame, awaited, unheard["tick"]) for frame in frames))
     likely = [why for why in found if why.startswith(name)]
-    told = (likely or found)[:MOST_TOLD]
-    more = len(likely or found) - len(told)
+    named = (likely or found)[:MOST_NAMED]
+    more = len(likely or found) - len(named)
     others = f", and {counted(more, 'other frame')}" if more else ""
-    return f"{'' if likely else f'no {name} came, but '}{', '.join(told)}{others}"
+    return f"{'' if likely else f'no {name} came, but '}{', '.join(named)}{others}"
 
 
 def _why(frame: Frame, awaited: Frame, tick: int | None) -> str:

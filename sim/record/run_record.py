@@ -65,7 +65,7 @@ class SenderRecord(TypedDict):
 
 @with_config(_OPEN)
 class LawRecord(TypedDict):
-    """The law that a program gave as an object; ``source_sha256`` is None where its source cannot be told."""
+    """The law that a program gave as an object; ``source_sha256`` is None where its source cannot be read."""
 
     module: Text
     qualname: Text

@@ -131,7 +131,7 @@ _FSW: dict[int, Words] = {
     ),
     Event.SENSORS_DISAGREE: (
         lambda _: "magnetometer and Sun sensor disagree",
-        "Without an estimate it cannot be told which is wrong.",
+        "Without an estimate it is not decided which is wrong.",
     ),
     Event.COIL_FAULT: (
         lambda argument: _unit(Event.COIL_FAULT, argument, _COIL_FAULTS),

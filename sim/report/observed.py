@@ -14,7 +14,7 @@ from sim.record.estimates import Estimates
 from sim.report.figures.performance import BLOCK_TICKS
 
 NO_MODE = -1
-"""In place of a mode that was not told."""
+"""In place of a mode that was not sent."""
 _MODES = frozenset(Mode)
 
 

@@ -59,7 +59,7 @@ class Deviation(NamedTuple):
 
 
 def deviations(scenario: Scenario, known: Uncertainty) -> list[Deviation]:
-    """All that can be told from the keys, large or small; with perfect knowledge those of the dynamics.
+    """All that follows from the keys, large or small; with perfect knowledge those of the dynamics.
 
     Args:
         scenario: the satellite, and its onboard table.

@@ -48,15 +48,15 @@ def unbegun_faults(scenario: Scenario, ticks: int) -> list[str]:
 
 def ignored_keys(scenario: Scenario) -> list[str]:
     """A sentence for each group of keys that differ from their defaults and have no effect."""
-    told = []
+    found = []
     sun, usual = scenario.sensors.sun, SunSensorSection()
     named = [key for key in SunSensorSection.model_fields if getattr(sun, key) != getattr(usual, key)]
     if scenario.sensors.cells is not None and named:
         keys = ", ".join(f"sensors.sun.{key}" for key in named)
-        told.append(f"{keys}: of no effect, sensors.cells stands in place of the Sun sensor")
+        found.append(f"{keys}: of no effect, sensors.cells stands in place of the Sun sensor")
     coils = scenario.coils
     if coils.driver == "pulsed" and coils.on_fraction != ScenarioCoils.model_fields["on_fraction"].default:
-        told.append(
+        found.append(
             f"coils.on_fraction = {coils.on_fraction:g} is of no effect, the driver is pulsed: "
             'coils.driver = "continuous" drives for a part of each tick'
         )
@@ -64,8 +64,8 @@ def ignored_keys(scenario: Scenario) -> list[str]:
     beside = [key for key in CIRCULAR_KEYS if getattr(orbit, key) != circle[key].default]
     if orbit.tle is not None and beside:
         keys = ", ".join(f"orbit.{key}" for key in beside)
-        told.append(f"{keys}: of no effect, the elements of orbit.tle are flown; leave out one or the other")
-    return told
+        found.append(f"{keys}: of no effect, the elements of orbit.tle are flown; leave out one or the other")
+    return found
 
 
 # --- Values that are probably wrong
@@ -94,13 +94,13 @@ def scenario_warnings(scenario: Scenario, ticks: int | None = None) -> list[str]
 
     A run of it takes so many ticks; None: as the scenario says.
     """
-    told = [doubt for judge in _JUDGES for doubt in judge(scenario)]
+    found = [doubt for judge in _JUDGES for doubt in judge(scenario)]
     if _has_an_orbit(scenario):
-        told += [doubt for judge in _JUDGES_OF_AN_ORBIT for doubt in judge(scenario)]
+        found += [doubt for judge in _JUDGES_OF_AN_ORBIT for doubt in judge(scenario)]
     flown = ticks_of(scenario, None) if ticks is None else ticks
-    told += ignored_keys(scenario)
-    told += unsent_telecommands(scenario.telecommand, scenario.time.tick_hz, flown)
-    return told + unbegun_faults(scenario, flown)
+    found += ignored_keys(scenario)
+    found += unsent_telecommands(scenario.telecommand, scenario.time.tick_hz, flown)
+    return found + unbegun_faults(scenario, flown)
 
 
 def _epoch(scenario: Scenario) -> Iterator[str]:

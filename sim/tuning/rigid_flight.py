@@ -1,4 +1,4 @@
-"""A flight of a rigid body by a law of the flight software, all that the law is told being true.
+"""A flight of a rigid body by a law of the flight software, all that the law is given being true.
 
 Body, wheel and torques are the plant's; orbit and field are those of the controller's own models; law,
 scheduler and limits of the coils are those that fly. Left out are sensors and filter, the board and the bus,

@@ -123,7 +123,7 @@ def validate(
     prepare_junit(junit)
     passed = (HarnessError,) if of_files else ()  # the user's own files
     studies = [guarded(study, passed) for study in with_cache(chosen)]
-    bar = sys.stderr.isatty()  # then the outcomes are told after the progress bar
+    bar = sys.stderr.isatty()  # then the outcomes are shown after the progress bar
 
     def report(study: StudyResult) -> None:
         if not bar:

@@ -79,7 +79,7 @@ class Publisher:
     def publish(self, view: FlightView) -> None:
         """Everything of this moment, and what has happened since the last one; from the first SYNC on.
 
-        Of what happened before, the last is told, and how many are left out.
+        Of what happened before, the last is shown, and how many are left out.
         """
         from foxglove.messages import (
             Color,

@@ -32,6 +32,6 @@ _WEIGHTS = {Severity.INFO: Weight.INFO, Severity.WARNING: Weight.WARNING}
 def event_words(can_id: int, severity: int, event: int, argument: int) -> tuple[Weight, str]:
     """An event of a node: its weight, and what happened."""
     node = SENDERS[can_id]
-    told = in_words({"t_s": 0.0, "node": node, "severity": severity, "event": event, "argument": argument})
+    words = in_words({"t_s": 0.0, "node": node, "severity": severity, "event": event, "argument": argument})
     weight = _WEIGHTS[Severity(severity)] if severity in _WEIGHTS else Weight.ERROR
-    return weight, f"{node.lower()}: {told.what}"
+    return weight, f"{node.lower()}: {words.what}"

@@ -145,12 +145,12 @@ def show(view: FlightView, batches: Iterator[None], source: str) -> None:
 
 
 def _print_happenings(view: FlightView, batches: Iterator[None]) -> None:
-    told = 0
+    shown = 0
     for _ in batches:
         for happening in view.happenings:
-            if happening.number > told:
+            if happening.number > shown:
                 print(line_text(line(happening)), flush=True)
-                told = happening.number
+                shown = happening.number
 
 
 def line(happening: Occurrence) -> str:

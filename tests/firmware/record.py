@@ -188,7 +188,7 @@ def _page(sizes, checks, flight, rows, real, wall_s):
             for title, attacker, judge in rows
         ),
         "",
-        f"In real time over its UART, its outputs told by a second one: {real[0].requests} requests, "
+        f"In real time over its UART, its outputs reported by a second one: {real[0].requests} requests, "
         f"{real[1].pulses} pulses, the longest {real[1].longest_ms} ms of",
         f"{REAL_TIME.pulse_ms}, the least gap {real[1].least_gap_ms} ms of {REAL_TIME.backoff_ms}, "
         f"{len(real[1].violations)} violations.",

@@ -24,11 +24,11 @@ class _CalibrateOptions(Section):
 
 
 class SatelliteCalibration(CommissioningResult):
-    """What was calibrated; ok where everything that is asked for is told."""
+    """What was calibrated; ok where everything that is asked for is determined."""
 
     @property
     def magnetometer(self) -> Mapping[str, Any]:
-        """What is told of the magnetometer, by telemetry each parameter, by a log offset and matrix."""
+        """What is determined of the magnetometer, by telemetry each parameter, by a log offset and matrix."""
         of_telemetry: Mapping[str, Any] | None = self.values.get("magnetometer")
         if of_telemetry is not None:
             return of_telemetry

@@ -44,7 +44,7 @@ from torquer.api.laws import LawLike, check_two_processes, checked_law, law_give
 from torquer.api.run import Run
 
 Flight = Callable[[Path, Watch], None]
-"""Flies a run that was begun; called with its directory and what is to be told the ticks."""
+"""Flies a run that was begun; called with its directory and what shows the ticks."""
 
 
 class _FlightOptions(Section):

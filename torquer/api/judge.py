@@ -178,13 +178,13 @@ def judge(
     refuse_while_loading("torquer.judge")
     file = optional_path(junit, "junit")
     source, over, folder = scenario_source(scenario), laid_over(set), optional_path(out, "out")
-    told = tell or (lambda one: None)
+    tell_ = tell or (lambda one: None)
     found: OneFlight | JudgedSeries | JudgedBoard
     with shown(progress):
         if board is not None:
-            found = _board(board, flight_software, bus, source, over, options, folder, file, told)
+            found = _board(board, flight_software, bus, source, over, options, folder, file, tell_)
         else:
-            found = _software(flight_software, bus, source, over, options, folder, file, told)
+            found = _software(flight_software, bus, source, over, options, folder, file, tell_)
         found.write_junit(file)
     return JudgedSoftware(found)
 

@@ -35,20 +35,20 @@ class _GivenPhasing(Section):
 
 
 class WiringVerdict(CommissioningResult):
-    """How coils and magnetometer are wired; ok where that is told, and is what the table says.
+    """How coils and magnetometer are wired; ok where that is determined, and is what the table says.
 
     Of a recorded bench log, which tells no axis, ok where a reading responds to a command.
     """
 
     @property
     def verdict(self) -> str | None:
-        """What is wired how, or that it cannot be told, in one sentence; None of a bench log."""
+        """What is wired how, or that it cannot be determined, in one sentence; None of a bench log."""
         sentence: str | None = self.values.get("verdict")
         return sentence
 
     @property
     def pairs(self) -> tuple[tuple[tuple[int, ...], tuple[int, ...]], ...]:
-        """Wirings of magnetometer and coils, signed axes, that cannot be told apart; one is told."""
+        """Wirings of magnetometer and coils, signed axes, that fit alike; one where the wiring is known."""
         found = self.values.get("pairs", ())
         return tuple((tuple(pair["magnetometer"]), tuple(pair["coils"])) for pair in found)
 

@@ -15,12 +15,12 @@ class PrintedResult:
         return f"<pre>{escape(str(self))}</pre>"
 
 
-# --- What wiring, calibration and recorded telemetry have told, for programs
+# --- What wiring, calibration and recorded telemetry have shown, for programs
 
 
 @dataclass(frozen=True)
 class CommissioningResult(PrintedResult):
-    """What was told; ``print`` shows what the command prints.
+    """What was found; ``print`` shows what the command prints.
 
     Attributes:
         found: lines and values, as ``sim.commissioning`` gives them.

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from torquer.api.plots import RunPlots
 
 OF_EVERY_FLIGHT = {"scenario", "seed", "sim_seconds", "limits_ok"}
-"""Keys of every summary; in a document without them nothing has failed because nothing is told."""
+"""Keys of every summary; in a document without them nothing has failed because nothing is said."""
 
 
 @dataclass(frozen=True)

@@ -82,7 +82,7 @@ def calibrate(
     Of PASS.csv: magnetometer, Sun cells and body. The columns say quantity, axis and unit: utc_unix_s,
     mag_x_nt (or ut, mg, t), gyro_x_degps (or radps), sun_cell_NAME_raw (or ma, a), temperature_degc. Each
     value comes with its uncertainty and with the verdict whether the data tell it. Exit code 1: they do not
-    tell the magnetometer; cells and body are left out of the file where they are not told.
+    tell the magnetometer; cells and body are left out of the file where they are not determined.
     """
     from sim.scenario.schema import parse_settings
     from torquer.api.calibrate import calibrate

@@ -78,8 +78,8 @@ def phasing(
     """Which way coils and magnetometer are wired: from pulses of each coil in both polarities.
 
     Of a SCENARIO the sequence is commanded in simulation, or on a bench with --bus; a RUN, LOG or CSV is
-    judged as it is. Exit code 1: the wiring is not the table's, or cannot be told; of a CSV, which tells no
-    axis, that no reading responds to a command.
+    judged as it is. Exit code 1: the wiring is not the table's, or cannot be determined; of a CSV, which
+    tells no axis, that no reading responds to a command.
     """
     from sim.commissioning.phasing.command import is_scenario
     from sim.scenario.schema import parse_settings

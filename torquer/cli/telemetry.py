@@ -44,7 +44,7 @@ def telemetry(recorded: Path, tle: Path, calibration: Path | None, start_s: floa
     """Run the flight filter, without gyros, over telemetry in PASS.csv that was recorded in orbit.
 
     It uses the magnetometer alone, and is judged by what it did not use: gyros, Sun cells, samples to come.
-    Exit code 1: the motion cannot be told, or what was not used speaks against it.
+    Exit code 1: the motion cannot be determined, or what was not used speaks against it.
     """
     from torquer.api.telemetry import telemetry
 

@@ -1,6 +1,6 @@
 """What the kernel computes, by filterpy and numpy: its reference, which also flies where there is none.
 
-The functions are those of ``_kalman_kernel``; what they compute is told in ``kalman``.
+The functions are those of ``_kalman_kernel``; what they compute is described in ``kalman``.
 """
 
 from math import inf

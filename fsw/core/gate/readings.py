@@ -270,6 +270,6 @@ def _keep(readings: Readings, can_id: int, data: bytes) -> None:
 
 
 def _latest(frames: tuple[Frame, ...]) -> tuple[Frame, ...]:
-    """What is read of the frames of several ticks: what the boards say now, and what they are told once."""
+    """What is read of the frames of several ticks: what the boards say now, and what they say once."""
     before = [frame for frame in frames[:-INBOX_LIMIT] if frame.can_id in _IN_ANY_PLACE]
     return (*before[:INBOX_LIMIT], *frames[-INBOX_LIMIT:])

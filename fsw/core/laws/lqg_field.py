@@ -112,8 +112,8 @@ def covariances(problem: Problem, b_orbit_t: Array, torque_nm: float, noise_t: f
         before = found[-1].copy()
         for k, seen in enumerate(h):
             across = sigma @ seen.T
-            told = across @ np.linalg.solve(seen @ across + noise_t * noise_t * np.eye(3), across.T)
-            found[k] = 0.5 * (sigma - told + (sigma - told).T)
+            gained = across @ np.linalg.solve(seen @ across + noise_t * noise_t * np.eye(3), across.T)
+            found[k] = 0.5 * (sigma - gained + (sigma - gained).T)
             sigma = f @ found[k] @ f.T + driven
         if np.abs(found[-1] - before).max() <= SETTLED * np.abs(found[-1]).max():
             break

@@ -17,8 +17,8 @@ from sim.value_types import Array
 
 MOMENT_PART, LEAST_SIGMA = 0.01, 0.001
 """Prior of a moment: this part of how far it is from the greatest, and at least so much of that."""
-TOLD = 0.5
-"""A ratio is told where its standard deviation is at most this part of its prior's."""
+DETERMINED = 0.5
+"""A ratio is determined where its standard deviation is at most this part of its prior's."""
 
 
 class BodyFit(NamedTuple):
@@ -73,11 +73,11 @@ def fit_body(
     config = filter_config(np.diag(ratios), around.tick_s, noise, np.concatenate((prior, np.zeros(3))))
     end = follow(around, principal, turned, config).ticks[-1].estimate
     sigma = np.sqrt(end.covariance.diagonal()[-6:-3])
-    told = (sigma <= TOLD * prior) & (prior > 0.0)
-    found = ratios + np.where(told, end.parameters.inertia_error_kgm2[:3], 0.0)
+    determined = (sigma <= DETERMINED * prior) & (prior > 0.0)
+    found = ratios + np.where(determined, end.parameters.inertia_error_kgm2[:3], 0.0)
     turn_deg = np.degrees(Rotation.from_matrix(axes).as_rotvec())
     inertia = axes @ np.diag(found / found.max()) @ axes.T
-    return BodyFit(inertia, found / found.max(), turn_deg, axis_sigma_deg(around, known), sigma, told)
+    return BodyFit(inertia, found / found.max(), turn_deg, axis_sigma_deg(around, known), sigma, determined)
 
 
 def prior_sigma(ratios: Array) -> Array:

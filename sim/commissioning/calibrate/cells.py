@@ -19,7 +19,7 @@ BRIGHTEST_PERCENT, BEYOND = 99.0, 1.5
 LEAST_ROWS = 12
 ROUNDS = 8
 DETERMINED_DEG, DETERMINED_PART = 10.0, 0.1
-"""A cell is told where face and full scale are known to this."""
+"""A cell is determined where face and full scale are known to this."""
 
 
 class CellFit(NamedTuple):

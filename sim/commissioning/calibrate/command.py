@@ -41,7 +41,7 @@ def as_toml(found: RecordedCalibration, ratios: Array) -> str:
         f"  # +- {_plain(fit.sigma[:3], 0)}{_inconclusive(fit.determined[:3])}",
         f"matrix = [{', '.join(_numbers(row, 6) for row in fit.matrix)}]",
         f"# xx, yy, zz, xy, xz, yz +- {_plain(fit.sigma[3:], 4)}{_inconclusive(fit.determined[3:])}",
-        "# a common turn of the axes is not told: it changes no |B|",
+        "# a common turn of the axes is not determined: it changes no |B|",
     ]
     for cell in found.cells:
         lines += _cell(cell) if cell.determined else []
@@ -62,13 +62,13 @@ def _cell(cell: CellFit) -> list[str]:
 
 
 def _body(body: BodyFit, declared: Array) -> list[str]:
-    shown = ", ".join("told" if told else "as declared" for told in body.determined)
+    shown = ", ".join("determined" if determined else "as declared" for determined in body.determined)
     return [
         "",
         "[recorded.body]",
         f"# {shown}; declared were {_plain(declared, 5)}",
         f"inertia_ratios = {_numbers(body.ratios, 5)}",
-        f"# the axis of greatest inertia +- {body.axis_sigma_deg:.1f} deg; a turn about it is not told",
+        f"# the axis of greatest inertia +- {body.axis_sigma_deg:.1f} deg; a turn about it is not determined",
         f"principal_axes_turn_deg = {_numbers(body.turn_deg, 2)}",
     ]
 
@@ -88,10 +88,12 @@ def _bound(key: str, value: float, most: float) -> str:
     return f"{key} = {min(value, most):.3g}{said}"
 
 
-def _inconclusive(told: Sequence[bool] | NDArray[np.bool_]) -> str:
-    if all(told):
+def _inconclusive(determined: Sequence[bool] | NDArray[np.bool_]) -> str:
+    if all(determined):
         return ""
-    return "; not told: numbers " + ", ".join(str(place) for place, one in enumerate(told, 1) if not one)
+    return "; not determined: numbers " + ", ".join(
+        str(place) for place, one in enumerate(determined, 1) if not one
+    )
 
 
 def _numbers(values: Array, decimals: int) -> str:
@@ -159,16 +161,16 @@ def _lines(found: RecordedCalibration, parameters: int) -> Iterator[str]:
     if left_out := found.around.recorded.said_left_out():
         yield left_out
     yield f"{len(fit.residual_nt)} samples; |B| after the fit {fit.rms_nt:.0f} nT RMS"
-    for name, value, sigma, told in zip(NAMES, fit.values, fit.sigma, fit.determined, strict=True):
+    for name, value, sigma, determined in zip(NAMES, fit.values, fit.sigma, fit.determined, strict=True):
         digits, unit = (0, " nT") if name.startswith("b_") else (4, "")
-        said = "" if told else "   cannot be told from these samples"
+        said = "" if determined else "   cannot be determined from these samples"
         yield f"  {name:5} {value:10.{digits}f} +- {sigma:.{digits}f}{unit}{said}"
     if parameters == PARAMETERS[1]:
         for name in TURN_NAMES:
-            yield f"  {name:5} {0.0:10.2f} deg   cannot be told by |B|, which no turn changes"
+            yield f"  {name:5} {0.0:10.2f} deg   cannot be determined by |B|, which no turn changes"
     if not fit.determined.all():
         x, y, z = fit.weakest_axis
-        yield f"  the offset is told least along ({x:.2f}, {y:.2f}, {z:.2f}), to {fit.weakest_nt:.0f} nT"
+        yield f"  the offset is least certain along ({x:.2f}, {y:.2f}, {z:.2f}), to {fit.weakest_nt:.0f} nT"
     yield f"bias moves by up to {drift.largest_nt:.0f} nT within the pass"
     if drift.eclipse_nt is not None:
         yield f"  in shadow less in the Sun: {_triple(*drift.eclipse_nt)} nT"
@@ -178,15 +180,15 @@ def _lines(found: RecordedCalibration, parameters: int) -> Iterator[str]:
         face = ", ".join(f"{part:.3f}" for part in cell.face_body)
         digits = cell.decimals
         scale = f"full scale {cell.full_scale:.{digits}f} +- {cell.full_scale_sigma:.{digits}f}"
-        said = "" if cell.determined else "; cannot be told"
+        said = "" if cell.determined else "; cannot be determined"
         yield f"cell {cell.name}: face ({face}) +- {cell.face_sigma_deg:.1f} deg, {scale}{said}"
     if found.body is not None:
         ratios = " : ".join(f"{ratio:.5f}" for ratio in found.body.ratios)
         yield f"inertia ratios {ratios}; axis of the greatest +- {found.body.axis_sigma_deg:.1f} deg"
     if found.judged is not None and not found.judged.verdict.converged:
-        yield f"body and cells cannot be told: {found.judged.verdict.reason}"
+        yield f"body and cells cannot be determined: {found.judged.verdict.reason}"
     elif found.judged is None:
-        yield "body and cells cannot be told: the pass is too short, or does not tell the offset"
+        yield "body and cells cannot be determined: the pass is too short, or does not tell the offset"
 
 
 def _triple(values: Sequence[float], sigma: Sequence[float]) -> str:
@@ -196,8 +198,8 @@ def _triple(values: Sequence[float], sigma: Sequence[float]) -> str:
 def _as_json(found: RecordedCalibration, parameters: int) -> dict[str, object]:
     fit = found.magnetometer
     numbers: dict[str, dict[str, float | bool | None]] = {
-        name: {"value": value, "sigma": float(sigma), "told": bool(told)}
-        for name, value, sigma, told in zip(NAMES, fit.values, fit.sigma, fit.determined, strict=True)
+        name: {"value": value, "sigma": float(sigma), "told": bool(determined)}
+        for name, value, sigma, determined in zip(NAMES, fit.values, fit.sigma, fit.determined, strict=True)
     }
     if parameters == PARAMETERS[1]:
         numbers |= {name: {"value": 0.0, "sigma": None, "told": False} for name in TURN_NAMES}

@@ -24,7 +24,7 @@ BIAS_SIGMA_UT, MATRIX_SIGMA = 200.0, 0.1
 LEAST = 1e-12
 """In place of the size of a field that is zero, which has no direction."""
 DETERMINED_NT = 1500.0
-"""A number is told where one standard deviation of it moves the field by at most this: 3 deg in 30 uT."""
+"""A number is determined if one standard deviation of it moves the field by at most this: 3 deg in 30 uT."""
 NAMES = ("b_x", "b_y", "b_z", "m_xx", "m_yy", "m_zz", "m_xy", "m_xz", "m_yz")
 TURN_NAMES = ("turn_x", "turn_y", "turn_z")
 _PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
@@ -39,7 +39,7 @@ class MagnetometerFit(NamedTuple):
         sigma: of the offset, nT, then of xx, yy, zz, xy, xz, yz of M, (9).
         determined: whether the data tell each, (9).
         residual_nt: |M (m - b)| - |B|, of the rows that lack no number, (n).
-        weakest_axis: direction along which the offset is told least, (3); ``weakest_nt``: its deviation.
+        weakest_axis: direction along which the offset is least certain, (3); ``weakest_nt``: its deviation.
         correlation_rows: how many neighbouring residuals count as one.
     """
 

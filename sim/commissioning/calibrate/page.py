@@ -1,4 +1,4 @@
-"""The page of a calibration: what is told, what is not, and the residuals as pictures."""
+"""The page of a calibration: what is determined, what is not, and the residuals as pictures."""
 
 import numpy as np
 
@@ -12,8 +12,8 @@ from sim.drawing.page_parts import Chart, PageHeader, PageSection, Table, Tile, 
 from sim.drawing.time_chart import Level, Panel, Series, TimeChart, draw, time_data
 from sim.value_types import Array
 
-_TOLD = (
-    "A number is told where one standard deviation of it moves the field by at most 1500 nT. Neighbouring "
+_DETERMINED = (
+    "A number is determined if one standard deviation of it moves the field by at most 1500 nT. Neighbouring "
     "residuals are not independent: so many rows as their correlation is long count as one."
 )
 _DRIFT = "Each stretch for itself, the matrix as fitted; sensor axes, with standard deviations."
@@ -25,15 +25,15 @@ def calibration_page(found: RecordedCalibration, text: str) -> str:
     finite = np.isfinite(around.recorded.mag_nt).all(axis=1)
     time = pass_time(around)
     t_s = around.t_s[finite]
-    told = fit.determined.sum()
+    determined = fit.determined.sum()
     header = PageHeader(
         "Calibration",
         around.recorded.name,
         (f"{len(fit.residual_nt)} samples in {around.t_s[-1]:.0f} s",),
         [
-            ("good", "✓ magnetometer told")
-            if told == len(fit.determined)
-            else ("bad", f"✗ {told} of {len(fit.determined)} told")
+            ("good", "✓ magnetometer determined")
+            if determined == len(fit.determined)
+            else ("bad", f"✗ {determined} of {len(fit.determined)} determined")
         ],
         [
             Tile("|B| after the fit", f"{fit.rms_nt:.0f} nT", "RMS over the pass"),
@@ -47,7 +47,7 @@ def calibration_page(found: RecordedCalibration, text: str) -> str:
         charts = [_residuals(found, time, t_s)]
     tables = (_numbers(fit), *_others(found))
     sections = [
-        PageSection("numbers", "What is told", _TOLD, tables),
+        PageSection("numbers", "What is determined", _DETERMINED, tables),
         PageSection("residuals", "Residuals", "", (), charts),
         PageSection("drift", "Drift of the bias", _DRIFT, (_drift(found),)),
         PageSection("file", "The file", "", text=text),
@@ -71,12 +71,17 @@ def _residuals(found: RecordedCalibration, time: TimeAxis, t_s: Array) -> Chart:
 
 def _numbers(fit: MagnetometerFit) -> Table:
     rows = []
-    for name, value, sigma, told in zip(NAMES, fit.values, fit.sigma, fit.determined, strict=True):
+    for name, value, sigma, determined in zip(NAMES, fit.values, fit.sigma, fit.determined, strict=True):
         digits = 0 if name.startswith("b_") else 4
         rows.append(
-            (name, f"{value:.{digits}f}", f"{sigma:.{digits}f}", "told" if told else "cannot be told")
+            (
+                name,
+                f"{value:.{digits}f}",
+                f"{sigma:.{digits}f}",
+                "determined" if determined else "cannot be determined",
+            )
         )
-    rows.append(("turn", "0", "", "cannot be told by |B|"))
+    rows.append(("turn", "0", "", "cannot be determined by |B|"))
     return Table(
         ("number", "value", "standard deviation", "verdict"), rows, "Magnetometer: b in nT, m without unit"
     )
@@ -91,8 +96,8 @@ def _others(found: RecordedCalibration) -> list[Table]:
     if found.body is not None:
         body = found.body
         rows = [
-            (axis, f"{ratio:.5f}", f"{sigma:.5f}", "told" if told else "as declared")
-            for axis, ratio, sigma, told in zip(
+            (axis, f"{ratio:.5f}", f"{sigma:.5f}", "determined" if determined else "as declared")
+            for axis, ratio, sigma, determined in zip(
                 "xyz", body.ratios, body.ratio_sigma, body.determined, strict=True
             )
         ]
@@ -109,7 +114,7 @@ def _cell(one: CellFit) -> tuple[str, ...]:
         *face,
         *(f"{figure:.{one.decimals}f}" for figure in figures),
         str(one.rows),
-        "told" if one.determined else "cannot be told",
+        "determined" if one.determined else "cannot be determined",
     )
 
 

@@ -121,7 +121,7 @@ class RecordedCalibration:
 
     @property
     def calibration(self) -> PassCalibration:
-        """The values, for the filter; only of cells that are told."""
+        """The values, for the filter; only of cells that are determined."""
         cells = tuple(
             KnownCell(one.name, one.face_body, one.full_scale) for one in self.cells if one.determined
         )

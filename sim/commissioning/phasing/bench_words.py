@@ -14,12 +14,12 @@ LINEAR_PART = 0.15
 
 
 INCONCLUSIVE = (
-    "No axis is told: the log has neither the field around nor how coils and magnetometers are turned."
+    "No axis is determined: the log has neither the field around nor how coils and magnetometers are turned."
 )
 
 
 def lines(responses: list[BenchResponse]) -> list[str]:
-    """The response by magnetometer and command, then what is not told."""
+    """The response by magnetometer and command, then what is not determined."""
     text = []
     for one in responses:
         text.append(f"{one.name}: {_idle(one)}")
@@ -31,7 +31,7 @@ def lines(responses: list[BenchResponse]) -> list[str]:
 def _idle(one: BenchResponse) -> str:
     """Noise and drift without a command."""
     if np.isnan(one.noise_nt).any():
-        return "no readings without a command: neither noise nor drift is told"
+        return "no readings without a command: neither noise nor drift is determined"
     noise = " ".join(f"{part / 1000.0:.3f}" for part in one.noise_nt)
     drift = " ".join(f"{part / 1000.0:+.1f}" for part in one.drift_nt)
     return f"noise {noise} uT, drift over the log {drift} uT (x y z)"
@@ -73,7 +73,7 @@ def _phase(one: BenchResponse) -> list[str]:
         ]
     clear = [step for step in one.steps if not isnan(step.changed_s)]
     if not clear:
-        return [f"responds to no command by {WEAK_SIGMAS:.0f} standard deviations: no phase is told"]
+        return [f"responds to no command by {WEAK_SIGMAS:.0f} standard deviations: no phase is determined"]
     unchanged_s = median(step.unchanged_s for step in clear)
     changed_s = median(step.changed_s for step in clear)
     if unchanged_s <= one.cycle_s:

@@ -16,7 +16,7 @@ from sim.bench.command import HilSettings, hil, real_boards
 from sim.commissioning.calibrate.flown.samples import read_samples
 from sim.commissioning.phasing import bench_words, words
 from sim.commissioning.phasing.bench_log import bench_responses, is_bench_log, read_recording
-from sim.commissioning.phasing.judge import Known, phasing
+from sim.commissioning.phasing.judge import Surroundings, phasing
 from sim.commissioning.report import CommissioningReport, ReportLine, in_lines
 from sim.console import Console, detail, speaking
 from sim.errors import HarnessError, refuse
@@ -30,7 +30,7 @@ from sim.scenario.schema import Scenario, flight_table, load, scenario_of
 LAW = "phasing"
 SETTLED_S = 20.0
 """On a bench after the last pulse, so that a sample that is late shows it and what is there without it; but
-no more than twice the back-off, which bounds how late a sample may be told to be."""
+no more than twice the back-off, which bounds how late a sample may be found to be."""
 AFTER_S = 30.0
 """After the last pulse, so that what it did is seen."""
 ANY_BUDGET = Budgets(1e9, 1e9, 10**9, 1e9, 1e9)
@@ -55,7 +55,7 @@ class BenchSetUp:
 
 @dataclass(frozen=True, slots=True)
 class PhasingOptions:
-    """How wiring is told; what is None, False or empty is not given.
+    """How wiring is determined; what is None, False or empty is not given.
 
     Attributes:
         scenario: of a log that has none beside it, its name or path.
@@ -86,10 +86,10 @@ class PhasingOptions:
     out: Path | None = None
 
     @property
-    def known(self) -> Known:
+    def surroundings(self) -> Surroundings:
         """What is known of the surroundings."""
         along, around = self.coil_field_nt_per_am2, self.field_nt
-        return Known(
+        return Surroundings(
             None if along is None else along * np.eye(3),
             None if around is None else np.array(around),
             OFFSET_NT if self.offset_nt is None else self.offset_nt,
@@ -115,7 +115,7 @@ def _given(options: PhasingOptions) -> Iterator[str]:
 
 
 def is_scenario(source: str) -> bool:
-    """Whether what phasing is to be told of is a scenario, and no recording or log."""
+    """Whether what phasing is to judge is a scenario, and no recording or log."""
     path = Path(source)
     return not is_bench_log(path) and (path.suffix == ".toml" or not path.exists())
 
@@ -134,7 +134,7 @@ def phase(source: str | Scenario, options: PhasingOptions) -> CommissioningRepor
         return of_csv(Path(source))
     if isinstance(source, str) and not is_scenario(source):
         options.refuse(OF_A_FLIGHT, "a log is judged as it is; name a SCENARIO to fly or for a bench")
-        return of_log(Path(source), options.scenario, options.settings, options.known)
+        return of_log(Path(source), options.scenario, options.settings, options.surroundings)
     if options.scenario is not None:
         raise HarnessError(f"--scenario: {source} is no log, but a scenario itself")
     if options.bus is None:
@@ -142,9 +142,9 @@ def phase(source: str | Scenario, options: PhasingOptions) -> CommissioningRepor
     chosen, rounds, seed = load(source, options.settings), options.rounds or 1, options.seed
     seed = 1 if seed is None else seed
     if options.bus is None:
-        return of_flight(chosen, rounds, seed, options.known, options.out)
+        return of_flight(chosen, rounds, seed, options.surroundings, options.out)
     bench = BenchSetUp(options.bus, real_boards(options.real), options.arm)
-    return on_bench(chosen, rounds, seed, options.known, bench, options.out)
+    return on_bench(chosen, rounds, seed, options.surroundings, bench, options.out)
 
 
 def of_csv(path: Path) -> CommissioningReport:
@@ -156,7 +156,9 @@ def of_csv(path: Path) -> CommissioningReport:
     )
 
 
-def of_log(run_or_log: Path, scenario: str | None, settings: Nested, known: Known) -> CommissioningReport:
+def of_log(
+    run_or_log: Path, scenario: str | None, settings: Nested, surroundings: Surroundings
+) -> CommissioningReport:
     """Judge a log; the scenario is that beside it, unless one is named.
 
     Raises:
@@ -164,11 +166,11 @@ def of_log(run_or_log: Path, scenario: str | None, settings: Nested, known: Know
         TableError: the scenario is not valid.
     """
     log, folder = run_dir.locate(run_or_log)
-    return _judge(log, flight_table(run_dir.scenario_of_log(log, folder, scenario, settings)), known)
+    return _judge(log, flight_table(run_dir.scenario_of_log(log, folder, scenario, settings)), surroundings)
 
 
 def of_flight(
-    scenario: Scenario, rounds: int, seed: int, known: Known, out: Path | None
+    scenario: Scenario, rounds: int, seed: int, surroundings: Surroundings, out: Path | None
 ) -> CommissioningReport:
     """Fly the scenario in simulation, send TC_LAW for the sequence, and judge.
 
@@ -181,11 +183,16 @@ def of_flight(
         run_dir.begin(folder, flown, seed, ticks, "virtual", Pace())
         with progress(f"phasing {scenario.name}", ticks) as watch:
             fly_virtual(folder, flown, watch)
-        return _judge(folder / run_dir.BUS_LOG, flight_table(flown), known)
+        return _judge(folder / run_dir.BUS_LOG, flight_table(flown), surroundings)
 
 
 def on_bench(
-    scenario: Scenario, rounds: int, seed: int, known: Known, bench: BenchSetUp, out: Path | None
+    scenario: Scenario,
+    rounds: int,
+    seed: int,
+    surroundings: Surroundings,
+    bench: BenchSetUp,
+    out: Path | None,
 ) -> CommissioningReport:
     """Run the sequence in real time on a bench, and judge.
 
@@ -201,7 +208,7 @@ def on_bench(
         fixed = (True, seconds, "plant", bench.deadman_s, ANY_BUDGET, 1e9)
         with speaking(Console("hil", quiet=True)):  # of the bench only what failed is said
             code = hil(HilSettings(flown, bench.bus, bench.real, *fixed, seed, folder))
-        found = _judge(folder / run_dir.BUS_LOG, flight_table(flown), known)
+        found = _judge(folder / run_dir.BUS_LOG, flight_table(flown), surroundings)
         return replace(found, ok=found.ok and not code)
 
 
@@ -235,12 +242,12 @@ def sequence_ticks(scenario: Scenario, rounds: int, at_rest: bool = False) -> in
     return ceil(whole_s * scenario.time.tick_hz)
 
 
-def _judge(log: Path, table: FlightTable, known: Known) -> CommissioningReport:
-    """The verdict; ok where the wiring is told, and is the table's."""
+def _judge(log: Path, table: FlightTable, surroundings: Surroundings) -> CommissioningReport:
+    """The verdict; ok where the wiring is determined, and is the table's."""
     detail(f"phasing from {log}")
     samples = read_samples(log, table.time.tick_hz)
     try:
-        found = phasing(samples, table, _with_table(known, table))
+        found = phasing(samples, table, _with_table(surroundings, table))
     except HarnessError as error:
         raise HarnessError(f"{log}: {error}") from None
     ok = found.wiring is not None and found.wiring == words.of_table(table)
@@ -248,14 +255,19 @@ def _judge(log: Path, table: FlightTable, known: Known) -> CommissioningReport:
     return CommissioningReport(lines, words.as_json(found, table), ok)
 
 
-def _with_table(known: Known, table: FlightTable) -> Known:
+def _with_table(surroundings: Surroundings, table: FlightTable) -> Surroundings:
     """With the coils' field by true dipole, where the table has it by output."""
     coils = table.calibration.coils
-    if known.coil_field_nt_per_am2 is not None or coils is None or coils.field_nt_per_am2 is None:
-        return known
+    if surroundings.coil_field_nt_per_am2 is not None or coils is None or coils.field_nt_per_am2 is None:
+        return surroundings
     by_output = np.array(coils.field_nt_per_am2)
     dipoles = np.eye(3) if coils.matrix is None else np.array(coils.matrix)
-    return Known(by_output @ np.linalg.inv(dipoles), known.field_around_nt, known.offset_nt, known.in_orbit)
+    return Surroundings(
+        by_output @ np.linalg.inv(dipoles),
+        surroundings.field_around_nt,
+        surroundings.offset_nt,
+        surroundings.in_orbit,
+    )
 
 
 @contextmanager

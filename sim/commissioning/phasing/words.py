@@ -37,7 +37,7 @@ def of_table(table: FlightTable) -> Pair:
 
 
 def verdict(found: Phasing, table: FlightTable) -> str:
-    """One sentence: what is wired how, or that it cannot be told."""
+    """One sentence: what is wired how, or that it cannot be determined."""
     said = of_table(table)
     if found.wiring is not None:
         return sentence(found.wiring, said)

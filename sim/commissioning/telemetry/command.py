@@ -209,10 +209,10 @@ def in_words(judged: Judged, found: dict[str, Any]) -> Sequence[str]:
             f"not used: {found['rows_of_unknown_moment']} rows of one moment with others, "
             f"{found['rejected']} samples that the filter refused"
         )
-    told = {"field": "by the field", "cells": "by the cells", "coasting": "by coasting"}.get(verdict.by, "")
+    means = {"field": "by the field", "cells": "by the cells", "coasting": "by coasting"}.get(verdict.by, "")
     others = [f"{rate:.2f}" for rate in found["motions_degps"][1:]]
-    if others and told:
-        lines.append(f"told from {' and '.join(others)} deg/s {told}")
+    if others and means:
+        lines.append(f"distinguished from {' and '.join(others)} deg/s {means}")
     lines.append("converged" if verdict.converged else f"not converged: {verdict.reason}")
     return lines
 

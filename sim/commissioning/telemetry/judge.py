@@ -1,4 +1,4 @@
-"""Figures of a followed pass, and whether its motion is told from others that the field allows."""
+"""Figures of a followed pass, and whether its motion is distinguished from others that the field allows."""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -25,7 +25,7 @@ ALIKE_DEG = 3.0
 LEAST_CELL_ROWS = 3
 """Rows with two cells lit that count as a look at the Sun."""
 CLEARLY = 0.6
-"""One motion is told from another where it leaves at most this part of the other's error."""
+"""One motion is distinguished from another where it leaves at most this part of the other's error."""
 MOST_AZIMUTH_DEG, MOST_SCATTER_DEG = 20.0, 20.0
 """Of the Sun by the cells: beyond these a motion is wrong although no other contends."""
 MOST_COAST_DEG, MOST_DIRECTION_DEG = 10.0, 10.0
@@ -69,7 +69,7 @@ class AllowedMotion:
         return float(self.followed.rate_degps[self.settled :, place].mean())
 
     def held_back(self, told_by: str) -> Azimuths:
-        """The azimuths that count: after the start, and none that told the motion from others."""
+        """The azimuths that count: after the start, and none that distinguished the motion from others."""
         middle = len(self.followed.ticks) // 2 if told_by == "cells" else 0
         return self.azimuths.within(max(self.settled, middle), len(self.followed.ticks))
 
@@ -82,7 +82,7 @@ class AllowedMotion:
 class MotionVerdict(NamedTuple):
     """Whether a motion may be believed, and why.
 
-    ``by``: what told it from the others: ``cells``, ``coasting``, ``field``, or nothing.
+    ``by``: what distinguished it from the others: ``cells``, ``coasting``, ``field``, or nothing.
     """
 
     converged: bool
@@ -206,8 +206,8 @@ def rank_motions(motions: list[AllowedMotion]) -> tuple[list[AllowedMotion], Mot
             continue
         best, second, *_ = sorted(range(len(contenders)), key=scores.__getitem__)
         if scores[best] <= CLEARLY * scores[second]:
-            told = contenders[best]
-            return [told, *(one for one in ordered if one is not told)], _alone(told, by)
+            likeliest = contenders[best]
+            return [likeliest, *(one for one in ordered if one is not likeliest)], _alone(likeliest, by)
     rates = " and ".join(f"{motion.rate_degps:.2f}" for motion in contenders)
     said = f"motions of {rates} deg/s fit the field alike, and neither cells nor coasting tell them apart"
     return ordered, MotionVerdict(False, "", said)

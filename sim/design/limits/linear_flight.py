@@ -1,4 +1,4 @@
-"""A flight of a linear body with the shipped law and scheduler, all that the law is told being true.
+"""A flight of a linear body with the shipped law and scheduler, all that the law is given being true.
 
 About the nominal attitude the body moves as in ``fsw/core/laws/plan/riccati.py``, a tick at a time, in body
 axes; orbit and field are those of the controller's own models, and a pulse acts over its whole length:

@@ -58,11 +58,11 @@ FALLS = 0.9
 
 def fell_back(missed: Missed, evidence: FlightEvidence) -> str:
     """The controller went back to damp rates, or to SAFE, after it had known the attitude."""
-    told = [
+    falls = [
         f"{mode.name} from {orbits(at)} on for {orbits(length)}" for mode, at, length in evidence.fell_back
     ]
-    more = f" and {len(told) - MOST_NAMED} times more" if len(told) > MOST_NAMED else ""
-    return f"the controller fell back to {', to '.join(told[:MOST_NAMED])}{more}" if told else ""
+    more = f" and {len(falls) - MOST_NAMED} times more" if len(falls) > MOST_NAMED else ""
+    return f"the controller fell back to {', to '.join(falls[:MOST_NAMED])}{more}" if falls else ""
 
 
 def left_again(missed: Missed, evidence: FlightEvidence) -> str:
@@ -122,7 +122,7 @@ def swings(missed: Missed, evidence: FlightEvidence) -> str:
 
 
 def _falls(trend: Sequence[float]) -> bool:
-    """Whether it falls by what is told from chance."""
+    """Whether it falls by more than chance."""
     if len(trend) < TREND or min(trend) <= 0.0:
         return False
     return float(np.polyfit(np.arange(len(trend)) / 2.0, np.log(trend), 1)[0]) <= log(FALLS)
@@ -198,9 +198,7 @@ def _applicable(missed: Missed, evidence: FlightEvidence) -> list[Diagnosis]:
 
 def _unknown(missed: Missed, evidence: FlightEvidence) -> Reason:
     ruled_out = [cause.name.replace("_", " ") for cause in _applicable(missed, evidence)]
-    return Reason(
-        "unknown", f"none of the causes that can be told from the flight; ruled out: {', '.join(ruled_out)}"
-    )
+    return Reason("unknown", f"none of the causes that a flight can show; ruled out: {', '.join(ruled_out)}")
 
 
 def _isolated(missed: Missed, evidence: FlightEvidence) -> str:

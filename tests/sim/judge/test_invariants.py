@@ -8,9 +8,9 @@ from fsw.wire.frame import Frame
 from fsw.wire.messages import CoilFire, CoilRefusedReason
 from sim.judge.answers import AnswerRecord, CoilRequest, OutOfTurn
 from sim.judge.driven import DrivenLimits
-from sim.judge.honesty import WrongAttitude, WrongRate
 from sim.judge.invariants import RULES, JudgedFlightRecord, judge_invariants
 from sim.judge.profile import Profile
+from sim.judge.valid_estimates import WrongAttitude, WrongRate
 from sim.report.requirements.judge import Outcome
 from sim.scenario.schema import load, parse_settings
 

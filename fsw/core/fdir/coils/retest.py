@@ -1,7 +1,7 @@
 """A coil that was isolated is tried again: the fault may have passed, or the estimate may have been wrong.
 
 Half of the evidence that isolates it stays: one pulse isolates it again whose current is wrong, or whose
-effect weighs the other half and is told from that of all coils alike; one too small for that takes another.
+effect weighs the other half and differs from that of all coils alike; one too small for that takes another.
 Good ones cancel it. What the filter has learnt of its gain is forgotten. Ticks in which a sensor is suspected
 do not count.
 """

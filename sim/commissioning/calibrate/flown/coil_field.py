@@ -22,7 +22,7 @@ AROUND_S = 12
 """Time before and after a pulse that shows the field without it."""
 LONGEST_DELAY_S = 4
 """And half of the shortest pause between pulses at most, so that each shows by itself. A delay at the end of
-the grid may be any longer one, and is not told."""
+the grid may be any longer one, and is not determined."""
 STEP_S, MOST_STEP = 0.02, 0.2
 """Of the grid of delays, s, and at most so many ticks."""
 CUBIC = 4

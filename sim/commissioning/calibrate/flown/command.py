@@ -44,7 +44,7 @@ def calibrate(
         raise HarnessError(f"{log}: {error}") from None
     missing = list_undetermined(found)
     lines = in_lines(sentences(found, tick_s)) + in_lines(
-        (f"not told: {one}" for one in missing), failed=True
+        (f"not determined: {one}" for one in missing), failed=True
     )
     text, fault = _tables(found, table)
     if text and out is not None:

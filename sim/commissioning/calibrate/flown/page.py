@@ -23,7 +23,9 @@ def calibration_page(
         tables: both tables as TOML; empty where none could be written.
     """
     missing = list_undetermined(found)
-    badges = [("bad", f"✗ {len(missing)} not told")] if missing else [("good", "✓ everything told")]
+    badges = (
+        [("bad", f"✗ {len(missing)} not determined")] if missing else [("good", "✓ everything determined")]
+    )
     t_s = tick_s * (found.tick - found.tick[0]).astype(float)
     axis = TimeAxis("seconds from the start", 1.0, 0.0, float(t_s[-1]))
     with style():
@@ -45,7 +47,7 @@ def calibration_page(
             PageSection("pulses", "Around the pulses", charts=(chart("pulses", pulses.picture, around),)),
         ]
     if missing:
-        sections.insert(1, PageSection("untold", "Not told by this log", text="\n".join(missing)))
+        sections.insert(1, PageSection("untold", "Not determined by this log", text="\n".join(missing)))
     if tables:
         sections.append(PageSection("tables", "Tables", text=tables))
     rms = np.sqrt(np.nanmean(found.residual_nt**2, axis=0))

@@ -16,7 +16,7 @@ from sim.value_types import Array, Numbers
 SURE_GAP_S, LONGEST_GAP_S = 3600.0, 86400.0
 """Time without a SYNC that is believed whatever the time stamps say, since a recording of a flight without a
 pace has stamps that are much closer; and that is believed at most, where they bear it out."""
-COILS, TOLD, UNTOLD, DISPUTED = slice(6, 9), 1.0, 0.0, -1.0
+COILS, REPORTED, UNREPORTED, DISPUTED = slice(6, 9), 1.0, 0.0, -1.0
 """Where a row has coil, level and what is known of them: reported, not reported, reported as two things."""
 
 
@@ -130,7 +130,7 @@ def _check_gaps(log: Path, stamps_s: dict[int, float], tick_hz: int) -> None:
 
 
 def _nothing() -> list[float]:
-    return [np.nan] * 6 + [0.0, 0.0, UNTOLD]
+    return [np.nan] * 6 + [0.0, 0.0, UNREPORTED]
 
 
 def _take(frame: Frame, row: list[float]) -> None:
@@ -150,8 +150,8 @@ def _take(frame: Frame, row: list[float]) -> None:
                 f"a COIL_STATUS of coil {status.coil} at level {status.level}: there are coils 0 to 2 and "
                 "levels -3 to 3"
             )
-        told = [status.coil if status.level else 0.0, status.level, TOLD]
-        row[COILS] = told if row[COILS] in (_nothing()[COILS], told) else [0.0, 0.0, DISPUTED]
+        driven = [status.coil if status.level else 0.0, status.level, REPORTED]
+        row[COILS] = driven if row[COILS] in (_nothing()[COILS], driven) else [0.0, 0.0, DISPUTED]
 
 
 def _filled(rows: dict[int, list[float]], epoch_unix_s: int, tick_hz: int) -> Samples:
@@ -166,5 +166,5 @@ def _filled(rows: dict[int, list[float]], epoch_unix_s: int, tick_hz: int) -> Sa
         sun=table[:, 3:6],
         coil=table[:, 6].astype(np.int64),
         level=table[:, 7].astype(np.int64),
-        reported=table[:, 8] == TOLD,
+        reported=table[:, 8] == REPORTED,
     )

@@ -39,7 +39,7 @@ class WiringFit(NamedTuple):
 
 
 class SensorAxes(NamedTuple):
-    """The wirings that may be, the likeliest first; none, with the reason, where nothing can be told."""
+    """The wirings that may be, the likeliest first; none, with the reason, where nothing is determined."""
 
     candidates: tuple[WiringFit, ...]
     reason: str = ""

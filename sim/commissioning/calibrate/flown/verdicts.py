@@ -10,7 +10,7 @@ from sim.commissioning.calibrate.flown.wiring import channels_from_body
 from sim.value_types import Array
 
 DETERMINED_OFFSET_NT = 2000.0
-"""Three standard deviations of an offset that is told: what the bias of a table may be at most is 3000."""
+"""Three standard deviations of a determined offset: what the bias of a table may be at most is 3000."""
 DETERMINED_PART = 0.03
 """The same of a component of M, and of the coils' dipoles."""
 SIGMAS = 3.0

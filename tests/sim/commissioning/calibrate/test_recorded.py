@@ -107,7 +107,7 @@ def test_the_file_can_be_read_whatever_the_name_of_the_pass(tmp_path):
 def test_the_page_shows_residuals_and_verdicts(calibrated):
     page = calibration_page(calibrated, "offset_nt = <1>")
     assert "|B| measured less modelled" in page
-    assert "cannot be told by |B|" in page
+    assert "cannot be determined by |B|" in page
     assert "offset_nt = &lt;1&gt;" in page
 
 

@@ -321,7 +321,7 @@ def test_knowledge_is_not_explained_by_the_coils():
 
 def test_without_a_cause_the_causes_that_are_ruled_out_are_named():
     told = text(sound())
-    assert told.startswith("none of the causes that can be told from the flight; ruled out: isolated, safe, ")
+    assert told.startswith("none of the causes that a flight can show; ruled out: isolated, safe, ")
     assert "never in point" in told
     assert "fell back" not in told, "that is asked of settling alone"
 

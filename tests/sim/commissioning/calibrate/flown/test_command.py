@@ -84,7 +84,7 @@ def poor(found):
 def test_tables_and_page_are_written(a_run, good, calibrated_as):
     calibrated_as(good)
     result = run(a_run, "--out", "c.toml", "--page", "c.html")
-    assert result.exit_code == 1, "the dipoles are not told"
+    assert result.exit_code == 1, "the dipoles are not determined"
     assert "written: c.toml" in result.stdout
     text = Path("c.toml").read_text()
     assert "[calibration.magnetometer]" in text
@@ -98,7 +98,7 @@ def test_a_log_too_poor_for_the_tables_still_gives_page_and_document(a_run, good
     assert result.exit_code == 1
     assert "c.toml: no table is written: the offset is known within" in result.stdout
     assert not Path("c.toml").exists()
-    assert "Not told by this log" in Path("c.html").read_text()
+    assert "Not determined by this log" in Path("c.html").read_text()
     told = run(a_run, "--out", "c.toml", "--json")
     assert told.exit_code == 1
     found = json.loads(told.stdout)

@@ -1,6 +1,6 @@
 """Whether attitudes and rates that a flight software calls valid are near the truth, and if not, why.
 
-A mistake is named where the truth, altered as the mistake alters it, is what was told, within
+A mistake is named where the truth, altered as the mistake alters it, is what was called valid, within
 ``EXPLAINS_DEG`` or the bound of a rate in 95 % of the ticks, and neither the truth nor another mistake is.
 """
 
@@ -45,7 +45,7 @@ class WrongAttitude(NamedTuple):
 
 
 class WrongRate(NamedTuple):
-    """The longest time for which rates were told beside a valid attitude and were wrong.
+    """The longest time for which rates beside a valid attitude were wrong.
 
     Attributes:
         longest_s: on end.
@@ -62,16 +62,16 @@ def wrong_attitude(path: Path, tick_hz: int, limit_deg: float, forged: bool = Fa
     """Of the attitudes that the log of a run holds, against its histories; ``forged`` as for the answers."""
     longest = wrong = 0
     worst_deg = 0.0
-    told, true = [], []
+    claimed, true = [], []
     for rows, estimates in _beside_truth(path, forged):
         valid = estimates.valid
         error_deg = np.degrees(angle_rad(estimate_error(rows, estimates)))[valid]
-        told.append(estimates.q_body_from_orbit[valid])
+        claimed.append(estimates.q_body_from_orbit[valid])
         true.append(rows["q_body_from_orbit"][valid])
         for one in error_deg.tolist():
             wrong = wrong + 1 if one > limit_deg else 0
             longest, worst_deg = max(longest, wrong), max(worst_deg, one)
-    mistake = _attitude_mistake(np.concatenate(told), np.concatenate(true)) if longest else ""
+    mistake = _attitude_mistake(np.concatenate(claimed), np.concatenate(true)) if longest else ""
     return WrongAttitude(longest / tick_hz, worst_deg, limit_deg, mistake)
 
 
@@ -83,13 +83,13 @@ def wrong_rate(path: Path, scenario: Scenario, forged: bool = False) -> WrongRat
         scenario: that was flown.
         forged: as for the answers.
     """
-    told, true, attitude = [], [], []
+    claimed, true, attitude = [], [], []
     for rows, estimates in _beside_truth(path, forged):
         known = estimates.valid & ~np.isnan(estimates.omega_body_orbit_radps).any(axis=1)
-        told.append(estimates.omega_body_orbit_radps[known])
+        claimed.append(estimates.omega_body_orbit_radps[known])
         true.append(rows["omega_body_orbit_radps"][known])
         attitude.append(rows["q_body_from_orbit"][known])
-    omega, omega_true, q = np.concatenate(told), np.concatenate(true), np.concatenate(attitude)
+    omega, omega_true, q = np.concatenate(claimed), np.concatenate(true), np.concatenate(attitude)
     if not len(omega):
         return None
     orbital_radps = 2.0 * np.pi / orbit_period_s(scenario)
@@ -122,8 +122,8 @@ def _beside_truth(path: Path, forged: bool) -> Iterator[tuple[Histories, Estimat
             first += len(estimates.valid)
 
 
-def _attitude_mistake(told: Array, true: Array) -> str:
-    """What mistake makes of the true attitudes those that were told, of which the scalar part has no sign."""
+def _attitude_mistake(claimed: Array, true: Array) -> str:
+    """The mistake that makes the claimed attitudes of the true ones; a claimed scalar part has no sign."""
     first, last = true[:, (3, 0, 1, 2)], true[:, (1, 2, 3, 0)]
     ways = {
         "it is the conjugate, the turn from body to orbit": (true * np.array((1.0, -1.0, -1.0, -1.0)),),
@@ -131,16 +131,16 @@ def _attitude_mistake(told: Array, true: Array) -> str:
         "the scalar part is taken for the first component of the vector": (first, _without_sign(first)),
         "the scalar part is taken for the last component of the vector": (last, _without_sign(last)),
     }
-    misses = {words: np.all([_is_far(told, one) for one in way], axis=0) for words, way in ways.items()}
-    return _only(misses, _is_far(told, true))
+    misses = {words: np.all([_is_far(claimed, one) for one in way], axis=0) for words, way in ways.items()}
+    return _only(misses, _is_far(claimed, true))
 
 
 def _without_sign(q: Array) -> Array:
     return np.hstack((np.abs(q[:, :1]), q[:, 1:]))
 
 
-def _is_far(told: Array, way: Array) -> Array:
-    result: Array = angle_rad(relative(told, way)) > np.radians(EXPLAINS_DEG)
+def _is_far(claimed: Array, way: Array) -> Array:
+    result: Array = angle_rad(relative(claimed, way)) > np.radians(EXPLAINS_DEG)
     return result
 
 

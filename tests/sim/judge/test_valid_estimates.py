@@ -1,12 +1,12 @@
-"""An attitude that is called valid and is wrong for long is told, however good those before and after are."""
+"""An attitude that is called valid and wrong for long is named, however good those before and after are."""
 
 import numpy as np
 import pytest
 
 from fsw.wire.candump_line import format_line, format_time
 from fsw.wire.messages import NavAttitude, NavRate, Sync
-from sim.judge import honesty
-from sim.judge.honesty import WrongAttitude, wrong_attitude, wrong_rate
+from sim.judge import valid_estimates
+from sim.judge.valid_estimates import WrongAttitude, wrong_attitude, wrong_rate
 from sim.report.figures.attitude_arrays import normal_in_body, rotated
 from sim.scenario.schema import load, orbit_period_s
 
@@ -33,7 +33,7 @@ def run(tmp_path, monkeypatch):
             q_body_from_orbit = np.tile((1.0, 0.0, 0.0, 0.0), (past - first, 1))
             return {"t_s": np.arange(first, past), "q_body_from_orbit": q_body_from_orbit}
 
-    monkeypatch.setattr(honesty, "TruthReader", Truth)
+    monkeypatch.setattr(valid_estimates, "TruthReader", Truth)
 
     def make(told_deg):
         """``told_deg``: by tick, the angle about axis 1; None: not valid."""
@@ -103,7 +103,7 @@ def tumbling(tmp_path, monkeypatch):
                 "omega_body_orbit_radps": omega[rows],
             }
 
-    monkeypatch.setattr(honesty, "TruthReader", Truth)
+    monkeypatch.setattr(valid_estimates, "TruthReader", Truth)
 
     def make(tell=lambda q: np.where(q[:, :1] < 0.0, -q, q)[:, 1:], rate=lambda q, omega: omega):
         frames = []
