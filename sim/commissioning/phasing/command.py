@@ -16,7 +16,7 @@ from sim.bench.command import HilSettings, hil, real_boards
 from sim.commissioning.calibrate.flown.samples import read_samples
 from sim.commissioning.phasing import bench_words, words
 from sim.commissioning.phasing.bench_log import bench_responses, is_bench_log, read_recording
-from sim.commissioning.phasing.judge import Surroundings, phasing
+from sim.commissioning.phasing.judge import PhasingPremises, phasing
 from sim.commissioning.report import CommissioningReport, ReportLine, in_lines
 from sim.console import Console, detail, speaking
 from sim.errors import HarnessError, refuse
@@ -86,10 +86,10 @@ class PhasingOptions:
     out: Path | None = None
 
     @property
-    def surroundings(self) -> Surroundings:
-        """What is known of the surroundings."""
+    def premises(self) -> PhasingPremises:
+        """What phasing may presume."""
         along, around = self.coil_field_nt_per_am2, self.field_nt
-        return Surroundings(
+        return PhasingPremises(
             None if along is None else along * np.eye(3),
             None if around is None else np.array(around),
             OFFSET_NT if self.offset_nt is None else self.offset_nt,
@@ -134,7 +134,7 @@ def phase(source: str | Scenario, options: PhasingOptions) -> CommissioningRepor
         return of_csv(Path(source))
     if isinstance(source, str) and not is_scenario(source):
         options.refuse(OF_A_FLIGHT, "a log is judged as it is; name a SCENARIO to fly or for a bench")
-        return of_log(Path(source), options.scenario, options.settings, options.surroundings)
+        return of_log(Path(source), options.scenario, options.settings, options.premises)
     if options.scenario is not None:
         raise HarnessError(f"--scenario: {source} is no log, but a scenario itself")
     if options.bus is None:
@@ -142,9 +142,9 @@ def phase(source: str | Scenario, options: PhasingOptions) -> CommissioningRepor
     chosen, rounds, seed = load(source, options.settings), options.rounds or 1, options.seed
     seed = 1 if seed is None else seed
     if options.bus is None:
-        return of_flight(chosen, rounds, seed, options.surroundings, options.out)
+        return of_flight(chosen, rounds, seed, options.premises, options.out)
     bench = BenchSetUp(options.bus, real_boards(options.real), options.arm)
-    return on_bench(chosen, rounds, seed, options.surroundings, bench, options.out)
+    return on_bench(chosen, rounds, seed, options.premises, bench, options.out)
 
 
 def of_csv(path: Path) -> CommissioningReport:
@@ -157,7 +157,7 @@ def of_csv(path: Path) -> CommissioningReport:
 
 
 def of_log(
-    run_or_log: Path, scenario: str | None, settings: Nested, surroundings: Surroundings
+    run_or_log: Path, scenario: str | None, settings: Nested, premises: PhasingPremises
 ) -> CommissioningReport:
     """Judge a log; the scenario is that beside it, unless one is named.
 
@@ -166,11 +166,11 @@ def of_log(
         TableError: the scenario is not valid.
     """
     log, folder = run_dir.locate(run_or_log)
-    return _judge(log, flight_table(run_dir.scenario_of_log(log, folder, scenario, settings)), surroundings)
+    return _judge(log, flight_table(run_dir.scenario_of_log(log, folder, scenario, settings)), premises)
 
 
 def of_flight(
-    scenario: Scenario, rounds: int, seed: int, surroundings: Surroundings, out: Path | None
+    scenario: Scenario, rounds: int, seed: int, premises: PhasingPremises, out: Path | None
 ) -> CommissioningReport:
     """Fly the scenario in simulation, send TC_LAW for the sequence, and judge.
 
@@ -183,14 +183,14 @@ def of_flight(
         run_dir.begin(folder, flown, seed, ticks, "virtual", Pace())
         with progress(f"phasing {scenario.name}", ticks) as watch:
             fly_virtual(folder, flown, watch)
-        return _judge(folder / run_dir.BUS_LOG, flight_table(flown), surroundings)
+        return _judge(folder / run_dir.BUS_LOG, flight_table(flown), premises)
 
 
 def on_bench(
     scenario: Scenario,
     rounds: int,
     seed: int,
-    surroundings: Surroundings,
+    premises: PhasingPremises,
     bench: BenchSetUp,
     out: Path | None,
 ) -> CommissioningReport:
@@ -208,7 +208,7 @@ def on_bench(
         fixed = (True, seconds, "plant", bench.deadman_s, ANY_BUDGET, 1e9)
         with speaking(Console("hil", quiet=True)):  # of the bench only what failed is said
             code = hil(HilSettings(flown, bench.bus, bench.real, *fixed, seed, folder))
-        found = _judge(folder / run_dir.BUS_LOG, flight_table(flown), surroundings)
+        found = _judge(folder / run_dir.BUS_LOG, flight_table(flown), premises)
         return replace(found, ok=found.ok and not code)
 
 
@@ -242,12 +242,12 @@ def sequence_ticks(scenario: Scenario, rounds: int, at_rest: bool = False) -> in
     return ceil(whole_s * scenario.time.tick_hz)
 
 
-def _judge(log: Path, table: FlightTable, surroundings: Surroundings) -> CommissioningReport:
+def _judge(log: Path, table: FlightTable, premises: PhasingPremises) -> CommissioningReport:
     """The verdict; ok where the wiring is determined, and is the table's."""
     detail(f"phasing from {log}")
     samples = read_samples(log, table.time.tick_hz)
     try:
-        found = phasing(samples, table, _with_table(surroundings, table))
+        found = phasing(samples, table, _with_table(premises, table))
     except HarnessError as error:
         raise HarnessError(f"{log}: {error}") from None
     ok = found.wiring is not None and found.wiring == words.of_table(table)
@@ -255,18 +255,18 @@ def _judge(log: Path, table: FlightTable, surroundings: Surroundings) -> Commiss
     return CommissioningReport(lines, words.as_json(found, table), ok)
 
 
-def _with_table(surroundings: Surroundings, table: FlightTable) -> Surroundings:
+def _with_table(premises: PhasingPremises, table: FlightTable) -> PhasingPremises:
     """With the coils' field by true dipole, where the table has it by output."""
     coils = table.calibration.coils
-    if surroundings.coil_field_nt_per_am2 is not None or coils is None or coils.field_nt_per_am2 is None:
-        return surroundings
+    if premises.coil_field_nt_per_am2 is not None or coils is None or coils.field_nt_per_am2 is None:
+        return premises
     by_output = np.array(coils.field_nt_per_am2)
     dipoles = np.eye(3) if coils.matrix is None else np.array(coils.matrix)
-    return Surroundings(
+    return PhasingPremises(
         by_output @ np.linalg.inv(dipoles),
-        surroundings.field_around_nt,
-        surroundings.offset_nt,
-        surroundings.in_orbit,
+        premises.field_around_nt,
+        premises.offset_nt,
+        premises.in_orbit,
     )
 
 

@@ -129,7 +129,7 @@ NEAR_TICKS = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Surroundings:
+class PhasingPremises:
     """What is known of the bench or the satellite besides its table.
 
     Attributes:
@@ -176,7 +176,7 @@ Judged = Callable[[Samples, Array, Flags, Expected, FlightTable], CoilAxes | Non
 
 
 def phasing(
-    samples: Samples, table: FlightTable, surroundings: Surroundings, dipoles: Judged = coil_axes
+    samples: Samples, table: FlightTable, premises: PhasingPremises, dipoles: Judged = coil_axes
 ) -> Phasing:
     """Judge the samples of a log by all evidence there is."""
     response = coil_response(samples, table.coils.levels_am2)
@@ -191,14 +191,14 @@ def phasing(
     sensors: list[Wiring] = list(WIRINGS)
     free_nt = samples.field_nt[samples.free(NEAR_TICKS)]
     free_nt = free_nt[whole(free_nt)]
-    if surroundings.field_around_nt is not None and not len(free_nt):
+    if premises.field_around_nt is not None and not len(free_nt):
         missing.append(
             "no sample of the field is clear of the pulses, so that the field around tells nothing"
         )
-    elif surroundings.field_around_nt is not None:
+    elif premises.field_around_nt is not None:
         reading = free_nt.mean(axis=0)
-        sensors = by_field_around(reading, surroundings.field_around_nt, surroundings.offset_nt)
-    elif surroundings.in_orbit:
+        sensors = by_field_around(reading, premises.field_around_nt, premises.offset_nt)
+    elif premises.in_orbit:
         along = expected(table, samples.unix_s)
         found = sensor_axes(_observed(samples, along, table))
         missing += [found.reason] if found.reason else []
@@ -215,12 +215,12 @@ def phasing(
         for sensor in sensors
         for coils in (wirings_of(motion[sensor][1]) if sensor in motion else WIRINGS)
     ]
-    if surroundings.coil_field_nt_per_am2 is None:
+    if premises.coil_field_nt_per_am2 is None:
         missing.append("the coils' field at the magnetometer is not known")
     elif not is_detected(response):
         missing.append("the coils' field is too weak to be seen by the magnetometer")
     else:
-        admitted = by_coil_field(response, surroundings.coil_field_nt_per_am2)
+        admitted = by_coil_field(response, premises.coil_field_nt_per_am2)
         pairs = [pair for pair in pairs if pair in admitted]
     likeliest = next(iter(sensors), None)
     coils_found, outputs = motion.get(likeliest, (None, [])) if likeliest else (None, [])

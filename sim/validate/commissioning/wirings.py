@@ -24,7 +24,7 @@ from sim.commissioning.calibrate.flown.expected import Expected
 from sim.commissioning.calibrate.flown.samples import Samples, read_samples
 from sim.commissioning.calibrate.flown.wiring import WIRINGS, Wiring, channels_from_body
 from sim.commissioning.phasing.command import sequence_ticks, with_sequence
-from sim.commissioning.phasing.judge import Surroundings, phasing
+from sim.commissioning.phasing.judge import PhasingPremises, phasing
 from sim.flight.virtual import fly_virtual
 from sim.record import run_dir
 from sim.record.pace import Pace
@@ -96,7 +96,7 @@ def judged(coils: Wiring, samples: Samples, table: FlightTable, sensors: Sequenc
     dipoles = _Remembered()
     for sensor in sensors:
         channels = samples.field_nt @ channels_from_body(sensor).T
-        pairs = phasing(replace(samples, field_nt=channels), table, Surroundings(), dipoles).pairs
+        pairs = phasing(replace(samples, field_nt=channels), table, PhasingPremises(), dipoles).pairs
         told += pairs == ((sensor, coils),)
         among += len(pairs) > 1 and (sensor, coils) in pairs
         wrong += [sensor] if (sensor, coils) not in pairs else []

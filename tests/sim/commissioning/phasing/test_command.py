@@ -6,7 +6,7 @@ from click.testing import CliRunner
 from fsw.wire.candump_line import format_line, format_time
 from fsw.wire.messages import Sync
 from sim.commissioning.phasing.command import BenchSetUp, of_log, on_bench, sequence_ticks, with_sequence
-from sim.commissioning.phasing.judge import Surroundings
+from sim.commissioning.phasing.judge import PhasingPremises
 from sim.errors import HarnessError
 from sim.scenario.schema import load
 from torquer.cli.main import main
@@ -14,7 +14,7 @@ from torquer.cli.main import main
 
 def test_on_a_bench_nothing_is_driven_without_arm():
     with pytest.raises(HarnessError, match="allow it by --arm"):
-        on_bench(load("microsat"), 1, 1, Surroundings(), BenchSetUp("loop", frozenset(), False), None)
+        on_bench(load("microsat"), 1, 1, PhasingPremises(), BenchSetUp("loop", frozenset(), False), None)
 
 
 def test_continuous_coils_have_no_pulses():
@@ -27,7 +27,7 @@ def test_a_log_alone_needs_its_scenario(tmp_path):
     log = tmp_path / "bus.log"
     log.write_text("(1.000000) vcan0 180#00\n")
     with pytest.raises(HarnessError, match="name its scenario by --scenario"):
-        of_log(log, None, {}, Surroundings())
+        of_log(log, None, {}, PhasingPremises())
 
 
 def test_the_sequence_has_time_for_each_coil_in_both_polarities():

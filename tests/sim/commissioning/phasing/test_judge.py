@@ -7,7 +7,7 @@ import pytest
 
 from sim.commissioning.calibrate.flown.wiring import RIGHT, channels_from_body
 from sim.commissioning.phasing import words
-from sim.commissioning.phasing.judge import Surroundings, phasing
+from sim.commissioning.phasing.judge import PhasingPremises, phasing
 from sim.record import run_dir
 from sim.record.candump import read_log
 
@@ -15,7 +15,7 @@ from sim.record.candump import read_log
 @pytest.fixture(scope="module")
 def found(flown):
     _, samples, table = flown()
-    return phasing(samples, table, Surroundings())
+    return phasing(samples, table, PhasingPremises())
 
 
 @pytest.mark.long
@@ -61,7 +61,7 @@ def test_the_wiring_of_the_magnetometer_changes_nothing_but_the_channels(flown, 
 
 def test_in_the_dark_the_wiring_of_the_magnetometer_is_not_told_and_no_verdict_is_wrong(flown, wired):
     _, samples, table = flown()
-    dark = phasing(replace(samples, sun=np.full_like(samples.sun, np.nan)), table, Surroundings())
+    dark = phasing(replace(samples, sun=np.full_like(samples.sun, np.nan)), table, PhasingPremises())
     assert dark.wiring is None
     assert wired in dark.pairs
     assert any("Sun" in reason for reason in dark.missing)
@@ -74,7 +74,7 @@ def test_a_sun_sensor_that_lies_is_told_as_a_thing_that_no_wiring_explains(flown
     draw = np.random.default_rng(1)
     sun = draw.normal(size=samples.sun.shape)
     sun /= np.linalg.norm(sun, axis=1)[:, None]
-    lost = phasing(replace(samples, sun=sun), table, Surroundings())
+    lost = phasing(replace(samples, sun=sun), table, PhasingPremises())
     assert lost.wiring is None
     assert any("no wiring explains field and Sun" in reason for reason in lost.missing)
 
@@ -82,7 +82,7 @@ def test_a_sun_sensor_that_lies_is_told_as_a_thing_that_no_wiring_explains(flown
 def test_at_rest_the_coils_field_tells_the_product_alone(flown, wired):
     _, samples, table = flown()
     own = np.array([[1500.0, 700.0, -200.0], [-900.0, 2100.0, 400.0], [300.0, -100.0, 1800.0]])
-    at_rest = phasing(samples, table, Surroundings(own, in_orbit=False))
+    at_rest = phasing(samples, table, PhasingPremises(own, in_orbit=False))
     assert wired in at_rest.pairs
     assert (tuple(-x for x in wired[0]), tuple(-x for x in wired[1])) in at_rest.pairs
     listed = words.lines(at_rest, table)
@@ -94,7 +94,7 @@ def test_a_known_field_without_a_sample_of_it_is_missing_evidence_and_no_contrad
     """As in a log in which a coil is on all the time."""
     _, samples, table = flown()
     always = replace(samples, level=np.where(samples.level == 0, 1, samples.level))
-    bench = phasing(always, table, Surroundings(field_around_nt=np.array([20e3, -15e3, 35e3])))
+    bench = phasing(always, table, PhasingPremises(field_around_nt=np.array([20e3, -15e3, 35e3])))
     assert wired in bench.pairs
     assert any("the field around tells nothing" in reason for reason in bench.missing)
 
