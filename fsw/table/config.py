@@ -76,7 +76,7 @@ def flight_config(table: FlightTable, source: str = "flight table") -> FlightCon
 
 
 def onboard_ephemeris(table: FlightTable) -> EphemerisModel:
-    """The onboard model of orbit, field and Sun alone; a law of one's own is not executed for it.
+    """The onboard model of orbit, field and Sun alone; a user law is not executed for it.
 
     Raises:
         TableError: the orbit has no position at the epoch, or the field does not hold there.

@@ -1,4 +1,4 @@
-"""A law of one's own that a program gives as an object: its name, its source's digest, where it is known.
+"""A user law that a program gives as an object: its name, its source's digest, where it is known.
 
 A table names it ``object MODULE:NAME``. The object itself is known in the block that gives it alone, so that
 nothing but the program that has it flies it.

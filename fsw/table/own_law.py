@@ -1,4 +1,4 @@
-"""A law of one's own as the onboard table names it: its digest, its gains, and a guard around each call."""
+"""A user law as the onboard table names it: its digest, its gains, and a guard around each call."""
 
 import signal
 from dataclasses import dataclass, replace
@@ -40,13 +40,13 @@ ONLY_ITS_OWNER = "only whoever has it can replay the run, by torquer.load(RUN, l
 
 
 class LawError(TableError):
-    """A law of one's own has failed in flight; the message is a sentence that names law, tick and fault."""
+    """A user law has failed in flight; the message is a sentence that names law, tick and fault."""
 
     exit_code = 1
 
 
 def named(values: Nested, folder: Path) -> Nested:
-    """The values of a table in which a law of one's own has an absolute path and the digest of its source.
+    """The values of a table in which a user law has an absolute path and the digest of its source.
 
     Nothing is executed. A law that has a digest already stays as it is: it may be that of a run, whose source
     need not be here.
@@ -77,9 +77,9 @@ def named(values: Nested, folder: Path) -> Nested:
 def withheld(control: ControlTable) -> str:
     """Why the source of the table's own law is not executed, as a sentence."""
     if own_code.given_as(control.law) is not None:
-        return f"the run flew a law of its own ({flown(control)}): {ONLY_ITS_OWNER}"
+        return f"the run flew a user law ({flown(control)}): {ONLY_ITS_OWNER}"
     return (
-        f"the run flew a law of its own ({flown(control)}), which is executed only where it is named again: "
+        f"the run flew a user law ({flown(control)}), which is executed only where it is named again: "
         f"--law {quote(control.law)}"
     )
 
@@ -166,7 +166,7 @@ def _file_of(form: Law, reference: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class GuardedLaw:
-    """A law of one's own: of its answers only a complete ``Demand`` of finite numbers is passed on.
+    """A user law: of its answers only a complete ``Demand`` of finite numbers is passed on.
 
     Attributes:
         law: the function.

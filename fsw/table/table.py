@@ -225,7 +225,7 @@ class FlightTable(Section):
 
     @property
     def crc(self) -> int:
-        """CRC-32 of the table in canonical JSON; of a law of one's own the digest counts, not the path.
+        """CRC-32 of the table in canonical JSON; of a user law the digest counts, not the path.
 
         A key that earlier tables do not have does not count where it is left out, nor a step that is none,
         nor the algebra that flies unless another is named, nor body axes that are those of the laws.
@@ -290,7 +290,7 @@ def flight_table(values: Nested, source: str) -> FlightTable:
 def lay_over(base: Nested, over: Nested) -> Nested:
     """``over`` laid over ``base`` section by section.
 
-    An orbit of the other kind replaces the one below; so does a law, with all that belongs to one's own law.
+    An orbit of the other kind replaces the one below; so does a law, with all that belongs to a user law.
     """
     below, above = base.get("orbit"), over.get("orbit")
     if isinstance(below, dict) and isinstance(above, dict):

@@ -40,7 +40,7 @@ BOARDS = {"coil": "COIL", "magnetometer": "MAG", "sun": "SUN", "cells": "SUN"}
 SENSORS = ("magnetometer", "sun", "cells")
 NUMBERS, PAGE = "hil.json", "hil.html"
 SOFTWARE = "flight-software.log"
-"""In the run directory: what the command of a flight software of one's own printed."""
+"""In the run directory: what the command of a user's flight software printed."""
 BOOT_S = 30.0
 ASK_AGAIN_S = 0.5
 
@@ -61,7 +61,7 @@ class HilSettings:
         warm_s: from when on memory is judged.
         seed: of the plant.
         out: run directory to be written; None: no log is written.
-        software: the command of a flight software of one's own, which a bench does not disarm; None: this
+        software: the command of a user's flight software, which a bench does not disarm; None: this
             project's.
     """
 

@@ -25,7 +25,7 @@ HUB_S = 30.0
 class BenchProcess:
     """One process, and the file that its errors go to.
 
-    ``may_end``: the end of the flight is near, which a flight software of one's own ends with.
+    ``may_end``: the end of the flight is near, which a user's flight software ends with.
     """
 
     name: str

@@ -130,7 +130,7 @@ class PlantTicks:
     Args:
         config: the plant.
         lines: by name of a sensor, what writes lines to it; one without is real, and so is what it sees.
-        own: effects of one's own; of those on sensors none, for the sensors are boards.
+        own: user effects; of those on sensors none, for the sensors are boards.
     """
 
     def __init__(

@@ -73,7 +73,7 @@ def picture(path: Path, title: str, results: Sequence[Result], by: Controlled) -
 
 
 def laws_of(flights: Sequence[Result]) -> list[str]:
-    """The laws that were flown, in the order of their table; those of one's own are last."""
+    """The laws that were flown, in the order of their table; user laws are last."""
     flown = {flight.score.law for flight in flights}
     return [*(law for law in LAWS if law in flown), *sorted(flown - LAWS.keys())]
 

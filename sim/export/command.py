@@ -198,7 +198,7 @@ def export(
         name: of the format; None: by the suffix of ``out``.
         out: the file.
         force: replace one that is there.
-        law: the law of its own that the run flew, named again: the histories need it.
+        law: the user law that the run flew, named again: the histories need it.
 
     Raises:
         HarnessError: there is no such run or format, or the file cannot be written.

@@ -40,7 +40,7 @@ def open_source(run_or_log: Path, law: str | None = None) -> Source:
 
     Args:
         run_or_log: a run directory, or a log.
-        law: the law of its own that the run flew, named again; without it none is executed.
+        law: the user law that the run flew, named again; without it none is executed.
 
     Raises:
         HarnessError: neither exists, or the run's own files cannot be read.

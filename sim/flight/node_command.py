@@ -1,4 +1,4 @@
-"""A node of one's own, flight software or board: a command that is started with the address of the bus."""
+"""A user's node, flight software or board: a command that is started with the address of the bus."""
 
 import os
 import re

@@ -1,6 +1,6 @@
-"""A coil driver board of one's own: checked against docs/icd.md, then flown with, in real time.
+"""A user's coil driver board: checked against docs/icd.md, then flown with, in real time.
 
-Its flight software is this project's, or one's own as well.
+Its flight software is this project's, or a user's as well.
 """
 
 import json

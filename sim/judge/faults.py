@@ -1,4 +1,4 @@
-"""The rows of the fault table that a flight software of one's own can fly, and why it cannot fly the others.
+"""The rows of the fault table that a user's flight software can fly, and why it cannot fly the others.
 
 A row is flown as a scenario with the faults of the row: those that the plant's process injects, on the bus to
 the flight software, in sensors, coils and boards. What the rig alone can do, or what reaches into the flight
@@ -49,7 +49,7 @@ def fault_cases(scenario: Scenario, rows: Sequence[FaultRow], phases: int, seed:
 
 
 def not_applicable(row: FaultRow, scenario: Scenario) -> str:
-    """Why a row cannot be flown by a flight software of one's own, a clause; empty where it can."""
+    """Why a row cannot be flown by a user's flight software, a clause; empty where it can."""
     kinds = [fault.kind for fault in row.faults]
     elsewhere = row.when is When.ECLIPSE and scenario.name != SCENARIO
     reasons = {

@@ -1,4 +1,4 @@
-"""One flight against a flight software of one's own: flown, concluded and judged."""
+"""One flight against a user's flight software: flown, concluded and judged."""
 
 import socket
 from collections.abc import Iterator

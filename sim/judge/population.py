@@ -1,4 +1,4 @@
-"""A campaign flown against a flight software of one's own: its satellites, requirements, probability."""
+"""A campaign flown against a user's flight software: its satellites, requirements, probability."""
 
 from collections.abc import Iterator, Sequence
 

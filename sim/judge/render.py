@@ -1,4 +1,4 @@
-"""The verdicts of a flight against a flight software of one's own: as text, page, JSON and JUnit."""
+"""The verdicts of a flight against a user's flight software: as text, page, JSON and JUnit."""
 
 from collections.abc import Iterator, Sequence
 

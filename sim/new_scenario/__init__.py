@@ -1,1 +1,1 @@
-"""A scenario for a satellite of one's own, written from a few figures, which flies at once."""
+"""A scenario for a user's satellite, written from a few figures, which flies at once."""

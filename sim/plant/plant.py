@@ -53,7 +53,7 @@ class Plant:
     Args:
         config: the plant.
         actuator: drives the coils in place of the plant's own board.
-        own: effects of one's own on body and sensors.
+        own: user effects on body and sensors.
 
     Raises:
         ValueError: the orbit elements are malformed, or orbit or field do not exist at the epoch.

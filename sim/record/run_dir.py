@@ -142,7 +142,7 @@ def read_run(path: Path) -> RunRecord:
 
 
 def read_scenario(path: Path) -> Scenario:
-    """The resolved scenario of a run; a law of its own is withheld until it is named again.
+    """The resolved scenario of a run; a user law is withheld until it is named again.
 
     Raises:
         HarnessError: missing or no longer valid.

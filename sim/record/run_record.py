@@ -74,7 +74,7 @@ class LawRecord(TypedDict):
 
 @with_config(_OPEN)
 class SoftwareRecord(TypedDict):
-    """A flight software of one's own: what was started, and what it answers by its profile.
+    """A user's flight software: what was started, and what it answers by its profile.
 
     ``command``: None where it ran already.
     """

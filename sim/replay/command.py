@@ -39,8 +39,8 @@ LONGEST_PAUSE_S = 86_400.0
 class LoggedRun(NamedTuple):
     """The run that a log is of: its scenario, its run.json where there is one, and the check of its files.
 
-    ``law`` is the law of one's own that was named again; without it none is executed, and without ``effects``
-    no effect of one's own.
+    ``law`` is the user law that was named again; without it none is executed, and without ``effects``
+    no user effect.
     """
 
     scenario: Scenario
@@ -182,7 +182,7 @@ def through_plant(log: Path, run: LoggedRun) -> ReplayReport:
         raise HarnessError(f"{log}: --plant needs the seed: no {run_dir.RUN} beside it")
     if run.scenario.effect and not run.effects:
         named = ", ".join(display(effect.use) for effect in run.scenario.effect)
-        raise HarnessError(f"{log}: the run has effects of its own ({named}): --effects executes them")
+        raise HarnessError(f"{log}: the run has user effects ({named}): --effects executes them")
     effects = effects_of(run.scenario)
     plant = make_plant(plant_config(run.scenario, run.record["seed"]), run.scenario.fault, effects)
     commands_of = uplink(run.scenario.telecommand, run.scenario.time.tick_hz)

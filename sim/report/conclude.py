@@ -42,17 +42,17 @@ def conclude(
     """Write summary.json and report.html of a run, complete or not; bind a whole one and mark it complete.
 
     The log is replayed through the flight software: that gives its estimates at full precision, and checks
-    each time that the replay is exact. Of a flight software of one's own the estimates are those on the bus.
+    each time that the replay is exact. Of a user's flight software the estimates are those on the bus.
 
     Args:
         path: the run directory.
         watch: called with each tick that was replayed.
-        law: the law of one's own that the run flew, named again; None: none is executed.
+        law: the user law that the run flew, named again; None: none is executed.
         draw: called with what the charts show, once the report is written.
 
     Raises:
         HarnessError: the directory is not a run or cannot be written, or one of its files is damaged; or it
-            flew a law of one's own which is not named, or whose source has changed.
+            flew a user law which is not named, or whose source has changed.
         LawError: that law fails.
     """
     scenario, _ = with_law_named(run_dir.read_scenario(path), law)

@@ -58,7 +58,7 @@ class _Flight:
 
 @click.command()
 @click.argument("path", metavar="RUN", type=click.Path(path_type=Path))
-@click.option("--law", help="The law of its own that the run flies.")
+@click.option("--law", help="The user law that the run flies.")
 def main(path: Path, law: str | None) -> None:
     """Replay the run while it is being flown, and conclude it."""
     flight = _Flight()

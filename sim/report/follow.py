@@ -30,7 +30,7 @@ def follow(path: Path, ticks: int, law: str | None = None) -> Iterator[Conclude]
     Args:
         path: the run directory.
         ticks: length of the flight.
-        law: the law of one's own that it flies; None: it flies one of the table.
+        law: the user law that it flies; None: it flies one of the table.
 
     Yields:
         What concludes the run; it raises ``HarnessError`` as ``conclude`` does.

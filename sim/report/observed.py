@@ -1,4 +1,4 @@
-"""The estimates that a flight software of one's own gives on the bus, by tick, from the log of its flight.
+"""The estimates that a user's flight software gives on the bus, by tick, from the log of its flight.
 
 What it does not send is not there: attitude and rate NaN, mode ``NO_MODE``.
 """

@@ -122,7 +122,7 @@ def _disturbance(scenario: Scenario) -> DisturbanceConfig:
 
 
 def effects_of(scenario: Scenario) -> OwnEffects:
-    """The effects of one's own of a scenario; their sources are executed.
+    """The user effects of a scenario; their sources are executed.
 
     Raises:
         TableError: as for ``own_effects``.

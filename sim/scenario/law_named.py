@@ -1,4 +1,4 @@
-"""A law of one's own in a run that was flown before: its source is executed only where it is named again."""
+"""A user law in a run that was flown before: its source is executed only where it is named again."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ def with_law_named(scenario: Scenario, law: str | None, of_run: bool = True) -> 
         The scenario, and a sentence if the source is not that of the run; otherwise empty.
 
     Raises:
-        HarnessError: the run flew a law of its own that is not named, or not the one that is.
+        HarnessError: the run flew a user law that is not named, or not the one that is.
         TableError: the source cannot be read.
     """
     control = flight_table(scenario).control

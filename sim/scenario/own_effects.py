@@ -1,4 +1,4 @@
-"""Effects of one's own in a scenario: ``[[effect]]`` names their source and gives their parameters."""
+"""User effects in a scenario: ``[[effect]]`` names their source and gives their parameters."""
 
 import re
 from collections.abc import Sequence

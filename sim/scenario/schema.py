@@ -146,7 +146,7 @@ class Scenario(Section):
 
     @property
     def own_law(self) -> str | None:
-        """The law of one's own that the onboard table names; None: it is one of the table of laws."""
+        """The user law that the onboard table names; None: it is one of the table of laws."""
         control = flight_table(self).control
         return control.law if control.own else None
 
@@ -212,7 +212,7 @@ _latest: tuple[Scenario, FlightTable] | None = None
 def flight_table(scenario: Scenario, source: str = "scenario") -> FlightTable:
     """The onboard table that this scenario flies with; neither of the two ever changes.
 
-    That of the latest scenario is kept: a flight asks for it again and again. One with a law of one's own is
+    That of the latest scenario is kept: a flight asks for it again and again. One with a user law is
     not, as the law's file may change.
 
     Raises:

@@ -154,7 +154,7 @@ def test_no_class_name_stands_for_two_things():
         for node in ast.walk(ast.parse(path.read_text()))
         if isinstance(node, ast.ClassDef)
     ]
-    # what a law of one's own gives has the names of what the core makes of it
+    # what a user law gives has the names of what the core makes of it
     classes = [(name, place) for name, place in classes if not place.startswith("fsw/own_law.py:")]
     places = {name: [place for other, place in classes if other == name] for name, _ in classes}
     assert {name: where for name, where in places.items() if len(where) > 1} == {}

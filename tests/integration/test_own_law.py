@@ -1,4 +1,4 @@
-"""A law of one's own by the commands: as processes, failing, in campaigns and comparisons, and installed."""
+"""A user law by the commands: as processes, failing, in campaigns and comparisons, and installed."""
 
 import json
 import shutil

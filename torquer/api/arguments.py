@@ -18,7 +18,7 @@ Settings = Mapping[str, object]
 def chosen_scenario(
     scenario: ScenarioLike, settings: Settings | None, law: str | PathLike[str] | None = None
 ) -> Scenario:
-    """The scenario with a law of one's own and settings laid over it.
+    """The scenario with a user law and settings laid over it.
 
     Raises:
         TableError: there is none, or a key is unknown or out of range.
@@ -35,7 +35,7 @@ def warn_of(scenario: Scenario, ticks: int | None = None) -> None:
 
 
 def laid_over(settings: Settings | None, law: str | PathLike[str] | None = None) -> Nested:
-    """Settings as sections, over a law of one's own.
+    """Settings as sections, over a user law.
 
     Raises:
         TableError: they are no settings, or the law is no path.

@@ -110,7 +110,7 @@ def compare(
         orbits: of each flight; None: as the scenario says.
         seed: of all random streams.
         set: values laid over the scenario by key.
-        law: a law of one's own that is flown too: ``FILE.py:NAME``, an installed one by its name, or the
+        law: a user law that is flown too: ``FILE.py:NAME``, an installed one by its name, or the
             law itself, a function or a ``ControlLaw``, which flies in this process, others beside it.
         workers: processes; None: one a core.
         out: folder of the files; None: ``compare/<scenario>-<UTC time>``.

@@ -57,7 +57,7 @@ def export(
         out: the file.
         format: ``mcap``, ``blf``, ``asc``, ``csv``, ``parquet``, ``netcdf``; None: by the suffix of ``out``.
         force: replace the file if it is there.
-        law: the law of its own that the run flew, named or given again: the histories need it.
+        law: the user law that the run flew, named or given again: the histories need it.
         progress: show progress on stderr.
 
     Raises:

@@ -85,7 +85,7 @@ def fly(
         bus: ``virtual``: in this process; ``loop``, ``auto``, ``socketcan:NAME``, ``slcan:PORT``: as two.
         pace: ``lockstep``, or ``realtime[:FACTOR]``.
         set: values laid over the scenario by key: ``{"time.tick_hz": 10}`` or ``{"time": {"tick_hz": 10}}``.
-        law: ``FILE.py:NAME``, a law of one's own, or an installed one by its name; or the law itself, a
+        law: ``FILE.py:NAME``, a user law, or an installed one by its name; or the law itself, a
             function or a ``ControlLaw``, which flies on the virtual bus alone; None: the scenario's.
         expect: requirements beside those of the scenario, such as ``ape<2``, judged at the end of the flight.
         out: directory of the run; None: a new one, ``runs/<scenario>-<UTC time>``.
@@ -174,7 +174,7 @@ def report(
 
     Args:
         run: its directory.
-        law: the law of its own that the run flew, named or given again; without it none is executed.
+        law: the user law that the run flew, named or given again; without it none is executed.
         sign: private Ed25519 key in PEM with which the run is signed.
         verify: public Ed25519 key in PEM; the run must be signed by its private half.
         figures: ``pdf`` or ``svg``: draw the figures of ``run.plot`` into its folder ``figures`` too.

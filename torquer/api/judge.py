@@ -1,4 +1,4 @@
-"""``torquer.judge``: a flight software or a coil board of one's own, flown and judged."""
+"""``torquer.judge``: a flight software or a user's coil board, flown and judged."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The argument ``law``: the name of a law of one's own, or the law itself."""
+"""The argument ``law``: the name of a user law, or the law itself."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

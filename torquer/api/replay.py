@@ -36,8 +36,8 @@ def replay(
         set: values laid over the scenario by key.
         plant: feed the recorded commands to the plant instead, and compare its frames.
         onto: play the log onto this bus instead, at its own pace.
-        law: the law of its own that the run flew, named or given again; without it none is executed.
-        effects: execute the effects of its own that the run names; ``plant`` needs them.
+        law: the user law that the run flew, named or given again; without it none is executed.
+        effects: execute the user effects that the run names; ``plant`` needs them.
         channel: the one to read, of a log that has several.
         verify: public Ed25519 key in PEM; the run must be signed by its private half.
         progress: show progress on stderr.

@@ -42,7 +42,7 @@ class Run(PrintedResult):
 
     Attributes:
         path: the directory.
-        law: the law of its own that it flew, or its name, which may be executed again; None: none.
+        law: the user law that it flew, or its name, which may be executed again; None: none.
         ended: why the flight ended before its time, as far as ``fly`` knows; empty otherwise.
         mismatched: whether ``torquer.report`` found a file that had been changed since it was written.
         notes: what it found, a line each; of ``torquer.fly``, who can replay the run if not everybody.
@@ -189,7 +189,7 @@ def load(path: str | PathLike[str], *, law: LawLike | None = None) -> Run:
 
     Args:
         path: the directory.
-        law: the law of its own that the run flew, named or given again; without it none is executed.
+        law: the user law that the run flew, named or given again; without it none is executed.
 
     Raises:
         InputError: the directory holds no run.

@@ -1,4 +1,4 @@
-"""``torquer.size`` and ``torquer.new``: what coils can do, and a scenario for a satellite of one's own."""
+"""``torquer.size`` and ``torquer.new``: what coils can do, and a scenario for a user's satellite."""
 
 from dataclasses import dataclass
 from os import PathLike, fspath
@@ -135,7 +135,7 @@ def new(
     sun_deg: float = 0.5,
     bounds: str = "exact",
 ) -> NewScenario:
-    """Write a commented scenario for a satellite of one's own, which flies at once, as ``torquer new`` does.
+    """Write a commented scenario for a user's satellite, which flies at once, as ``torquer new`` does.
 
     Args:
         name: of the scenario.

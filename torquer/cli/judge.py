@@ -1,4 +1,4 @@
-"""``torquer judge``: a flight software of one's own, judged."""
+"""``torquer judge``: a user's flight software, judged."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any

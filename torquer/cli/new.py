@@ -1,4 +1,4 @@
-"""``torquer new``: a scenario for a satellite of one's own."""
+"""``torquer new``: a scenario for a user's satellite."""
 
 import sys
 from pathlib import Path

@@ -49,7 +49,7 @@ SETTINGS = click.option(
     help="Override a key of the scenario.",
 )
 LAW_AGAIN = click.option(
-    "--law", metavar="FILE.py:NAME", help="The law of its own that the run flew: only then it is executed."
+    "--law", metavar="FILE.py:NAME", help="The user law that the run flew; without it none is executed."
 )
 COMPRESS = click.option(
     "--compress", is_flag=True, help="Write the log as bus.log.gz, a fourth of the size of bus.log."
@@ -198,7 +198,7 @@ def _verdict(command: Callable[..., int | None], *args: Any, **kwargs: Any) -> t
 
 
 def law_and_settings(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The options of a command that flies a scenario: ``--set``, and ``--law`` for a law of one's own."""
+    """The options of a command that flies a scenario: ``--set``, and ``--law`` for a user law."""
 
     @SETTINGS
     @click.option(

@@ -29,7 +29,7 @@ EXAMPLES = examples(
 @CHANNEL
 @VERIFY
 @LAW_AGAIN
-@click.option("--effects", is_flag=True, help="With --plant: execute the effects of its own of the run.")
+@click.option("--effects", is_flag=True, help="With --plant: execute the user effects of the run.")
 @SETTINGS
 @JSON
 @sentences

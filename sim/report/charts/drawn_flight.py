@@ -166,7 +166,7 @@ def flight_as_estimated(path: Path, scenario: Scenario, watch: Watch = lambda ti
 
     Args:
         path: the run directory.
-        scenario: of the run, with a law of its own that may be executed.
+        scenario: of the run, with a user law that may be executed.
         watch: called with each tick that was replayed.
 
     Raises:

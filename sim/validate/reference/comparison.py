@@ -21,7 +21,7 @@ class ReferenceComparison:
         deviation: one a row, (n,); of none, the data to judge by are missing.
         tolerance: for all of these rows or one a row.
         threshold: whose it is.
-        wide: why it is far from what is found, if it is one's own.
+        wide: why it is far from what is found, if it is known.
         rows: of the table, from 0, (n,); None: all.
     """
 

@@ -1,4 +1,4 @@
-"""Code of one's own: found without being executed, executed only as it was named, each fault one sentence."""
+"""User code: found without being executed, executed only as it was named, each fault one sentence."""
 
 import hashlib
 import sys

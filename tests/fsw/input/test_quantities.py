@@ -1,4 +1,4 @@
-"""Parameters of code of one's own: a frozen dataclass of numbers, each within its range."""
+"""Parameters of user code: a frozen dataclass of numbers, each within its range."""
 
 from dataclasses import dataclass, field
 from math import inf, nan

@@ -1,4 +1,4 @@
-"""A law of one's own in the onboard table: named, loaded with its gains, and guarded in flight."""
+"""A user law in the onboard table: named, loaded with its gains, and guarded in flight."""
 
 from contextlib import suppress
 from dataclasses import replace

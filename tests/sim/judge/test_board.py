@@ -1,4 +1,4 @@
-"""A coil board of one's own: its checks and flight are verdicts, a busy computer is not held against it."""
+"""A user's coil board: its checks and flight are verdicts, a busy computer is not held against it."""
 
 import json
 import sys

@@ -1,4 +1,4 @@
-"""Effects of one's own: what each sees of a tick, what it does to body and sensors, what it may not give."""
+"""User effects: what each sees of a tick, what it does to body and sensors, what it may not give."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Effects of one's own in a scenario: named with their digest, loaded, replayed on demand."""
+"""User effects in a scenario: named with their digest, loaded, replayed on demand."""
 
 from hashlib import sha256
 
@@ -139,7 +139,7 @@ def test_it_flies_and_its_run_is_replayed_through_the_plant_only_on_demand(folde
     assert set(read_truth(run.path / "truth.h5")["torque_body_nm/own_0_gas_leak"][:, 1]) == {2e-6}
     (folder / "leak.py.trace").unlink()
     assert torquer.replay(run.path).ok
-    with pytest.raises(torquer.InputError, match=r"effects of its own \(GasLeak of leak\.py\): --effects"):
+    with pytest.raises(torquer.InputError, match=r"user effects \(GasLeak of leak\.py\): --effects"):
         torquer.replay(run.path, plant=True)
     assert not (folder / "leak.py.trace").exists()
     assert torquer.replay(run.path, plant=True, effects=True).ok

@@ -1,4 +1,4 @@
-"""The bench for schedulers of one's own: good ones pass, and each planted fault is found and named."""
+"""The bench for a user's schedulers: good ones pass, and each planted fault is found and named."""
 
 import os
 import subprocess
