@@ -150,9 +150,9 @@ def _copy(value: Any) -> Any:  # noqa: ANN401  (any part of a state)
     plan = _plan(kind)
     if not plan.names:
         return value
-    parts, anew = list(plan.parts(value)), plan.in_place
+    parts, changed = list(plan.parts(value)), plan.in_place
     for index in plan.nested:
         part = parts[index]
         parts[index] = part.copy() if plan.in_place and type(part) is np.ndarray else _copy(part)
-        anew = anew or parts[index] is not part
-    return kind(**dict(zip(plan.names, parts, strict=True))) if anew else value
+        changed = changed or parts[index] is not part
+    return kind(**dict(zip(plan.names, parts, strict=True))) if changed else value
