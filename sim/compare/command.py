@@ -157,14 +157,16 @@ def _failures(scores: Sequence[Score]) -> list[str]:
 
 
 def unsettled_gains(scores: Sequence[Score], kept: KeptGains | None, orbits: float) -> list[str]:
-    """A sentence for each law that settled when its gains were found, and does not here in as many orbits."""
-    if kept is None or orbits < kept.orbits:
-        return []
+    """A sentence for each law that settled when its gains were found, and does not here, though it has time.
+
+    That is as long as it took then, and the orbit for which it has to stay.
+    """
     sentences = []
     for score in scores:
-        row = kept.rows.get(score.driver.value, {}).get(score.law)
-        flown = score.tuned and not score.failure
-        if flown and row is not None and "settle_orbits" in row and score.settle_orbits is None:
+        row = None if kept is None else kept.rows.get(score.driver.value, {}).get(score.law)
+        if not score.tuned or score.failure or row is None or "settle_orbits" not in row:
+            continue
+        if score.settle_orbits is None and orbits >= row["settle_orbits"] + 1.0:
             sentences.append(
                 f"{score.law}, {score.driver}: it settled after {row['settle_orbits']:.2f} orbits when its "
                 "gains were found, and does not here"

@@ -74,7 +74,7 @@ def kept(**row):
 
 def test_gains_that_settled_when_they_were_found_and_do_not_here_are_named(tmp_path):
     (one,) = [result("pd", 20.0, tuned=True)]
-    (sentence,) = unsettled_gains([one.score], kept(settle_orbits=1.25), 10.0)
+    (sentence,) = unsettled_gains([one.score], kept(settle_orbits=1.25), 2.3)
     assert sentence == (
         "pd, pulsed: it settled after 1.25 orbits when its gains were found, and does not here"
     )
@@ -91,7 +91,7 @@ def test_gains_that_settled_when_they_were_found_and_do_not_here_are_named(tmp_p
         ({"tuned": True}, {}, 10.0),
         ({"tuned": False}, {"settle_orbits": 1.25}, 10.0),
         ({"tuned": True, "failure": "no gains"}, {"settle_orbits": 1.25}, 10.0),
-        ({"tuned": True}, {"settle_orbits": 1.25}, 3.9),
+        ({"tuned": True}, {"settle_orbits": 1.25}, 2.2),
     ],
     ids=["settled", "never-settled", "scenario", "not-flown", "shorter"],
 )
