@@ -58,9 +58,9 @@ def design_laws(
     chosen = _chosen(scenario, laws)
     check_suited(chosen, name, over)
     path = path or Path(f"{scenario.name}-gains.toml")
-    none = KeptGains(body_checksum(scenario), budget, orbits)
-    kept = read_gains(path) or none
-    if replace(kept, rows={}) != none:
+    empty = KeptGains(body_checksum(scenario), budget, orbits)
+    kept = read_gains(path) or empty
+    if replace(kept, rows={}) != empty:
         raise HarnessError(
             f"{path}: holds gains of another body, start or coils, or by {kept.flights} flights of "
             f"{kept.orbits:g} orbits and seed {kept.seed} instead of {budget} of {orbits:g} and {SEED}: "
