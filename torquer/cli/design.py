@@ -26,7 +26,10 @@ EXAMPLES = examples(
     help="Search the gains of these laws by flights.",
 )
 @click.option(
-    "--keep", type=click.Path(path_type=Path), help="With --laws: their file. Default: SCENARIO-gains.toml."
+    "--keep",
+    type=click.Path(path_type=Path),
+    help="With --laws: their file; gains that it has stay if they still fly as well. "
+    "Default: SCENARIO-gains.toml.",
 )
 @click.option("--flights", type=WholeNumber(min=4), help="With --laws: flights for each. Default: 24.")
 @click.option(
