@@ -71,13 +71,13 @@ def table(found: list[tuple[Case, tuple[str, ...]]]) -> Iterator[str]:
     yield "| planted | flights | named | a wrong one | which |"
     yield "|---|---|---|---|---|"
     for cause, planted in PLANTED.items():
-        named = [causes for case, causes in found if case.cause == cause]
+        reasons = [causes for case, causes in found if case.cause == cause]
         names = {cause, planted.or_else} - {""}
-        right = sum(bool(names & set(causes)) if cause else not causes for causes in named)
-        wrong = [sorted(set(causes) - names - planted.also) for causes in named]
+        right = sum(bool(names & set(causes)) if cause else not causes for causes in reasons)
+        wrong = [sorted(set(causes) - names - planted.also) for causes in reasons]
         counted = Counter(chain.from_iterable(wrong)).most_common()
         which = ", ".join(f"{name} {count}" for name, count in counted)
-        yield f"| {cause or 'nothing'} | {len(named)} | {right} | {sum(map(bool, wrong))} | {which} |"
+        yield f"| {cause or 'nothing'} | {len(reasons)} | {right} | {sum(map(bool, wrong))} | {which} |"
 
 
 def main() -> None:

@@ -178,13 +178,13 @@ def judge(
     refuse_while_loading("torquer.judge")
     file = optional_path(junit, "junit")
     source, over, folder = scenario_source(scenario), laid_over(set), optional_path(out, "out")
-    tell_ = tell or (lambda one: None)
+    report = tell or (lambda one: None)
     found: OneFlight | JudgedSeries | JudgedBoard
     with shown(progress):
         if board is not None:
-            found = _board(board, flight_software, bus, source, over, options, folder, file, tell_)
+            found = _board(board, flight_software, bus, source, over, options, folder, file, report)
         else:
-            found = _software(flight_software, bus, source, over, options, folder, file, tell_)
+            found = _software(flight_software, bus, source, over, options, folder, file, report)
         found.write_junit(file)
     return JudgedSoftware(found)
 
