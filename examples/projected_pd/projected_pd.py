@@ -37,7 +37,7 @@ def projected_dipole(b_body_t: Vec3, wanted_nm: Vec3) -> Vec3:
 
 def point(inputs: LawInput, memory: Memory, setpoint: Setpoint, config: ControlConfig) -> Demand:
     """T = -d Omega - s 2 qv, qv the vector part of the attitude error with a scalar part that is positive."""
-    if not inputs.attitude.valid:
+    if not inputs.attitude.usable:
         return Demand()
     gains: Gains = config.gains[setpoint.law]
     q0, q1, q2, q3 = inputs.attitude.q_body_from_orbit

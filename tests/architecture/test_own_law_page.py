@@ -9,7 +9,8 @@ import pytest
 
 import torquer
 
-PAGE = (Path(__file__).parents[2] / "docs" / "own-law.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "own-law.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture
@@ -20,6 +21,14 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("sim.report.conclude.write_report", lambda path, *rest: path.write_text(""))
     return tmp_path
+
+
+@pytest.mark.parametrize(
+    "path", [*ROOT.glob("docs/*.md"), *ROOT.glob("examples/*/*.py")], ids=lambda path: path.name
+)
+def test_laws_that_are_shown_control_by_an_attitude_that_is_usable(path):
+    """As those that ship: one that is not valid in a shadow is controlled by all the same."""
+    assert "inputs.attitude.valid" not in path.read_text(encoding="utf-8")
 
 
 @pytest.mark.long
