@@ -10,7 +10,13 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from fsw.input.schema import Nested, TableError
 from fsw.input.toml_text import parse_toml
-from fsw.table.ordinary import TORQUE_NM, ordinary_dipole_am2, ordinary_torque_nm, relative_volume
+from fsw.table.ordinary import (
+    TORQUE_NM,
+    ordinary_dipole_am2,
+    ordinary_shadow_impulse_nms,
+    ordinary_torque_nm,
+    relative_volume,
+)
 from sim.console import answer, say, warn
 from sim.errors import HarnessError, writing
 from sim.new_scenario.satellite import NewSatellite, gains_for
@@ -254,6 +260,7 @@ def _figures(satellite: NewSatellite) -> dict[str, Any]:
         "torque": two_digits(TORQUE_PART * TORQUE_NM * relative_volume(body.inertia_kgm2)),
         "dipole": two_digits(DIPOLE_PART * dipole_am2),
         "dipole_bound": two_digits(dipole_am2),
+        "shadow_impulse": two_digits(ordinary_shadow_impulse_nms(body.inertia_kgm2)),
         "k_w": gains.k_w,
         "k_a": gains.k_a,
         "exact": satellite.exact,

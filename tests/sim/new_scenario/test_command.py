@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import asdict
 from math import inf, nan
 
 import numpy as np
@@ -9,11 +10,12 @@ import pytest
 
 import torquer
 from fsw.input.toml_text import parse_toml
+from fsw.table.estimator import table_bounds
 from sim.console import Console, speaking
 from sim.errors import HarnessError
 from sim.new_scenario.command import check_new, figure_warnings, in_options, new, scenario_text
 from sim.new_scenario.satellite import NewSatellite
-from sim.scenario.schema import load, scenario_of
+from sim.scenario.schema import flight_table, load, scenario_of
 from sim.sizing.expectation import expect
 from sim.sizing.scenario_warnings import scenario_warnings
 
@@ -116,6 +118,16 @@ def test_what_was_given_stands_in_it():
     assert (sixu.orbit.altitude_km, sixu.orbit.inclination_deg) == (500.0, 51.6)
     assert sixu.coils.backoff == "per_coil"
     assert "inertia_percent" not in sixu.flight["uncertainty"]
+
+
+@pytest.mark.parametrize("cells", [False, True], ids=["sensor", "cells"])
+def test_an_exact_table_has_bounds_of_bias_dipole_and_torque_alone(cells):
+    exact = written(NewSatellite("my-3u", None, 550.0, 97.6, 4.0, (0.1, 0.34, 0.1), cells=cells))
+    known = table_bounds(flight_table(exact))
+    of_pulses = {"pulse_am2"}  # by how much a pulse is, not by how far it is off
+    of_cells = {"cell_gain_part", "cell_light", "cell_excess", "earth_light"} if cells else set()
+    wide = {name for name, value in asdict(known).items() if value} - of_pulses - of_cells
+    assert wide == {"mag_bias_t", "dipole_am2", "torque_nm", "torque_variation_nm"}
 
 
 def test_the_longest_edge_of_a_box_points_up():
