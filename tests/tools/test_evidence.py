@@ -1,5 +1,7 @@
 """``make evidence``: which stages run, what they end with, and what is said of the pages."""
 
+from pathlib import Path
+
 import evidence
 import pytest
 from evidence import STAGES, changes, main, rows_of, verdict
@@ -99,16 +101,20 @@ def test_a_verdict_is_a_last_cell_of_words(row, word):
 
 
 def test_gains_are_replaced_when_all_of_a_body_are_searched(tmp_path, monkeypatch):
-    (tmp_path / "a.toml").write_text("old")
-    (tmp_path / "b.toml").write_text("old")
+    """The search begins with those of the file, unless they are of another body: ``b`` has changed."""
+    for name in ("a", "b", "c"):
+        (tmp_path / f"{name}.toml").write_text("old")
     monkeypatch.setattr(evidence, "GAINS", tmp_path)
+    monkeypatch.setattr(evidence, "load", str)
+    monkeypatch.setattr(evidence, "shipped_gains", lambda scenario: None if scenario == "b" else scenario)
 
     def search(*words):
-        with open(words[-1], "w", encoding="utf-8") as file:
-            file.write(f"found for {words[3]}")
-        return 130 if words[3] == "b" else 0
+        name, file = words[3], Path(words[-1])
+        before = file.read_text() if file.exists() else "nothing"
+        file.write_text(f"found for {name} from {before}")
+        return 130 if name == "c" else 0
 
     monkeypatch.setattr(evidence, "call", search)
     assert evidence.search_gains() == 130
-    assert (tmp_path / "a.toml").read_text() == "found for a"
-    assert (tmp_path / "b.toml").read_text() == "old"
+    kept = [(tmp_path / f"{name}.toml").read_text() for name in ("a", "b", "c")]
+    assert kept == ["found for a from old", "found for b from nothing", "old"]

@@ -6,7 +6,7 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from fsw.input.schema import TableError
+from fsw.input.schema import TableError, merge
 from sim.campaign.flight import record_scenario
 from sim.design.from_scenario import body_of
 from sim.new_scenario.command import scenario_made, scenario_text
@@ -28,10 +28,22 @@ from sim.sizing.torques import day_of, disturbance_torque, orbit_nodes, surface_
 
 THREE_U = NewSatellite("three-u", None, 550.0, 97.6, 4.5, (0.1, 0.1, 0.34), continuous=True, dipole_am2=0.2)
 ONE_U = NewSatellite("one-u", None, 500.0, 97.4, 1.3, (0.1, 0.1, 0.1135))
+CHANGES = {
+    "magnetometer_orbit_nt": 250.0,
+    "magnetometer_shadow_nt": 400.0,
+    "storm_nt": 150.0,
+    "shadow_dipole_am2": 3e-4,
+    "remanence_percent": 0.3,
+    "albedo_percent": 60.0,
+    "shadow_impulse_nms": 2e-7,
+}
+"""Ordinary bounds, for ``ONE_U``, of what changes in orbit."""
 
 
 def made(satellite, settings=None):
-    return scenario_made(scenario_text(satellite, "mine.toml"), settings)
+    """The scenario of a new satellite, which changes in orbit."""
+    changing = {"flight": {"uncertainty": CHANGES}}
+    return scenario_made(scenario_text(satellite, "mine.toml"), merge(changing, settings or {}))
 
 
 def test_nothing_is_unknown_where_the_plant_tells_the_attitude():
