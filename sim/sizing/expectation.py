@@ -79,10 +79,10 @@ def knowledge_of(scenario: Scenario) -> Knowledge:
     """The knowledge of a scenario's satellite; nothing is unknown where the plant tells the attitude.
 
     The flight's own filter is carried along the orbit, in steps of ``KNOWN_STEP_S``, on samples that agree
-    with it: what comes of it is its covariance, by the noise of the sensors and all bounds of
-    ``[flight.uncertainty]``. In the light the Sun sensor decides; in the Earth's shadow the magnetometer
-    alone is left, and what the table grants to torque, dipole and bias. Small bodies in low orbits lose
-    degrees there.
+    with it; attitude and parameters stay as they are, as rounding would lead them astray. What comes of it
+    is its covariance, by the noise of the sensors and all bounds of ``[flight.uncertainty]``. In the light
+    the Sun sensor decides; in the Earth's shadow the magnetometer alone is left, and what the table grants to
+    torque, dipole and bias. Small bodies in low orbits lose degrees there.
 
     Flights of twelve cubesats, whose table was right but for bias, torque and residual dipole, had 0.2 to 0.8
     of that as the error; ``PART`` of it is expected.
@@ -112,12 +112,14 @@ def _variances(table: FlightTable, steps: int) -> list[list[float]]:
         omega_body_radps = rotate(nominal, (0.0, 0.0, reference.orbit_rate_radps))
         if estimate is None:
             estimate = mekf.start(q_body_from_eci, omega_body_radps, config)
+            parameters = estimate.parameters.copy()
         else:
             e1_eci = scale(1.0 / reference.radius_m, reference.r_eci_m)
             gravity_per_s2 = 3.0 * MU_M3PS2 / reference.radius_m**3
             mekf.predict(estimate, e1_eci, reference.b_eci_t, gravity_per_s2, ZERO, config)
             widen(estimate, reference, driven_am2, config, changes)
         estimate.q_body_from_eci, estimate.omega_body_radps = q_body_from_eci, omega_body_radps
+        estimate.parameters = parameters.copy()
         b_eci_t, sun_eci = reference.b_eci_t, reference.sun_eci
         b_body_t = rotate(q_body_from_eci, b_eci_t)
         if reference.lit:

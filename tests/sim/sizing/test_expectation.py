@@ -2,11 +2,13 @@
 
 from dataclasses import dataclass, replace
 from math import sqrt
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 
 from fsw.input.schema import TableError, merge
+from fsw.table.uncertainty import UncertaintyTable
 from sim.campaign.flight import record_scenario
 from sim.design.from_scenario import body_of
 from sim.new_scenario.command import scenario_made, scenario_text
@@ -15,7 +17,7 @@ from sim.plant.environment.orbit import Orbit
 from sim.report.figures.attitude_arrays import angle_rad
 from sim.report.figures.estimate_error import estimate_error
 from sim.scenario.schema import load, parse_settings
-from sim.sizing import torques
+from sim.sizing import expectation, torques
 from sim.sizing.expectation import (
     detumbling,
     detumbling_words,
@@ -76,6 +78,32 @@ def test_where_the_orbit_has_no_shadow_the_sun_holds_it():
 def test_a_tighter_bound_is_worth_something(tighter):
     known, of_all = (knowledge_of(made(ONE_U, {"flight": {"uncertainty": keys}})) for keys in (tighter, {}))
     assert known.rms_deg < of_all.rms_deg
+
+
+class TestOrdinaryBounds:
+    """Of a small body whose parameters are all uncertain, in an orbit without a shadow."""
+
+    LIT: ClassVar[dict[str, Any]] = {"orbit": {"raan_deg": 90.0, "inclination_deg": 98.0}}
+
+    def knowledge(self, **uncertainty):
+        satellite = replace(ONE_U, exact=False)
+        settings = merge(self.LIT, {"flight": {"uncertainty": uncertainty}})
+        return knowledge_of(scenario_made(scenario_text(satellite, "mine.toml"), settings))
+
+    def test_the_sun_holds_it(self):
+        found = self.knowledge()
+        assert found.rms_deg < 0.5
+        assert found.most_deg < 1.0
+
+    @pytest.mark.parametrize("key", sorted(set(UncertaintyTable.model_fields) - {"magnetometer_bias_nt"}))
+    def test_no_tighter_bound_makes_it_worse(self, key):
+        """By over a hundredth: what nothing observes is kept apart otherwise where one of it is exact."""
+        assert self.knowledge(**{key: 0.0}).rms_deg <= 1.01 * self.knowledge().rms_deg
+
+    def test_the_step_does_not_matter(self, monkeypatch):
+        found = self.knowledge()
+        monkeypatch.setattr(expectation, "KNOWN_STEP_S", 5)
+        assert self.knowledge().rms_deg == pytest.approx(found.rms_deg, rel=0.02)
 
 
 @pytest.mark.parametrize("up", ["x", "z"])
